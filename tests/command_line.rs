@@ -225,6 +225,18 @@ fn a_new_scene_runs_for_every_mesh() {
     assert!(text(&again.stderr).contains("is there already"), "{}", text(&again.stderr));
 }
 
+/// A surface has no law, and the part of its commented load is a part of it.
+#[test]
+fn a_new_scene_of_a_surface_names_what_it_may_have() {
+    let folder = TempDir::new().unwrap();
+    let triangles = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(folder.path().join("small.obj"), triangles).unwrap();
+    let scene = printed(folder.path(), &[], &["new", "small.obj", "--scale", "mm"]);
+    assert!(!scene.contains("law"), "{scene}");
+    assert!(scene.contains("# where = \"x < 0.001\"") && scene.contains("# where = \"x > 0.009\""), "{scene}");
+    assert!(!scene.contains("traction ="), "{scene}");
+}
+
 /// A name, a path or a group of any characters is quoted.
 #[test]
 fn a_new_scene_quotes_what_the_mesh_is_called() {

@@ -225,4 +225,6 @@ fn the_program_refuses_with_one_line_and_takes_the_option_into_the_scene() {
         let expected = format!("{key}: expected one of refuse, union, found \"uinon\"; did you mean \"union\"?");
         assert!(wrong.contains(&expected), "{wrong}");
     }
+    let negative = String::from_utf8(springfit(folder.path(), &["new", "two.obj", "--fill", "-1"]).stderr).unwrap();
+    assert!(negative.starts_with("error: --fill: expected") && negative.contains("found -1"), "{negative}");
 }

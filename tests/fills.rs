@@ -1,7 +1,10 @@
 //! Closed surfaces that are filled with cells.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource, Selection};
+use springfit::model::{Action, nodal_forces};
+use springfit::report::{Report, notes_beside_summary};
+use springfit::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -196,5 +199,68 @@ fn centres_on_the_surface_are_decided_alike() {
             let outside = centres(&mesh).into_iter().filter(|at| at.iter().map(|x| x.abs()).sum::<f64>() > 1.0 + 1e-12);
             assert_eq!(outside.count(), 0, "{name} {cell}");
         }
+    }
+}
+
+/// The area of steps is larger than that of an egg whatever the size of cells; what a fill found is in the notes of the report.
+#[test]
+fn tractions_on_steps_and_what_a_fill_found_are_notes() {
+    let egg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl");
+    let scene = |rest: &str| {
+        let text = format!(
+            "[mesh]\nfill = {{ surface = {egg:?}, {rest} }}\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n\
+             [[fix]]\nwhere = \"z < 0\"\n[[load]]\nname = \"wind\"\ngroup = \"surface\"\ntraction = [0, 0, 1]\n"
+        );
+        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    for (rest, is_stepped) in [
+        ("cell = 0.4", true),
+        ("cell = 0.3, element = \"tet4\"", true),
+        ("cell = 0.4, element = \"tet4\", boundary = \"smooth\"", false),
+    ] {
+        let outcome = scene(rest);
+        let notes = Report::of(&outcome).notes;
+        assert!(notes.iter().any(|note| note.contains("fill a surface")), "{rest}: {notes:?}");
+        assert!(!notes_beside_summary(&outcome).iter().any(|note| note.contains("fill a surface")), "{rest}");
+        let stepped = notes.iter().any(|note| note.starts_with("the traction wind acts on a stepped boundary"));
+        assert_eq!(stepped, is_stepped, "{rest}: {notes:?}");
+        let filled = filled(&outcome.mesh);
+        if let Some(area) = filled.stepped_area {
+            // By the forces: a traction of 1 Pa on all sides.
+            let along = nodal_forces(
+                &outcome.mesh,
+                &Selection::Group("surface".into()),
+                &Action::traction(&[1.0, 0.0, 0.0]),
+                1.0,
+            );
+            let total: f64 = along.unwrap().iter().sum();
+            assert!(
+                (total / area - 1.0).abs() < 1e-9 && area > 1.1 * filled.surface_area,
+                "{rest}: {total} {filled:?}"
+            );
+        }
+    }
+}
+
+/// A coarse fill is far from the volume of its surface; layers have no volume to compare with.
+#[test]
+fn volumes_far_off_and_volumes_of_layers_are_told() {
+    let fill = |text: &str, cell: f64| {
+        let (boundary, layers) = (FillBoundary::Stepped, FillLayers::Union);
+        let mesh = FillMesh { element: element("hex8"), cell, boundary, layers }.build(&obj(text), 1.0).unwrap();
+        filled(&mesh).clone()
+    };
+    let coarse = fill(&brick([0.0; 3], [1.0, 1.0, 1.25], false, 0), 1.0);
+    assert!(coarse.excess().unwrap().abs() > 10.0 && coarse.far_off().is_some(), "{coarse:?}");
+    let fine = fill(&brick([0.0; 3], [1.0, 1.0, 1.25], false, 0), 0.25);
+    assert!(fine.far_off().is_none() && fine.lines()[0].ends_with("+0.00 %"), "{fine:?}");
+    assert!(fine.steps().is_none(), "{fine:?}");
+    let two = brick([0.0; 3], [10.0; 3], false, 0) + &brick([5.0; 3], [15.0; 3], false, 8);
+    let two = fill(&two, 1.25);
+    assert!(two.excess().is_none() && two.far_off().is_none(), "{two:?}");
+    assert!(two.lines()[0].contains("cannot be compared") && !two.lines()[0].contains('%'), "{:?}", two.lines());
+    let one = Filled { cells: 1, flat: 1, loose: 1, branched: Some((1, [0.0; 3])), ..fine };
+    for words in ["1 cell fills", "1 triangle without an area was", "1 edge of the surface has", "1 cell that hung"] {
+        assert!(one.lines().iter().any(|line| line.starts_with(words)), "{words}: {:?}", one.lines());
     }
 }

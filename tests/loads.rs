@@ -190,3 +190,20 @@ fn sides_of_cells_that_are_left_out_go_with_them() {
     let found: f64 = along_x(&mesh, &named(name), &Action::traction(&[1.0, 0.0, 0.0])).iter().sum();
     assert!((found - 0.5).abs() < 1e-15, "{found}");
 }
+
+/// The sides of a surface in space are its outline.
+#[test]
+fn a_traction_on_a_sheet_in_space_is_said_to_act_on_its_outline() {
+    let scene = |load: &str| {
+        let text = format!(
+            "[mesh]\ndisc = {{ element = \"tri3\", radius = 1, rings = 3, height = 0.2 }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+             thickness = 0.01\n[[fit]]\nobjective = \"exact\"\n[[fix]]\nwhere = \"x < 0.1\"\n[[fix]]\nwhere = \"x > -2\"\naxes = [\"z\"]\n\
+             [[load]]\nname = \"pull\"\nwhere = \"x > 0.1\"\n{load}\n"
+        );
+        let scene = springfit::study::Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
+        springfit::report::notes(&springfit::study::run(&scene, &mut |_| {}).unwrap())
+    };
+    let is_told = |notes: &[String]| notes.iter().any(|note| note.contains("traction pull acts on the outline"));
+    assert!(is_told(&scene("traction = [1, 0, 0]")));
+    assert!(!is_told(&scene("body = [1, 0, 0]")));
+}

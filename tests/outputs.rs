@@ -19,14 +19,16 @@ report = false
 
 #[test]
 fn each_fit_has_a_file_of_its_own() {
-    let names = ["modal 0.1 +bulk", "modal 0.1 bulk", "mesh", "±"];
+    let names = ["modal 0.1 +bulk", "modal 0.1 bulk", "mesh", "±", "..", "A", "a"];
     let fits = names.map(|name| format!("[[fit]]\nname = \"{name}\"\nobjective = \"frobenius\"\n"));
     let scene = Scene::parse(&[SCENE, &fits.concat()].concat(), Path::new("scene.toml")).unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let written = write_outputs(&outcome, scene.output(), folder.path()).unwrap();
     let written: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(written, ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv", "mesh-2.csv", "-2.csv", "points.csv"]);
+    let modal = ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv"];
+    let others = ["mesh-2.csv", "fit.csv", "fit-2.csv", "A.csv", "a-2.csv", "points.csv"];
+    assert_eq!(written, [&modal[..], &others].concat());
 }
 
 /// The row sums of corners of quadratic tetrahedra are negative: files, frequencies and notes are of the masses of the HRZ method. Those

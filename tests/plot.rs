@@ -123,7 +123,7 @@ fn what_a_run_lacks_is_named() {
     let cube = folder("cube_tet.toml");
     let run = RunFolder::at(cube.path());
     let error = fault(Figure::Motion, &run, None, None);
-    assert!(error.contains("no motion"), "{error}");
+    assert!(error.contains("report.json") && error.contains("no motion") && error.contains("[motion]"), "{error}");
     let error = fault(Figure::WorkPrecision, &run, Some("zzz"), None);
     assert!(error.contains("tension, shear"), "{error}");
     std::fs::remove_file(cube.path().join("offdiag.json")).unwrap();
@@ -346,4 +346,60 @@ fn formats_are_those_of_the_ending() {
             assert!(error.contains("--features pictures") && error.contains("rsvg-convert"), "{format:?}: {error}");
         }
     }
+}
+
+/// What is drawn is of the run of the report: the files of a former one are removed, those of the user stay.
+#[test]
+fn a_run_leaves_no_file_of_the_former_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |settings: &str| {
+        let scene = scene("square_quad.toml", settings);
+        write_outputs(&run(&scene, &mut |_| {}).unwrap(), scene.output(), folder.path()).unwrap();
+    };
+    let has = |name: &str| folder.path().join(name).exists();
+    std::fs::write(folder.path().join("mine.vtu"), "of the user").unwrap();
+    write("\n[output]\nvtu = true\ncsv = true\nreport = true\n");
+    let run = RunFolder::at(folder.path());
+    let fit = run.report().unwrap().fits[0].name.clone();
+    let load = run.report().unwrap().fits[0].loads[0].name.clone();
+    deformation(&run, &fit, &load);
+    assert!(has("mesh.vtu") && has("points.csv") && has("report.html"));
+    write("\n[output]\njson = false\n");
+    for name in ["mesh.vtu", "points.csv", "report.html", "frobenius.json", "frobenius.csv"] {
+        assert!(!has(name), "{name}");
+    }
+    assert!(has("mine.vtu") && has("report.json"));
+    let error = fault(Figure::Deformation, &run, Some(&fit), Some(&load));
+    assert!(error.contains("mesh.vtu") && error.contains("is not there"), "{error}");
+    // A run without a report cannot be known to the next one.
+    write("\n[output]\nvtu = true\nreport = false\n");
+    assert!(!has("report.json") && has("mesh.vtu"));
+    write("");
+    assert!(has("mesh.vtu"));
+    let error = fault(Figure::Deformation, &run, Some(&fit), Some(&load));
+    assert!(error.contains("mesh.vtu") && error.contains("of another run"), "{error}");
+}
+
+/// An input of a run stays, even if the former run wrote it.
+#[test]
+fn a_run_removes_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = scene("square_quad.toml", "\n[output]\nvtu = true\n");
+    write_outputs(&run(&first, &mut |_| {}).unwrap(), first.output(), folder.path()).unwrap();
+    let text = "[mesh]\nfile = \"mesh.vtu\"\n[material]\nyoung = 1e4\npoisson = 0.3\nplane = \"stress\"\n[[fit]]\nobjective = \"exact\"\n";
+    let second = Scene::parse(text, &folder.path().join("scene.toml")).unwrap();
+    write_outputs(&run(&second, &mut |_| {}).unwrap(), second.output(), folder.path()).unwrap();
+    assert!(folder.path().join("mesh.vtu").exists());
+}
+
+/// Squares of their edges alone are a mechanism, without an error.
+#[test]
+fn fits_without_an_error_are_named() {
+    let fit = "\n[[fit]]\nname = \"edges\"\nobjective = \"offdiag\"\nsprings = [\"edge\"]\n";
+    let square = folder_of(&scene("square_quad.toml", fit));
+    let run = RunFolder::at(square.path());
+    let left_out = Figure::WorkPrecision.left_out(&run, None).unwrap();
+    assert_eq!(left_out.len(), 1);
+    assert!(left_out[0].contains("edges") && left_out[0].contains("mechanism"), "{left_out:?}");
+    assert!(Figure::Constants.left_out(&run, None).unwrap().is_empty());
 }

@@ -115,13 +115,13 @@ fn poor_cells_are_told_refused_or_skipped() {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{output:?}");
     assert!(
-        text.contains("1 cells have a quality below 1e-4, the worst 7.1e-8 (tet4 cell 3 at [0.0, 0.0, 0.0] m)"),
+        text.contains("1 cell with a quality below 1e-4, the worst 7.1e-8 (tet4 cell 3 at [0.0, 0.0, 0.0] m)"),
         "{text}"
     );
     let all = springs();
     let output = fitted(place, &["--below", "skip"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("1 cells that are flat, tangled or of poor quality were left out"), "{text}");
+    assert!(text.contains("1 cell that is flat, tangled or of poor quality was left out"), "{text}");
     assert!(text.contains("5 points") && !text.contains("belong to no element") && springs() < all, "{text}");
     let errors = [
         (
@@ -212,7 +212,7 @@ fn a_scene_names_its_gate() {
         program(folder.path(), &["run", "s.toml"])
     };
     let output = scene("quality = { below = \"skip\", least = 1e-3 }");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("were left out"), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("was left out"), "{output:?}");
     let report = fs::read_to_string(folder.path().join("out/s/report.json")).unwrap();
     assert!(report.contains("\"skipped_elements\": 1"), "{report}");
     for (quality, error) in [

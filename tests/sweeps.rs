@@ -323,12 +323,17 @@ fn what_would_mix_or_lose_studies_is_refused() {
         refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of this scene")
     );
     assert!(refused(folder, "sweep s.toml --out o --resume --set material.young=1002").contains("studies.jsonl:1"));
+    // Shards are of one scene, whether they go on or not.
+    assert!(
+        refused(folder, "sweep s.toml --out o --shard 3/3").contains("studies.jsonl:1: expected a study of this scene")
+    );
     assert_eq!(read(folder, "o/studies.jsonl"), lines);
     fs::write(folder.join("o/studies.jsonl"), "no study\n").unwrap();
     assert!(refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of a sweep"));
     for (arguments, words) in [
         ("sweep s.toml --shard 0/2", "--shard"),
         ("sweep s.toml --shard 3/2", "--shard"),
+        ("sweep s.toml --shard -1/2", "--shard"),
         ("sweep s.toml --shard 2", "--shard"),
         ("sweep s.toml --jobs 0", "--jobs"),
         ("sweep missing.toml", "missing.toml"),

@@ -234,7 +234,7 @@ impl Network {
     /// What is said of the mesh and of the fit: one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        report::mesh_notes(self.mesh()).into_iter().chain(report::notes(&self.outcome)).collect()
+        report::mesh_notes(self.mesh()).into_iter().chain(report::notes_beside_summary(&self.outcome)).collect()
     }
 
     /// What the fit cost and how far its matrices are from those of the finite elements.

@@ -20,10 +20,10 @@ pub struct MeshOptions {
     #[arg(long)]
     below: Option<String>,
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     least: Option<f64>,
     /// The mesh is a closed surface: fill it with cells of this edge, in mesh units
-    #[arg(long)]
+    #[arg(long, allow_hyphen_values = true)]
     fill: Option<f64>,
     /// The element of hexahedra or tetrahedra that fills a surface [default: cubes of eight nodes]
     #[arg(long, requires = "fill")]

@@ -52,7 +52,8 @@ impl OutputOptions {
         let text = || format!("{}\n{}", report::summary(outcome), report::table(outcome));
         self.print(terminal, record, || ResultTable::all(&record()), text)?;
         if !self.json {
-            report::notes(outcome).iter().for_each(|note| terminal.note(note));
+            let notes = if self.is_text() { report::notes_beside_summary } else { report::notes };
+            notes(outcome).iter().for_each(|note| terminal.note(note));
         }
         Ok(())
     }

@@ -59,7 +59,11 @@ impl Plot {
             }
         }
         let text = match (self.figure, self.table) {
-            (Some(figure), _) => figure.picture(&run, self.of.as_deref(), self.load.as_deref())?.svg(self.columns)?,
+            (Some(figure), _) => {
+                let picture = figure.picture(&run, self.of.as_deref(), self.load.as_deref())?;
+                figure.left_out(&run, self.of.as_deref())?.iter().for_each(|note| terminal.note(note));
+                picture.svg(self.columns)?
+            }
             (None, Some(markup)) => self.tables(&run, markup)?,
             (None, None) => return Err(Error::new("expected --figure or --table")),
         };

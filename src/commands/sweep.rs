@@ -25,7 +25,7 @@ pub struct Sweep {
     #[arg(long, default_value_t = 1, value_name = "N")]
     jobs: usize,
     /// Run every COUNT-th study from the NUMBER-th on, into files of its own in the same folder, for several machines
-    #[arg(long, value_name = "NUMBER/COUNT")]
+    #[arg(long, value_name = "NUMBER/COUNT", allow_hyphen_values = true)]
     shard: Option<String>,
     /// Go on from the studies that the folder has, those of other shards as well; failed ones are not run again
     #[arg(long)]

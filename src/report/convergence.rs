@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 fn headings() -> [Heading; 11] {
     [
         Heading::words("model"),
-        Heading::numbers("level"),
+        Heading::words("level"),
         Heading::numbers("h\nmm"),
         Heading::numbers("cells"),
         Heading::numbers("unknowns"),
@@ -48,7 +48,14 @@ pub fn convergence_tables(convergence: &Convergence) -> Vec<ResultTable> {
 }
 
 fn load_title(convergence: &Convergence, load: &LoadConvergence) -> String {
-    format!("{}: {}", load.name, truth_text(load.truth.as_ref(), convergence.reference.as_deref()))
+    let truth = truth_text(load.truth.as_ref(), convergence.reference.as_deref());
+    let trust = match load.truth {
+        Some(_) if !convergence.is_one_problem => {
+            "; it is not to be trusted, because the levels are different problems (see the notes)"
+        }
+        _ => "",
+    };
+    format!("{}: {truth}{trust}", load.name)
 }
 
 fn load_rows(convergence: &Convergence, load: &LoadConvergence) -> Vec<Vec<String>> {
@@ -65,7 +72,7 @@ fn rows(convergence: &Convergence, load: &LoadConvergence, model: &ModelConverge
         vec![
             if i == 0 { model.name.clone() } else { String::new() },
             (i + 1).to_string(),
-            format!("{:.4}", 1e3 * level.size),
+            millimetres(level.size),
             level.cells.to_string(),
             level.unknowns.to_string(),
             step.compliance.map_or("-".into(), |value| format!("{value:.6e}")),
@@ -88,6 +95,14 @@ fn rows(convergence: &Convergence, load: &LoadConvergence, model: &ModelConverge
         rows.push(row);
     }
     rows
+}
+
+/// A length in mm, with four digits behind the point or five in all where that says nothing.
+fn millimetres(size: f64) -> String {
+    match 1e3 * size {
+        size @ 0.1..1e5 => format!("{size:.4}"),
+        size => format!("{size:.4e}"),
+    }
 }
 
 /// Signed, with two digits behind the point or two in all where that says nothing.
@@ -122,6 +137,11 @@ fn truth_text(truth: Option<&Limit>, reference: Option<&str>) -> String {
                 "{finest}, which differ by {uncertain} from the level before: the levels do not converge monotonically"
             )
         }
+        LimitKind::Growing => format!(
+            "there is no truth, because the differences between levels grow: errors are relative to the {:.6e} J of the finest finite \
+             elements{of}, which differ by {uncertain} from the level before",
+            limit.value
+        ),
         LimitKind::TooSlow(order) => format!(
             "{finest}, which differ by {uncertain} from the level before: they converge with order {order:.2} only, \
              too slowly to extrapolate"
@@ -136,6 +156,7 @@ fn truth_word(kind: LimitKind) -> &'static str {
         LimitKind::Constant => "constant",
         LimitKind::TooFew => "finest-of-two",
         LimitKind::NotMonotonic => "finest-not-monotonic",
+        LimitKind::Growing => "finest-growing",
         LimitKind::TooSlow(_) => "finest-too-slow",
     }
 }

@@ -74,6 +74,10 @@ pub struct Report {
     pub fits: Vec<FitRecord>,
     /// What a reader must know before trusting a figure, one sentence each.
     pub notes: Vec<String>,
+    /// The names of the files that the run has written into its folder, with that of the report; those that a motion's `.pvd` lists
+    /// are not named. The next run in the folder removes them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
 }
 
 /// The quality of the mesh.
@@ -163,6 +167,7 @@ impl Report {
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),
             notes: notes(outcome),
+            files: outcome.files.lock().map_or_else(|lock| lock.into_inner().clone(), |files| files.clone()),
         }
     }
 }

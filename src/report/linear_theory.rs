@@ -62,23 +62,25 @@ pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
             .filter(|(size, _)| !(*size <= bound))
             .map(|(_, words)| words)
             .collect();
-        format!(
-            "finite elements: {} under {name} are beyond the linear theory. law = \"stable-neo-hookean\" in [material] solves at large \
-             deformation",
-            large.join(" and ")
-        )
+        // Surfaces and curves in space have no law.
+        let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
+        let law = ". law = \"stable-neo-hookean\" in [material] solves at large deformation";
+        let remedy = if is_bulk { law } else { "" };
+        format!("finite elements: {} under {name} are beyond the linear theory{remedy}", large.join(" and "))
     };
     beyond.map(note).collect()
 }
 
-/// Of a network whose springs turn beside linear finite elements, what of its error is the fit's.
-pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>) -> Option<String> {
+/// Of a network whose springs turn beside linear finite elements, what of its error is the fit's. Bodies in space of surfaces and
+/// curves have no law, `is_bulk` is false of them.
+pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>, is_bulk: bool) -> Option<String> {
     let ([mean, max], [own_mean, own_max]) = (model.error()?, model.linear_error?);
     let rotation = body?.rotation;
+    let law = if is_bulk { ", a law in [material] compares both at large deformation" } else { "" };
     Some(format!(
         "{}: the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear. Of the %e_rms \
          {mean:.2} / {max:.2} the fit's is {own_mean:.2} / {own_max:.2}: that of two linear models. linear = true in [motion] \
-         compares linear models, a law in [material] compares both at large deformation",
+         compares linear models{law}",
         model.name
     ))
 }

@@ -11,6 +11,7 @@ mod derivation;
 mod figure;
 mod fit_record;
 mod forecast;
+mod former;
 mod frequencies;
 mod groups;
 mod json;
@@ -28,6 +29,7 @@ mod outputs;
 pub mod page;
 mod paper;
 mod pictures;
+mod quality;
 mod referee;
 mod region_record;
 mod result_table;
@@ -70,6 +72,7 @@ pub use outputs::{check_outputs, check_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
+pub use quality::mesh_notes;
 pub use referee::{
     EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
     referee_tables, referee_text, write_referee,
@@ -83,7 +86,7 @@ pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_str
 pub use study_lines::StudyLines;
 pub use study_record::StudyRecord;
 pub use study_table::{StudyTable, planned_table, planned_text, studies_table, studies_text};
-pub use table::{mesh_notes, notes, summary, table};
+pub use table::{notes, notes_beside_summary, summary, table};
 pub use typeset::Markup;
 
 use crate::error::Result;
@@ -91,13 +94,16 @@ use crate::file::{create_folder, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
 use crate::text::printable_lines;
-use outputs::{PAGE, POINTS, Stems};
+use former::remove_former;
+use outputs::{PAGE, POINTS, REPORT, Stems};
 use std::path::{Path, PathBuf};
+use std::sync::PoisonError;
 
-/// Writes what `output` asks for into `folder`, and returns the paths.
+/// Writes what `output` asks for into `folder`, and returns the paths. What the report of a former run in the folder lists is
+/// removed first, except inputs of this run, so that all files there are of one run.
 ///
 /// # Errors
-/// The folder or a file cannot be written.
+/// The folder or a file cannot be written, or a file of the former run cannot be removed.
 pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
     let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
     let names = models().map(|model| model.name.as_str());
@@ -110,6 +116,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
     if tables || networks || moved().next().is_some() || output.vtu || reports {
         create_folder(folder)?;
     }
+    remove_former(folder, &outcome.inputs)?;
     for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| tables) {
         let path = folder.join(format!("{stem}.csv"));
         write_with(&path, |to| network_csv(&outcome.mesh, &fit.network, to))?;
@@ -144,9 +151,14 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
             written.push(write_series(outcome, model, stem, folder)?);
         }
     }
+    let later = [(reports, REPORT), (output.has_page(), PAGE)]
+        .into_iter()
+        .filter_map(|(is_written, name)| is_written.then_some(name));
+    let names = written.iter().filter_map(|path| Some(path.strip_prefix(folder).ok()?.to_string_lossy().into_owned()));
+    *outcome.files.lock().unwrap_or_else(PoisonError::into_inner) = names.chain(later.map(String::from)).collect();
     // Last: where it is, the others are.
     if reports {
-        let path = folder.join("report.json");
+        let path = folder.join(REPORT);
         write_whole(&path, report(outcome).as_bytes())?;
         written.push(path);
     }

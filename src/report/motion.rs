@@ -98,6 +98,7 @@ fn steps(count: usize) -> String {
 /// What a reader must know of a motion before trusting it.
 pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
     let Some(motion) = &outcome.motion else { return Vec::new() };
+    let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
     let mut notes = step_notes(&motion.recipe);
     for model in &motion.models {
         let name = &model.name;
@@ -109,7 +110,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
                 1.0 / growth
             ));
         }
-        notes.extend(turning_note(model, motion.models[0].deformation));
+        notes.extend(turning_note(model, motion.models[0].deformation, is_bulk));
         let known = || model.records.last().map_or(0.0, |record| record.account.time);
         match &model.ending {
             MotionEnding::Complete | MotionEnding::Unsolved => {}

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// The table of the points, if all networks of a run have the same masses.
 pub(super) const POINTS: &str = "points.csv";
+/// The report.
+pub(super) const REPORT: &str = "report.json";
 /// The report as a page.
 pub(super) const PAGE: &str = "report.html";
 
@@ -54,7 +56,7 @@ pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Re
         motions.iter().try_for_each(|stem| check_folder(&folder.join(stem)))?;
     }
     if output.report != Some(false) {
-        names.push("report.json".into());
+        names.push(REPORT.into());
     }
     if output.has_page() {
         names.push(PAGE.into());
@@ -90,7 +92,11 @@ impl Stems {
 /// Characters of a stem, without the number that tells equal ones apart.
 const LONGEST_STEM: usize = 40;
 
-/// Each name as the stem of a file of its own: `modal 0.1 +bulk` is `modal-0.1-bulk`.
+/// The stem of a name without letters or digits of ASCII.
+const UNNAMED: &str = "fit";
+
+/// Each name as the stem of a file of its own, also where files do not tell capitals from small letters: `modal 0.1 +bulk` is
+/// `modal-0.1-bulk`.
 pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let reserved = ["mesh", "points", "report"];
     let mut stems: Vec<String> = reserved.map(String::from).into();
@@ -106,8 +112,12 @@ pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String
             stem += part;
         }
         stem.truncate(LONGEST_STEM);
+        if stem.chars().all(|c| c == '.') {
+            stem = UNNAMED.into();
+        }
         let numbered = (2..).map(|i| format!("{stem}-{i}"));
-        let free = std::iter::once(stem.clone()).chain(numbered).find(|s| !s.is_empty() && !stems.contains(s));
+        let is_free = |stem: &String| !stems.iter().any(|other| other.eq_ignore_ascii_case(stem));
+        let free = std::iter::once(stem.clone()).chain(numbered).find(is_free);
         stems.extend(free);
     }
     stems.split_off(reserved.len())

@@ -10,6 +10,9 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+/// The names of the files begin so.
+const STEM: &str = "studies";
+
 /// The records of the studies that are done, in the folder of a sweep.
 pub struct StudyLines {
     file: File,
@@ -20,16 +23,25 @@ pub struct StudyLines {
 
 impl StudyLines {
     /// Opens the file of a shard in `folder`, which is made. With `resume` the studies are known that any file there has; without,
-    /// the file must have none.
+    /// the file must have none, and those of other shards must be of the same scene.
     ///
     /// # Errors
     /// The file cannot be written, or another process writes it; it has studies already; or one of them is of another scene, or of this
     /// one before a change.
     pub fn open(folder: &Path, shard: Shard, resume: bool, sweep: &Sweep) -> Result<StudyLines> {
         create_folder(folder)?;
-        let path = folder.join(shard.file_name("studies", "jsonl"));
-        let others = if resume { files_in(folder, "jsonl")? } else { Vec::new() };
-        StudyLines::open_file(path, &others, resume, sweep)
+        let path = folder.join(shard.file_name(STEM, "jsonl"));
+        let mut others = files_in(folder, "jsonl")?;
+        if !resume {
+            let is_of_shard =
+                |path: &PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STEM));
+            others.retain(is_of_shard);
+        }
+        let mut lines = StudyLines::open_file(path, &others, resume, sweep)?;
+        if !resume {
+            lines.records.clear();
+        }
+        Ok(lines)
     }
 
     /// Opens one file, with what `others` have as well.

@@ -7,9 +7,10 @@ use super::linear_theory::linear_notes;
 use super::load_errors::load_error_table;
 use super::materials::{material_note, material_table};
 use super::motion::{motion_notes, motion_table};
+use super::quality::{changes, counted, quality_lines};
 use super::region_record::RegionRecord;
 use crate::fit::Spread;
-use crate::mesh::{Filled, Mesh, Quality};
+use crate::mesh::Filled;
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
 use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
@@ -57,11 +58,11 @@ pub fn summary(outcome: &Outcome) -> String {
     }
     for region in RegionRecord::all(outcome) {
         if let Some(name) = &region.region {
-            writeln!(text, "material of {}: {}, {} cells", printable(name), region.words(), region.cells)
-                .expect("a String grows");
+            let cells = counted(region.cells, "cell");
+            writeln!(text, "material of {}: {}, {cells}", printable(name), region.words()).expect("a String grows");
         }
     }
-    for line in quality(&mesh.quality) {
+    for line in quality_lines(&mesh.quality) {
         writeln!(text, "{line}").expect("a String grows");
     }
     text
@@ -76,55 +77,6 @@ pub(super) fn size(extent: &[f64]) -> String {
         _ => format!("{x:.2e}"),
     };
     format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
-}
-
-/// What a reader must know of the mesh: what was changed in it, and what is wrong with its cells and points; one line each.
-pub fn mesh_notes(mesh: &Mesh) -> Vec<String> {
-    changes(mesh).into_iter().chain(quality(&mesh.quality)).collect()
-}
-
-/// Which cells were turned, and how many points were left out.
-fn changes(mesh: &Mesh) -> Vec<String> {
-    let turned = "elements had their nodes in inverted order and were reversed";
-    let turned = (mesh.reversed > 0).then(|| match &mesh.quality.turned {
-        None => format!("{} {turned}", mesh.reversed),
-        Some(which) => format!("{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()),
-    });
-    let unused = (mesh.unused_points > 0)
-        .then(|| format!("{} points of the file belong to no element and were left out", mesh.unused_points));
-    turned.into_iter().chain(unused).collect()
-}
-
-/// What is wrong with the cells and points of a mesh, one line each.
-fn quality(quality: &Quality) -> Vec<String> {
-    let mut lines = quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
-    if quality.skipped > 0 {
-        lines.push(format!("{} cells that are flat, tangled or of poor quality were left out", quality.skipped));
-    }
-    if quality.duplicates > 0 {
-        lines.push(format!("{} cells have the nodes of another and were left out", quality.duplicates));
-    }
-    if quality.folded > 0 {
-        lines.push(format!("{} cells are folded over their neighbours and were left out", quality.folded));
-    }
-    if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
-        lines.push(format!(
-            "{} cells have a quality below {:e}, the worst {:.1e} ({}): their spring constants lose accuracy in proportion",
-            quality.poor, quality.least, worst.quality, worst.cell
-        ));
-    }
-    if let Some(count) = quality.coincident.filter(|count| *count > 0) {
-        lines.push(format!("{count} points coincide with another point: the body is not connected there"));
-    }
-    if let Some(count) = quality.hanging.filter(|count| *count > 0) {
-        lines.push(format!(
-            "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
-        ));
-    }
-    if let Some(count) = quality.pieces.filter(|count| *count > 1) {
-        lines.push(format!("the mesh has {count} pieces that share no node"));
-    }
-    lines
 }
 
 /// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
@@ -233,6 +185,12 @@ fn iterations(loads: &[&LoadOutcome]) -> String {
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
+    let filled = outcome.mesh.quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
+    filled.into_iter().chain(notes_beside_summary(outcome)).collect()
+}
+
+/// The same without the lines that [`summary`] has.
+pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
     let finite = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
     let measured = outcome.loads.iter().filter_map(|load| {
@@ -255,6 +213,8 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
         .iter()
         .cloned()
         .chain(fibres(outcome))
+        .chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off))
+        .chain(outcome.of_loads.iter().cloned())
         .chain(lumping(outcome))
         .chain(finite)
         .chain(linear_notes(outcome))

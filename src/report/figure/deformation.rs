@@ -64,11 +64,8 @@ impl Deformation {
             let why = format!("{} has no displacements under {}: it is {}", fit.name, load.name, fit.status);
             return Err(Error::new(format!("{why}; another fit of the run may have some")));
         }
-        let path = run.file("mesh.vtu");
-        if !path.is_file() {
-            let advice = "[output] vtu = true of the scene writes it, or springfit run SCENE --set output.vtu=true";
-            return Err(Error::new(format!("is not there, and has the displacements; {advice}")).in_file(&path));
-        }
+        let advice = "[output] vtu = true of the scene writes it, or springfit run SCENE --set output.vtu=true";
+        let path = run.own_file(&report, "mesh.vtu", "the displacements", advice)?;
         let source = MeshSource::read(&path)?;
         let mesh = Mesh::resolve(&source, &[], 1.0).map_err(|e| e.in_file(&path))?;
         let network = run.network(Some(&fit.name))?;

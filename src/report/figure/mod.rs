@@ -28,6 +28,7 @@ pub(super) use precision::precision_chart;
 pub(in crate::report) use sheet::{sheet, words};
 
 use crate::error::{Error, Result};
+use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
 use clap::ValueEnum;
 
@@ -74,11 +75,26 @@ impl Figure {
         Ok(match self {
             Figure::WorkPrecision => Picture::Chart(precision(&run.report()?, of)?),
             Figure::Constants => Picture::Chart(constants(run, of)?),
-            Figure::Motion => Picture::Chart(motion(&run.report()?)?),
+            Figure::Motion => Picture::Chart(motion(&run.report()?).map_err(|e| e.in_file(&run.file("report.json")))?),
             Figure::Deformation => Picture::Deformation(Box::new(Deformation::of(run, of, load)?)),
             Figure::Moduli => Picture::Moduli(Moduli::of(run, of)?),
             Figure::Convergence => Picture::Chart(convergence::convergence_chart(&run.file(CONVERGENCE_TABLE), of)?),
         })
+    }
+}
+
+impl Figure {
+    /// What the picture of a run does not show, one sentence each.
+    ///
+    /// # Errors
+    /// Those of [`Figure::picture`].
+    pub fn left_out(self, run: &RunFolder, of: Option<&str>) -> Result<Vec<String>> {
+        match self {
+            Figure::WorkPrecision => without_error(&run.report()?, of),
+            Figure::Constants | Figure::Motion | Figure::Deformation | Figure::Moduli | Figure::Convergence => {
+                Ok(Vec::new())
+            }
+        }
     }
 }
 
@@ -96,7 +112,8 @@ impl Picture {
     }
 }
 
-fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
+/// The place of the load with this name, or of the first, and its name.
+fn load_place<'a>(report: &'a Report, load: Option<&str>) -> Result<(usize, &'a str)> {
     let loads = report.fits.first().map_or(&[][..], |fit| &fit.loads);
     let place = match load {
         None => 0,
@@ -108,8 +125,22 @@ fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
     let Some(name) = loads.get(place).map(|load| &load.name) else {
         return Err(Error::new("the run has no loads, so its fits have no errors to draw"));
     };
-    let error = |fit: &crate::report::FitRecord| fit.loads.get(place)?.e_rms;
-    let point = |fit: &crate::report::FitRecord| Some((fit.name.clone(), fit.seconds_per_element, error(fit)?));
+    Ok((place, name))
+}
+
+/// The fits without an error under the load.
+fn without_error(report: &Report, load: Option<&str>) -> Result<Vec<String>> {
+    let (place, name) = load_place(report, load)?;
+    let is_without = |fit: &&FitRecord| fit.loads.get(place).is_none_or(|load| load.e_rms.is_none());
+    let words =
+        |fit: &FitRecord| format!("{} is not shown: it is {}, without an error under {name}", fit.name, fit.status);
+    Ok(report.fits.iter().filter(is_without).map(words).collect())
+}
+
+fn precision(report: &Report, load: Option<&str>) -> Result<Chart> {
+    let (place, name) = load_place(report, load)?;
+    let error = |fit: &FitRecord| fit.loads.get(place)?.e_rms;
+    let point = |fit: &FitRecord| Some((fit.name.clone(), fit.seconds_per_element, error(fit)?));
     let points: Vec<_> = report.fits.iter().filter_map(point).collect();
     let title = format!("{}: error under {name} against time to fit", report.scene);
     Ok(precision_chart(title, format!("e_rms under {name}, %"), &points))
@@ -149,7 +180,9 @@ fn motion(report: &Report) -> Result<Chart> {
     let has_error = |series: &Series| series.points.iter().any(|(_, error)| *error > 0.0);
     let series: Vec<Series> = report.motion.iter().map(curve).filter(has_error).collect();
     if series.is_empty() {
-        return Err(Error::new("the run has no motion whose distance from the finite elements is known"));
+        let words =
+            "has no motion whose distance from the finite elements is known: [motion] of the scene computes one";
+        return Err(Error::new(words));
     }
     Ok(Chart {
         title: format!("{}: distance from the finite elements over time", report.scene),

@@ -60,6 +60,24 @@ impl RunFolder {
         place.ok_or_else(|| Error::expected("--of", format!("a fit of the run: {}", known()), name))
     }
 
+    /// A file that the run wrote, which `has` says the content of; `advice` says when a run writes it.
+    ///
+    /// # Errors
+    /// It is not there, or it is not one of the run whose report this is.
+    pub(super) fn own_file(&self, report: &Report, name: &str, has: &str, advice: &str) -> Result<PathBuf> {
+        let path = self.file(name);
+        // Reports of former versions list no files.
+        let is_own = report.files.is_empty() || report.files.iter().any(|file| file == name);
+        match (path.is_file(), is_own) {
+            (true, true) => Ok(path),
+            (true, false) => {
+                let why = format!("has {has} of another run: the run of report.json did not write it; {advice}");
+                Err(Error::new(why).in_file(&path))
+            }
+            (false, _) => Err(Error::new(format!("is not there, and has {has}; {advice}")).in_file(&path)),
+        }
+    }
+
     /// The network of the fit with this name, or of the first.
     ///
     /// # Errors
@@ -68,13 +86,7 @@ impl RunFolder {
         let report = self.report()?;
         let place = RunFolder::place(&report, fit)?;
         let stems = crate::report::outputs::file_stems(report.fits.iter().map(|fit| fit.name.as_str()));
-        let path = self.file(&format!("{}.json", stems[place]));
-        match path.is_file() {
-            true => read_network(&path),
-            false => {
-                let advice = "a run writes it unless [output] json of the scene is false";
-                Err(Error::new(format!("is not there, and has the network; {advice}")).in_file(&path))
-            }
-        }
+        let advice = "a run writes it unless [output] json of the scene is false";
+        read_network(&self.own_file(&report, &format!("{}.json", stems[place]), "the network", advice)?)
     }
 }

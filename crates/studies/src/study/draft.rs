@@ -69,7 +69,14 @@ pub fn draft(
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
     let sizes: Vec<String> = extent(mesh).iter().map(|x| rounded(*x, 3)).collect();
     line(&format!("# {} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x ")));
-    mesh.quality.filled.iter().flat_map(Filled::lines).for_each(|words| line(&format!("# {words}")));
+    let filled = || mesh.quality.filled.iter();
+    filled()
+        .flat_map(Filled::lines)
+        .chain(filled().filter_map(Filled::far_off))
+        .for_each(|words| line(&format!("# {words}")));
+    if let Some(steps) = filled().find_map(Filled::steps) {
+        line(&format!("# A traction on the surface is too large where it is not along the axes: {steps}."));
+    }
     line("# Quantities are in SI units, or texts with a unit such as \"10 kPa\".");
     line(&format!("title = {}\n", quoted(title)));
     line("[mesh]");
@@ -118,7 +125,9 @@ pub fn draft(
         }
         None => line("# density = 1000          # kg/m^3; masses, [motion] and frequencies require it"),
     }
-    line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies");
+    if mesh.cell_dimension() == mesh.dimension {
+        line("# law = \"neo-hookean\"     # large deformation; `springfit materials` lists the energies");
+    }
     line(
         "# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n",
     );
@@ -188,19 +197,24 @@ fn contents(mesh: &Mesh, group: &Group) -> String {
 fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String> {
     let young = material.young.as_deref().and_then(|text| Quantity::Pressure.parse(text).ok()).unwrap_or(YOUNG);
     let d = mesh.dimension;
-    let none = |why: &str| {
-        let example = vec!["0"; d - 1].join(", ");
+    // Near the ends of the body along x.
+    let ends = || {
+        let along = || mesh.points.iter().step_by(d).copied();
+        let (low, high) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
+        [0.1, 0.9].map(|share| rounded(low + share * (high - low), 6))
+    };
+    let none = |why: &str, action: &str| {
+        let (example, [low, high]) = (vec!["0"; d - 1].join(", "), ends());
         vec![
             format!("# {why}"),
-            "# [[fix]]\n# where = \"x < 0.01\"\n#\n# [[load]]\n# name = \"pull\"".into(),
-            format!(
-                "# where = \"x > 0.09\"\n# traction = [100, {example}]   # Pa; or force (N), body (N/m^3), displacement (m)"
-            ),
+            format!("# [[fix]]\n# where = \"x < {low}\"\n#\n# [[load]]\n# name = \"pull\""),
+            format!("# where = \"x > {high}\"\n# {}", action.replace("EXAMPLE", &example)),
         ]
     };
     if mesh.cell_dimension() < d {
         return none(
-            "A surface or curve in space bends freely: it is solved with a [motion], or with a law and enough supports.",
+            "A surface or curve in space bends freely: it is solved with a [motion]; loads need supports of all points that could bend.",
+            "body = [100, EXAMPLE]   # N/m^3; or force (N), displacement (m); a traction (Pa) acts on the outline",
         );
     }
     let pieces = mesh.pieces();
@@ -216,7 +230,12 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
         Some(group) => (mesh.groups[group].points.clone(), format!("group = {}", quoted(group))),
         None => match lowest(mesh, &pieces) {
             Some((points, condition)) => (points, format!("where = {}", quoted(&condition))),
-            None => return none("Too few points are left free to load the body when it is held."),
+            None => {
+                return none(
+                    "Too few points are left free to load the body when it is held.",
+                    "traction = [100, EXAMPLE]   # Pa; or force (N), body (N/m^3), displacement (m)",
+                );
+            }
         },
     };
     lines.push(format!("[[fix]]\n{fix}\n# axes = [\"x\"]            # all if absent\n"));

@@ -1,6 +1,6 @@
 //! Runs a scene: fits each objective, solves each load with both models, and compares them.
 
-use super::body::{Case, FineBody, Gauged, LargeBody, LinearBody, load_cases};
+use super::body::{Case, FineBody, Gauged, LargeBody, LinearBody, load_cases, load_notes};
 use super::checkpoint::Controls;
 use super::fits::{Finer, Reference, WholeBody};
 use super::fitting::fit_mesh;
@@ -137,10 +137,13 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     }
     let mut outcome = Outcome {
         scene: scene.title().into(),
+        inputs: scene.inputs(),
+        files: Default::default(),
         settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
         command: None,
         source: scene.mesh().title(),
         assumed: scene.assumption(&mesh),
+        of_loads: load_notes(scene, &mesh),
         left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
         mesh,
         material: material.clone(),

@@ -1,5 +1,10 @@
 //! What a fill is beside its surface, in figures and words.
 
+/// A difference of volumes that must be known, percent.
+const FAR: f64 = 10.0;
+/// The area of steps, relative to that of their surface, which matters to a traction.
+const STEPPED: f64 = 1.05;
+
 /// Faces that pass through each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceCrossings {
@@ -26,6 +31,10 @@ pub struct Filled {
     pub surface_volume: f64,
     /// The volume of the cells, m³.
     pub volume: f64,
+    /// The area of the surface, m².
+    pub surface_area: f64,
+    /// The area of the outer sides of cells with a stepped boundary, m².
+    pub stepped_area: Option<f64>,
     /// The least and the largest angle between sides of a cell with a smooth boundary, degrees.
     pub angles: Option<[f64; 2]>,
     /// The number of cells.
@@ -60,12 +69,43 @@ impl Filled {
         }
     }
 
+    /// By how many percent the volume of the cells exceeds that inside the surface; `None` if the surface has layers, whose
+    /// common volume the divergence theorem counts more than once, or less.
+    pub fn excess(&self) -> Option<f64> {
+        let has_layers = self.overlaps.is_some() || self.inverted.is_some();
+        (!has_layers).then(|| 100.0 * (self.volume / self.surface_volume - 1.0))
+    }
+
+    /// That the volume of the cells is far from that inside the surface.
+    pub fn far_off(&self) -> Option<String> {
+        let excess = self.excess().filter(|excess| excess.abs() > FAR)?;
+        let more = if excess > 0.0 { "more" } else { "less" };
+        Some(format!(
+            "the cells that fill the surface have {:.0} % {more} volume than it encloses; smaller cells come nearer",
+            excess.abs()
+        ))
+    }
+
+    /// How the area of a stepped boundary differs from that of the surface, if it does; smaller cells do not change that.
+    pub fn steps(&self) -> Option<String> {
+        let area = self.stepped_area.filter(|area| *area > STEPPED * self.surface_area)?;
+        let (of, more) = (self.surface_area, 100.0 * (area / self.surface_area - 1.0));
+        Some(format!(
+            "the steps have an area of {area:.4e} m² in place of the {of:.4e} m² of the surface, {more:+.0} %"
+        ))
+    }
+
     /// The fill beside its surface, and what is wrong with the surface, in lines of words.
     pub fn lines(&self) -> Vec<String> {
         let (cells, of) = (self.volume, self.surface_volume);
-        let more = 100.0 * (cells / of - 1.0);
-        let mut lines =
-            vec![format!("{} cells fill a surface: {cells:.4e} m³ of {of:.4e} m³, {more:+.2} %", self.cells)];
+        let compared = match self.excess() {
+            Some(more) => format!("{cells:.4e} m³ of {of:.4e} m³, {more:+.2} %"),
+            None => format!("{cells:.4e} m³, which cannot be compared with its {of:.4e} m³, a sum over its layers"),
+        };
+        let mut lines = vec![format!(
+            "{} a surface: {compared}",
+            if self.cells == 1 { "1 cell fills".into() } else { format!("{} cells fill", self.cells) }
+        )];
         if let Some([least, largest]) = self.angles {
             lines.push(format!("dihedral angles are from {least:.1} to {largest:.1} degrees"));
         }
@@ -73,10 +113,12 @@ impl Filled {
             lines.push("all normals of the surface were inwards and were turned".into());
         }
         if self.flat > 0 {
-            lines.push(format!("{} triangles without an area were left out", self.flat));
+            let were = if self.flat == 1 { "was" } else { "were" };
+            lines.push(format!("{} without an area {were} left out", counted(self.flat, "triangle")));
         }
         if let Some((count, place)) = self.branched {
-            lines.push(format!("{count} edges of the surface have more than two triangles, one at {}", at(place)));
+            let (edges, have) = (counted(count, "edge"), if count == 1 { "has" } else { "have" });
+            lines.push(format!("{edges} of the surface {have} more than two triangles, one at {}", at(place)));
         }
         if let Some(crossings) = &self.crossings {
             let is_filled = self.overlaps.is_none() && self.inverted.is_none();
@@ -84,18 +126,27 @@ impl Filled {
             lines.push(format!("{}{effect}", crossings.words()));
         }
         if let Some((count, place)) = self.overlaps {
-            let words = "places of the lattice are inside several layers of the surface";
-            lines.push(format!("{count} {words}, one at {}: each is filled once", at(place)));
+            let (places, are) = (counted(count, "place"), if count == 1 { "is" } else { "are" });
+            let words = format!("{places} of the lattice {are} inside several layers of the surface");
+            lines.push(format!("{words}, one at {}: each is filled once", at(place)));
         }
         if let Some((count, place)) = self.inverted {
-            let words = "places of the lattice are inside a part of the surface that is inside out, and are not filled";
-            lines.push(format!("{count} {words}, one at {}", at(place)));
+            let (places, are) = (counted(count, "place"), if count == 1 { "is" } else { "are" });
+            let words = format!("{places} of the lattice {are} inside a part of the surface that is inside out");
+            lines.push(format!("{words}, and {are} not filled, one at {}", at(place)));
         }
         if self.loose > 0 {
-            lines.push(format!("{} cells that hung on others by an edge or a corner alone were left out", self.loose));
+            let were = if self.loose == 1 { "was" } else { "were" };
+            let cells = counted(self.loose, "cell");
+            lines.push(format!("{cells} that hung on others by an edge or a corner alone {were} left out"));
         }
         lines
     }
+}
+
+/// A number of things, `1 cell` or `2 cells`.
+fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A place in words.

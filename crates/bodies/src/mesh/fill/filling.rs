@@ -76,6 +76,7 @@ impl FillMesh {
         let surface = Surface::of(source, scale)?;
         let mut filled = Filled {
             surface_volume: surface.volume,
+            surface_area: surface.area,
             turned: surface.is_turned,
             flat: surface.flat,
             branched: surface.branched,
@@ -106,7 +107,8 @@ impl FillMesh {
             let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);
             return Err(Error::expected("cell", format!("{needs}: a smaller cell"), found));
         }
-        group(&mut mesh)?;
+        let sides = group(&mut mesh)?;
+        filled.stepped_area = (self.boundary == FillBoundary::Stepped).then(|| sides as f64 * self.side_area());
         mesh.quality.filled = Some(filled);
         Ok(mesh)
     }
@@ -119,6 +121,13 @@ impl FillMesh {
             return Err(self.too_many((cells / MOST_CELLS as f64).max(cubes / MOST_CUBES).cbrt(), cells));
         }
         Ok(())
+    }
+
+    /// The area of a side of a cell of the lattice, m². Those of the tetrahedra are equal: two edges of a half diagonal of a
+    /// cube at an edge of a cube.
+    fn side_area(&self) -> f64 {
+        let of_square = if self.element.cell == Cell::Tetrahedron { f64::sqrt(0.125) } else { 1.0 };
+        of_square * self.cell.powi(2)
     }
 
     /// The error for too many cells, of which the edge has to grow by `factor`.
@@ -184,8 +193,8 @@ impl FillMesh {
     }
 }
 
-/// Turns all cells alike, and adds the groups.
-fn group(mesh: &mut Mesh) -> Result<()> {
+/// Turns all cells alike, and adds the groups; returns the number of outer sides.
+fn group(mesh: &mut Mesh) -> Result<usize> {
     mesh.orient(false)?;
     mesh.reversed = 0;
     let outer = Selection::Everything.sides(mesh)?;
@@ -201,7 +210,7 @@ fn group(mesh: &mut Mesh) -> Result<()> {
     mesh.groups.insert("surface".into(), surface);
     mesh.groups.insert("body".into(), body);
     mesh.quality.pieces = Some(mesh.pieces().len());
-    Ok(())
+    Ok(outer.len())
 }
 
 /// The cells whose centres are inside: their cubes and patterns, sorted.

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::coincident::Coincident;
 use crate::mesh::resolution::check_size;
 use crate::mesh::source::{Format, MeshSource};
-use crate::springs::{cross, dot};
+use crate::springs::{cross, dot, norm};
 use std::collections::HashMap;
 
 /// Triangles that close one or several volumes, with their normals outwards.
@@ -16,6 +16,8 @@ pub(super) struct Surface {
     pub faces: Vec<u32>,
     /// The enclosed volume by the divergence theorem, `∫ x·n dA / 3`, m³.
     pub volume: f64,
+    /// m².
+    pub area: f64,
     pub low: [f64; 3],
     pub high: [f64; 3],
     /// Whether all normals were inwards and have been turned.
@@ -75,10 +77,12 @@ impl Surface {
         let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
         let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
         let from_low = |p: usize| std::array::from_fn::<f64, 3, _>(|k| points[p][k] - low[k]);
-        let mut volume = 0.0;
+        let (mut volume, mut area) = (0.0, 0.0);
         for &[a, b, c] in &triangles {
             let [x, y, z] = [a, b, c].map(from_low);
             volume += dot(&x, &cross(y, z)) / 6.0;
+            let along = |end: [f64; 3]| std::array::from_fn(|k| end[k] - x[k]);
+            area += norm(&cross(along(y), along(z))) / 2.0;
         }
         let is_turned = volume < 0.0;
         if is_turned {
@@ -88,7 +92,7 @@ impl Surface {
         if !(volume > 0.0) {
             return Err(Error::expected("surface", "a surface that encloses a volume", format!("{volume} m³")));
         }
-        Ok(Surface { points, triangles, faces, volume, low, high, is_turned, flat, branched })
+        Ok(Surface { points, triangles, faces, volume, area, low, high, is_turned, flat, branched })
     }
 }
 

@@ -9,6 +9,7 @@ mod gauge;
 mod iterated;
 mod large;
 mod linear;
+mod load_notes;
 
 pub use case::Case;
 pub use cases::{applied_cases, load_cases};
@@ -16,3 +17,4 @@ pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;
+pub use load_notes::load_notes;

@@ -29,8 +29,10 @@ pub enum LimitKind {
     Constant,
     /// There are fewer than three levels.
     TooFew,
-    /// The differences between levels change their sign or grow.
+    /// The differences between levels change their sign.
     NotMonotonic,
+    /// The last difference is no smaller than the one before: the values do not converge yet, if they do at all.
+    Growing,
     /// The order, given here, is below ½: the extrapolation would add more than is known.
     TooSlow(f64),
 }
@@ -40,7 +42,11 @@ impl Limit {
     pub fn order(&self) -> Option<f64> {
         match self.kind {
             LimitKind::Extrapolated(order) => Some(order),
-            LimitKind::Constant | LimitKind::TooFew | LimitKind::NotMonotonic | LimitKind::TooSlow(_) => None,
+            LimitKind::Constant
+            | LimitKind::TooFew
+            | LimitKind::NotMonotonic
+            | LimitKind::Growing
+            | LimitKind::TooSlow(_) => None,
         }
     }
 }
@@ -62,9 +68,10 @@ pub fn limit_of(values: &[f64]) -> Option<Limit> {
         return of_finest(LimitKind::TooFew);
     }
     let one_sign = differences.iter().all(|d| d * last > 0.0);
-    let Some((q, correction)) = aitken(&differences).filter(|_| one_sign) else {
+    if !one_sign {
         return of_finest(LimitKind::NotMonotonic);
-    };
+    }
+    let Some((q, correction)) = aitken(&differences) else { return of_finest(LimitKind::Growing) };
     let order = -q.log2();
     if order < SLOWEST {
         return of_finest(LimitKind::TooSlow(order));

@@ -1,9 +1,11 @@
 //! The convergence of finite elements and networks as the mesh of a scene is refined.
 
+mod conditions;
 mod levels;
 mod limit;
 mod outcome;
 mod quantities;
+mod reference;
 mod run;
 
 pub use levels::most_unknowns;

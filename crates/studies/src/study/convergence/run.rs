@@ -1,8 +1,10 @@
 //! Runs a scene on a sequence of meshes.
 
+use super::conditions::Selected;
 use super::levels::plan;
 use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
 use super::quantities::Quantities;
+use super::reference::same_problem;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
@@ -18,6 +20,8 @@ use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
+/// Cells are divided, and do not come nearer to a curved boundary.
+const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh on all levels";
 /// The number of levels if none is requested and memory suffices.
 const USUAL_LEVELS: usize = 4;
 
@@ -38,8 +42,10 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         progress(Event::Note(&format!("{count} levels are run, for one more would take long; --levels asks for more")));
     }
     let title = scene.title().into();
-    let (extent, levels, loads) = Default::default();
-    let mut convergence = Convergence { scene: title, extent, law: None, reference: None, levels, loads };
+    let (extent, notes, levels, loads) = Default::default();
+    let (law, reference, is_one_problem) = (None, None, true);
+    let mut convergence = Convergence { scene: title, extent, law, reference, notes, is_one_problem, levels, loads };
+    let mut before: Vec<Selected> = Vec::new();
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
     let mut prescribed = Vec::new();
     for level in 0..count {
@@ -68,11 +74,23 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         let seconds = start.elapsed().as_secs_f64();
         let (cells, points, unknowns) = (mesh.cell_count(), mesh.point_count(), mesh.points.len());
         convergence.levels.push(Level { size, cells, points, unknowns, seconds });
-        progress(Event::Note(&format!("{number}: {cells} cells, {unknowns} unknowns, {seconds:.1} s")));
+        let counted = if cells == 1 { "1 cell".into() } else { format!("{cells} cells") };
+        progress(Event::Note(&format!("{number}: {counted}, {unknowns} unknowns, {seconds:.1} s")));
+        let selected = Selected::all(refined, mesh);
+        let changes: Vec<String> = selected.iter().zip(&before).filter_map(|(now, then)| now.change(then)).collect();
+        convergence.is_one_problem &= changes.is_empty();
+        let mut notes: Vec<String> = changes.into_iter().map(|change| format!("{number}: {change}")).collect();
+        before = selected;
         if level == 0 {
             convergence.extent = extent_of(mesh);
-            outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
+            notes.extend(outcome.assumed.iter().chain(&outcome.of_loads).cloned());
+            let input = scene.mesh();
+            if input.disc.is_some() || input.fill.is_some() {
+                notes.push(format!("{POLYHEDRON}, and the truth is that of this body"));
+            }
         }
+        notes.iter().for_each(|note| progress(Event::Note(note)));
+        convergence.notes.extend(notes);
         convergence.law = outcome.law;
     }
     let loads = scene.loads().iter().zip(prescribed).zip(models);
@@ -104,7 +122,8 @@ pub fn refinements(scene: &Scene, levels: Option<usize>) -> Result<Vec<Scene>> {
 /// one of quadratic cells. If those of the scene lock, their limit is far from the solution.
 ///
 /// # Errors
-/// Those of [`converge`] for each scene; or the reference has no load with the same name.
+/// Those of [`converge`] for each scene; or the reference has no load with the same name, or another body, material, supports or
+/// loads.
 pub fn converge_to(
     scene: &Scene,
     reference: &Scene,
@@ -116,6 +135,7 @@ pub fn converge_to(
         let expected = format!("a load \"{}\" as in the scene", load.name);
         return Err(reference.placed(Error::expected("load", expected, names.join(", "))));
     }
+    let differs = same_problem(scene, reference)?;
     let body = reference.clone().with_fits(Vec::new());
     let known = converge(&body, None, &mut |event: Event| match event {
         Event::Stage { name, done, total } => progress(Event::stage(&format!("reference, {name}"), done, total)),
@@ -128,6 +148,13 @@ pub fn converge_to(
         }
     }
     convergence.reference = Some(known.scene);
+    convergence.is_one_problem &= known.is_one_problem;
+    convergence.notes.extend(known.notes.into_iter().map(|note| format!("reference, {note}")));
+    if let Some(differs) = differs {
+        let note = format!("the bodies differ by more than rounding: {differs}");
+        progress(Event::Note(&note));
+        convergence.notes.push(note);
+    }
     Ok(convergence)
 }
 

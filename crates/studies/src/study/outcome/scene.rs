@@ -8,12 +8,18 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
 use crate::study::masses::PointMasses;
+use std::path::PathBuf;
+use std::sync::Mutex;
 
 /// The results of a scene.
 #[derive(Debug)]
 pub struct Outcome {
     /// The title of the scene.
     pub scene: String,
+    /// The files that were read.
+    pub inputs: Vec<PathBuf>,
+    /// The names of the files in the folder to which the outcome was written last, which its report lists.
+    pub files: Mutex<Vec<String>>,
     /// What was given in place of values of the scene's file, as `KEY=VALUE`.
     pub settings: Vec<String>,
     /// The command that was given, if there was one.
@@ -22,6 +28,8 @@ pub struct Outcome {
     pub source: String,
     /// A sentence about what was assumed because no input gives it.
     pub assumed: Option<String>,
+    /// What must be known of the loads, one sentence each.
+    pub of_loads: Vec<String>,
     /// The mesh.
     pub mesh: Mesh,
     /// The materials, with the density if it is given.
@@ -58,14 +66,17 @@ impl Outcome {
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
-        let (assumed, support, fibres) = Default::default();
+        let (inputs, files, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
         Outcome {
             source: name.clone(),
             scene: name,
+            inputs,
+            files,
             settings,
             command,
             assumed,
+            of_loads,
             mesh,
             material,
             support,

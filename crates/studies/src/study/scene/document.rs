@@ -255,6 +255,12 @@ impl Scene {
             || self.loads.iter().any(|load| load.measured.is_some())
     }
 
+    /// The parts of the body with materials of their own, by their places in the scene.
+    pub(in crate::study) fn material_parts(&self) -> Vec<(String, Part)> {
+        let all = self.material.all.iter().enumerate();
+        all.filter_map(|(i, entry)| Some((self.material.key(i), entry.part().ok()?))).collect()
+    }
+
     /// The materials of the meshed body, with their density if the scene gives one.
     ///
     /// # Errors

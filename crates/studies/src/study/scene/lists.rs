@@ -16,7 +16,12 @@ pub fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
             if fit.name.trim().is_empty() {
                 return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
             }
-            expect_own_name(&key, &fit.name, std::iter::once(BODY).chain(fits.iter().map(|fit| fit.name.as_str())))?;
+            let reserved = if fit.name.eq_ignore_ascii_case(BODY) { fit.name.clone() } else { BODY.into() };
+            expect_own_name(
+                &key,
+                &fit.name,
+                std::iter::once(&*reserved).chain(fits.iter().map(|fit| fit.name.as_str())),
+            )?;
             fits.push(fit.of_entry(i));
         }
     }

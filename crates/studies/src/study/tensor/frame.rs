@@ -1,23 +1,69 @@
-//! The plane or line of the cells of surfaces and curves.
+//! The planes and lines of samples of surfaces and curves, and axes in them that all samples share.
 
 use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
 
-/// Orthonormal directions of the plane or line that fits the points of a sample best, `[space × d]`, and the root mean
-/// square distance of the points from it, relative to their extent.
-pub(super) fn frame(sample: &Sample, d: usize) -> (DMatrix<f64>, f64) {
-    let space = sample.mesh.dimension;
-    if d == space {
-        return (DMatrix::identity(d, d), 0.0);
+/// Of the columns of the projections of coordinate axes onto a plane, shorter ones have no direction to rely on.
+const SHORT: f64 = 0.1;
+
+/// The plane or line that fits the points of a sample best.
+pub(super) struct Plane {
+    /// Orthonormal directions in it, `[space × d]`.
+    directions: DMatrix<f64>,
+    /// The root mean square distance of the points from it, relative to their extent.
+    pub(super) height: f64,
+}
+
+impl Plane {
+    /// Of a sample whose cells have dimension `d`.
+    pub(super) fn of(sample: &Sample, d: usize) -> Plane {
+        let space = sample.mesh.dimension;
+        if d == space {
+            return Plane { directions: DMatrix::identity(d, d), height: 0.0 };
+        }
+        let x = DMatrix::from_column_slice(space, sample.points.len(), &sample.mesh.points);
+        let mean = x.column_mean();
+        let centred = DMatrix::from_fn(space, x.ncols(), |k, p| x[(k, p)] - mean[k]);
+        let svd = centred.svd(true, false);
+        let directions = svd.u.expect("it was asked for");
+        let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
+        order.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
+        let columns: Vec<DVector<f64>> = order[..d].iter().map(|&k| directions.column(k).into_owned()).collect();
+        let height = order.get(d).map_or(0.0, |&k| svd.singular_values[k] / svd.singular_values[order[0]]);
+        Plane { directions: DMatrix::from_columns(&columns), height }
     }
-    let x = DMatrix::from_column_slice(space, sample.points.len(), &sample.mesh.points);
-    let mean = x.column_mean();
-    let centred = DMatrix::from_fn(space, x.ncols(), |k, p| x[(k, p)] - mean[k]);
-    let svd = centred.svd(true, false);
-    let directions = svd.u.expect("it was asked for");
-    let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
-    order.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
-    let columns: Vec<DVector<f64>> = order[..d].iter().map(|&k| directions.column(k).into_owned()).collect();
-    let height = order.get(d).map_or(0.0, |&k| svd.singular_values[k] / svd.singular_values[order[0]]);
-    (DMatrix::from_columns(&columns), height)
+
+    /// The projection of a coordinate axis onto the plane.
+    fn projected(&self, axis: usize) -> DVector<f64> {
+        &self.directions * self.directions.row(axis).transpose()
+    }
+
+    /// Orthonormal axes in the plane, `[space × d]`: the projections of the coordinate axes in this order, each without
+    /// its part along those before it.
+    pub(super) fn frame(&self, order: &[usize]) -> DMatrix<f64> {
+        let d = self.directions.ncols();
+        let mut axes: Vec<DVector<f64>> = Vec::new();
+        for &axis in order {
+            let mut own = self.projected(axis);
+            axes.iter().for_each(|before| own -= before * before.dot(&own));
+            if axes.len() < d && own.norm() > SHORT {
+                axes.push(own.normalize());
+            }
+        }
+        DMatrix::from_columns(&axes)
+    }
+}
+
+/// The order in which the coordinate axes give the samples their axes: first those that lie in the planes. The axes of
+/// flat sheets are then the same in all samples, and those of a sheet in the plane of x and y are x and y.
+pub(super) fn axis_order(planes: &[&Plane]) -> Vec<usize> {
+    let space = planes[0].directions.nrows();
+    // The part of each axis that is normal to the planes, in quarters: axes that differ by less keep their order.
+    let normal = |axis: usize| {
+        let within: f64 = planes.iter().map(|plane| plane.directions.row(axis).norm_squared()).sum();
+        (4.0 * (1.0 - within / planes.len() as f64)).round() as i64
+    };
+    let mut order: Vec<usize> = (0..space).collect();
+    order.sort_by_key(|&axis| normal(axis));
+    order
 }

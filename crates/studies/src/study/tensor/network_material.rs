@@ -1,6 +1,6 @@
 //! A network as a material, measured on samples of its cells.
 
-use super::frame::frame;
+use super::frame::{Plane, axis_order};
 use super::isotropic::{constants, distance, of_material};
 use super::owners::SpringOwners;
 use super::piece::Piece;
@@ -19,8 +19,10 @@ const SAMPLES: usize = 6;
 /// distance of classical fits is 0.70 to 0.80 with single cells, 0.31 with the cells around 1 point, 0.165 around 8,
 /// 0.137 around 30, 0.124 around 100, and 0.115 around 300, which takes 170 times as long.
 const POINTS: usize = 30;
-/// Heights above the plane of a sample, relative to its size, that are rounding errors.
-const FLAT: f64 = 1e-9;
+/// Samples of surfaces and curves whose points are farther from their plane, relative to their size, have fewer points.
+/// Motions in the plane of a cap with this height see its cells tilted by 10° at most, by which their stiffness changes
+/// by 1.5 %.
+const FLAT: f64 = 0.05;
 
 /// A network as a material.
 ///
@@ -32,8 +34,8 @@ const FLAT: f64 = 1e-9;
 #[non_exhaustive]
 pub struct NetworkMaterial {
     /// The mean of the tensors of the samples in Kelvin's notation, `σ = C ε` with the strains xx, yy, (zz,) and √2
-    /// times xy, (xz, yz); Pa, in the plane multiplied by the thickness, for a rod by its cross-section. On surfaces
-    /// and curves in the directions of each sample.
+    /// times xy, (xz, yz); Pa, in the plane multiplied by the thickness, for a rod by its cross-section. On surfaces in
+    /// space the axes are projections of coordinate axes onto the plane of each sample: x and y of a sheet in their plane.
     pub stiffness: DMatrix<f64>,
     /// Young's modulus of the mean tensor, Pa, the harmonic mean over all directions of tension; `None` if some strain
     /// meets no resistance or releases energy.
@@ -65,7 +67,8 @@ pub(in crate::study) fn most_samples(mesh: &Mesh) -> usize {
 
 /// Measures a network that was fitted to `material`, at rest.
 ///
-/// On curved surfaces and curves the samples are single cells, each in its own plane.
+/// On surfaces and curves each sample moves in its own plane or line. Where they bend, samples have fewer points, down to
+/// single cells.
 pub fn network_material(
     mesh: &Mesh,
     material: impl Into<MaterialMap>,
@@ -77,30 +80,28 @@ pub fn network_material(
     let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
     let points = mesh.point_count();
     let count = most_samples(mesh);
-    let measure = |i: usize| {
-        let seed = (2 * i + 1) * points / (2 * count);
-        let single = || stars.single(stars.around(seed).next().expect("every point belongs to a cell"));
-        let mut sample = stars.sample(seed, POINTS);
-        let (mut directions, height) = frame(&sample, mesh.cell_dimension());
-        if height > FLAT {
-            sample = single();
-            directions = frame(&sample, mesh.cell_dimension()).0;
-        }
+    let flat: Vec<(Sample, Plane)> = (0..count)
+        .into_par_iter()
+        .map(|i| flat_sample(&stars, (2 * i + 1) * points / (2 * count), dimension))
+        .collect();
+    let order = axis_order(&flat.iter().map(|(_, plane)| plane).collect::<Vec<_>>());
+    let measure = |(sample, plane): &(Sample, Plane)| {
+        let directions = plane.frame(&order);
         let own = material.of_some(&sample.cells);
-        let whole = || Piece::of_network(mesh, &stars, &sample, network);
+        let whole = || Piece::of_network(mesh, &stars, sample, network);
         let piece = match owners {
             SpringOwners::Body => whole(),
-            SpringOwners::Cells(cells) => Piece::of_cells(mesh, &sample, cells, network),
+            SpringOwners::Cells(cells) => Piece::of_cells(mesh, sample, cells, network),
             SpringOwners::Edges(fit) => edge_springs(&sample.mesh, own.clone(), &fit)
-                .map_or_else(|_| whole(), |of_sample| Piece::of_sample(mesh, &sample, of_sample, network)),
+                .map_or_else(|_| whole(), |of_sample| Piece::of_sample(mesh, sample, of_sample, network)),
         };
         let asked = match own.moduli() {
             CellMap::Uniform(one) => of_material(&one, dimension),
-            moduli => body_tensor(&sample, moduli, &directions),
+            moduli => body_tensor(sample, moduli, &directions),
         };
-        (tensor(&sample, &piece, &directions), asked, thickness(&sample, own.thicknesses()))
+        (tensor(sample, &piece, &directions), asked, thickness(sample, own.thicknesses()))
     };
-    let samples: Vec<_> = (0..count).into_par_iter().map(measure).collect();
+    let samples: Vec<_> = flat.par_iter().map(measure).collect();
     let thicknesses: Vec<f64> = samples.iter().map(|(.., thickness)| *thickness).collect();
     let (tensors, asked): (Vec<DMatrix<f64>>, Vec<DMatrix<f64>>) =
         samples.into_iter().map(|(c, asked, _)| (c, asked)).unzip();
@@ -141,6 +142,19 @@ pub fn network_material(
         seconds: start.elapsed().as_secs_f64(),
         stiffness,
     }
+}
+
+/// The sample around a point of as many points as are flat, or else of one cell, with its plane.
+fn flat_sample(stars: &Stars, seed: usize, dimension: usize) -> (Sample, Plane) {
+    let with_plane = |sample: Sample| {
+        let plane = Plane::of(&sample, dimension);
+        (sample, plane)
+    };
+    let counts = std::iter::successors(Some(POINTS), |count| Some(count / 2)).take_while(|count| *count > 0);
+    let mut samples = counts.map(|count| with_plane(stars.sample(seed, count)));
+    samples
+        .find(|(_, plane)| plane.height <= FLAT)
+        .unwrap_or_else(|| with_plane(stars.single(stars.around(seed).next().expect("every point belongs to a cell"))))
 }
 
 /// The mean thickness of a sample, m, or the mean cross-section, m²; 1 of a solid.

@@ -1,0 +1,69 @@
+//! What is wrong with a mesh, in words.
+
+use crate::mesh::{Filled, Mesh, Quality};
+
+/// A number of things, `1 cell` or `2 cells`.
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The same with the verbs that follow it.
+fn with_verbs(count: usize, thing: &str) -> (String, &'static str, &'static str) {
+    let (are, were) = if count == 1 { ("is", "was") } else { ("are", "were") };
+    (counted(count, thing), are, were)
+}
+
+/// What a reader must know of the mesh: what was changed in it, and what is wrong with its cells and points; one line each.
+pub fn mesh_notes(mesh: &Mesh) -> Vec<String> {
+    changes(mesh).into_iter().chain(quality_lines(&mesh.quality)).collect()
+}
+
+/// Which cells were turned, and how many points were left out.
+pub(super) fn changes(mesh: &Mesh) -> Vec<String> {
+    let turned = "elements had their nodes in inverted order and were reversed";
+    let turned = (mesh.reversed > 0).then(|| match &mesh.quality.turned {
+        None => format!("{} {turned}", mesh.reversed),
+        Some(which) => format!("{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()),
+    });
+    let unused = (mesh.unused_points > 0)
+        .then(|| format!("{} points of the file belong to no element and were left out", mesh.unused_points));
+    turned.into_iter().chain(unused).collect()
+}
+
+/// What is wrong with the cells and points of a mesh, one line each.
+pub(super) fn quality_lines(quality: &Quality) -> Vec<String> {
+    let mut lines = quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
+    if quality.skipped > 0 {
+        let (cells, are, were) = with_verbs(quality.skipped, "cell");
+        lines.push(format!("{cells} that {are} flat, tangled or of poor quality {were} left out"));
+    }
+    if quality.duplicates > 0 {
+        let (cells, _, were) = with_verbs(quality.duplicates, "cell");
+        lines.push(format!("{cells} with the nodes of another {were} left out"));
+    }
+    if quality.folded > 0 {
+        let (cells, are, were) = with_verbs(quality.folded, "cell");
+        lines.push(format!("{cells} that {are} folded over their neighbours {were} left out"));
+    }
+    if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
+        lines.push(format!(
+            "{} with a quality below {:e}, the worst {:.1e} ({}): such spring constants lose accuracy in proportion",
+            counted(quality.poor, "cell"),
+            quality.least,
+            worst.quality,
+            worst.cell
+        ));
+    }
+    if let Some(count) = quality.coincident.filter(|count| *count > 0) {
+        lines.push(format!("{count} points coincide with another point: the body is not connected there"));
+    }
+    if let Some(count) = quality.hanging.filter(|count| *count > 0) {
+        lines.push(format!(
+            "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
+        ));
+    }
+    if let Some(count) = quality.pieces.filter(|count| *count > 1) {
+        lines.push(format!("the mesh has {count} pieces that share no node"));
+    }
+    lines
+}
