@@ -74,8 +74,8 @@ pub struct Report {
     pub fits: Vec<FitRecord>,
     /// What a reader must know before trusting a figure, one sentence each.
     pub notes: Vec<String>,
-    /// The names of the files that the run has written into its folder, with that of the report; those that a motion's `.pvd` lists
-    /// are not named. The next run in the folder removes them.
+    /// In `report.json`, the names of the files that the run has written into its folder, with that of the report; those that a motion's
+    /// `.pvd` lists are not named. The next run in the folder removes them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
 }
@@ -123,11 +123,16 @@ pub fn schema() -> serde_json::Value {
 
 /// The report as text.
 pub fn report(outcome: &Outcome) -> String {
-    serde_json::to_string_pretty(&Report::of(outcome)).expect("keys are text") + "\n"
+    Report::of(outcome).text()
 }
 
 impl Report {
-    /// The report of a run.
+    /// The text of `report.json`.
+    pub(super) fn text(&self) -> String {
+        serde_json::to_string_pretty(self).expect("keys are text") + "\n"
+    }
+
+    /// The report of a run, without the files that it writes.
     pub fn of(outcome: &Outcome) -> Report {
         let Outcome { mesh, material, .. } = outcome;
         let thickness = material.thicknesses().uniform().copied();
@@ -167,7 +172,7 @@ impl Report {
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),
             notes: notes(outcome),
-            files: outcome.files.lock().map_or_else(|lock| lock.into_inner().clone(), |files| files.clone()),
+            files: Vec::new(),
         }
     }
 }

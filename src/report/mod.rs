@@ -97,7 +97,6 @@ use crate::text::printable_lines;
 use former::remove_former;
 use outputs::{PAGE, POINTS, REPORT, Stems};
 use std::path::{Path, PathBuf};
-use std::sync::PoisonError;
 
 /// Writes what `output` asks for into `folder`, and returns the paths. What the report of a former run in the folder lists is
 /// removed first, except inputs of this run, so that all files there are of one run.
@@ -155,11 +154,11 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Resul
         .into_iter()
         .filter_map(|(is_written, name)| is_written.then_some(name));
     let names = written.iter().filter_map(|path| Some(path.strip_prefix(folder).ok()?.to_string_lossy().into_owned()));
-    *outcome.files.lock().unwrap_or_else(PoisonError::into_inner) = names.chain(later.map(String::from)).collect();
+    let files = names.chain(later.map(String::from)).collect();
     // Last: where it is, the others are.
     if reports {
         let path = folder.join(REPORT);
-        write_whole(&path, report(outcome).as_bytes())?;
+        write_whole(&path, Report { files, ..Report::of(outcome) }.text().as_bytes())?;
         written.push(path);
     }
     if output.has_page() {

@@ -138,7 +138,6 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let mut outcome = Outcome {
         scene: scene.title().into(),
         inputs: scene.inputs(),
-        files: Default::default(),
         settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
         command: None,
         source: scene.mesh().title(),

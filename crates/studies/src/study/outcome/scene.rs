@@ -9,7 +9,6 @@ use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
 use crate::study::masses::PointMasses;
 use std::path::PathBuf;
-use std::sync::Mutex;
 
 /// The results of a scene.
 #[derive(Debug)]
@@ -18,8 +17,6 @@ pub struct Outcome {
     pub scene: String,
     /// The files that were read.
     pub inputs: Vec<PathBuf>,
-    /// The names of the files in the folder to which the outcome was written last, which its report lists.
-    pub files: Mutex<Vec<String>>,
     /// What was given in place of values of the scene's file, as `KEY=VALUE`.
     pub settings: Vec<String>,
     /// The command that was given, if there was one.
@@ -66,13 +63,12 @@ impl Outcome {
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
-        let (inputs, files, assumed, of_loads, support, fibres) = Default::default();
+        let (inputs, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
         Outcome {
             source: name.clone(),
             scene: name,
             inputs,
-            files,
             settings,
             command,
             assumed,
