@@ -76,7 +76,7 @@ pub struct Report {
     pub notes: Vec<String>,
     /// The names of the files that the run has written into its folder, with that of the report; those that a motion's `.pvd` lists
     /// are not named. The next run in the folder removes them.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub files: Vec<String>,
 }
 
