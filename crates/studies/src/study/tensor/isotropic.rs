@@ -37,6 +37,16 @@ pub(super) fn distance(stiffness: &DMatrix<f64>, asked: &DMatrix<f64>) -> f64 {
     (stiffness - asked).norm() / asked.norm()
 }
 
+/// C of a sample that is bent a little as if it were flat: `T C Tᵀ` with `T = L₀ L_b⁻¹`, where `L₀ L₀ᵀ` is the tensor of the
+/// material and `L_b L_bᵀ` that of its finite elements on the bent sample, which would be the former on a flat one.
+pub(super) fn flattened(stiffness: DMatrix<f64>, bent: DMatrix<f64>, flat: &DMatrix<f64>) -> DMatrix<f64> {
+    let (Some(bent), Some(flat)) = (bent.cholesky(), flat.clone().cholesky()) else { return stiffness };
+    let half = bent.l().solve_lower_triangular(&stiffness);
+    // L_b⁻¹ C, then L_b⁻¹ C L_b⁻ᵀ, which is symmetric.
+    let whole = half.and_then(|half| bent.l().solve_lower_triangular(&half.transpose()));
+    whole.map_or(stiffness, |whole| flat.l() * whole * flat.l().transpose())
+}
+
 /// Young's modulus and Poisson's ratio of a body in this state, whose stiffness is in Pa, as means over all directions of tension. With
 /// `S = C⁻¹` and n, m orthogonal,
 ///
