@@ -65,7 +65,7 @@ fn the_search_finds_the_optimum_of_a_grid() {
 fn an_exponential_law_is_found_again() {
     let element = Arc::new(Element::load("bar2").unwrap());
     let springs = Springs::select(&element, None).unwrap();
-    let material = Material::for_body(1, 2.0, 0.0, None, None).unwrap();
+    let material = Material::for_body(1, 7.5, 0.0, None, None).unwrap();
     let part = |l: &str| format!("3*(exp(2.5*({l} - 1))/2.5 - {l})");
     let energy = ["l1", "l2", "l3"].map(part).join(" + ");
     let energy = Energy::parse(&format!("name = 'rope'\ntitle = 'Rope'\nenergy = '{energy}'"), material).unwrap();
