@@ -495,7 +495,7 @@ fn conditions_that_cut_through_cells_are_named() {
     assert!(disc.is_one_problem && disc.notes.iter().any(|note| note.contains("straight edges")), "{:?}", disc.notes);
 }
 
-/// The truth of another body, material, support or load is none.
+/// A reference of another body, material, support or load is refused.
 #[test]
 fn a_truth_of_another_problem_is_refused() {
     let bar = |length: &str, young: &str, held: &str, traction: &str, element: &str| {

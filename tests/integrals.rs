@@ -153,7 +153,7 @@ fn consistent_masses_are_exact_fractions() {
     }
 }
 
-/// A user's rule for the stiffness, here of two points that integrate no squares, is none for loads.
+/// Loads and masses do not use the quadrature rule of the element file, here one of two points that does not integrate squares exactly.
 #[test]
 fn the_rule_of_the_stiffness_does_not_matter() {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/elements/tet4.toml")).unwrap();

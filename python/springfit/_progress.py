@@ -10,7 +10,7 @@ import numpy as np
 
 from ._arguments import failure, shown
 
-#: What is told of each step: its stage, how much is done, and of how much.
+#: A function that receives the progress of long work: the name of the stage, the steps that are done, and all steps of the stage.
 Told = Callable[[str, int, int], Any]
 
 

@@ -1,13 +1,13 @@
-//! Arguments that are numbers, counts and texts, as they are given. What is none is an error that names the argument.
+//! Reads arguments that have to be numbers, counts or texts. A value of another type is an error that names the argument.
 
 use crate::error::invalid;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyComplex, PyFloat, PyInt, PyNone, PyString};
 
-/// A real number. Texts, flags, complex numbers and arrays are none.
+/// Reads a real number.
 ///
 /// # Errors
-/// It is none.
+/// The value is a text, a flag, a complex number, an array or another object.
 pub fn number(key: &str, given: &Bound<PyAny>) -> PyResult<f64> {
     let is_real = match kind(given) {
         Some(kind) => "fiu".contains(kind) && is_single(given),
@@ -18,18 +18,18 @@ pub fn number(key: &str, given: &Bound<PyAny>) -> PyResult<f64> {
     number.ok_or_else(|| invalid(given.py(), key, "a number", found(given)))
 }
 
-/// A list of real numbers, such as an array of one dimension.
+/// Reads a list of real numbers, such as an array of one dimension.
 ///
 /// # Errors
-/// It is none, or an entry is no number.
+/// The value is not a list, or an entry is not a real number.
 pub fn numbers(key: &str, given: &Bound<PyAny>) -> PyResult<Vec<f64>> {
     each(key, "a list of numbers", given, number)
 }
 
-/// A number of things.
+/// Reads an integer from 0.
 ///
 /// # Errors
-/// It is no integer, or negative.
+/// The value is not an integer, or it is negative.
 pub fn count(key: &str, given: &Bound<PyAny>) -> PyResult<usize> {
     match given.extract() {
         Ok(count) if !given.is_instance_of::<PyBool>() => Ok(count),
@@ -37,18 +37,18 @@ pub fn count(key: &str, given: &Bound<PyAny>) -> PyResult<usize> {
     }
 }
 
-/// A list of numbers of things.
+/// Reads a list of integers from 0.
 ///
 /// # Errors
-/// It is none, or an entry is no such integer.
+/// The value is not a list, or an entry is not an integer from 0.
 pub fn counts(key: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     each(key, "a list of integers", given, count)
 }
 
-/// A text.
+/// Reads a text.
 ///
 /// # Errors
-/// It is none, or has half a pair of surrogates, which no encoding of Unicode has.
+/// The value is not a text, or the text has an unpaired surrogate, which UTF-8 cannot encode.
 pub fn text(key: &str, given: &Bound<PyAny>) -> PyResult<String> {
     given.extract().map_err(|_| invalid(given.py(), key, "a text of Unicode characters", found(given)))
 }

@@ -34,7 +34,7 @@ impl Element {
     /// The shipped element of this name, or the element in the file of this path.
     ///
     /// # Errors
-    /// There is none, or its file is wrong.
+    /// No element has this name, no file has this path, or the file is wrong.
     pub fn named(name: &str) -> Result<Element> {
         if let Some(file) = element::SHIPPED.iter().find(|file| file.name == name) {
             return Element::of_text(file.text);

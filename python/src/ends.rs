@@ -58,7 +58,7 @@ impl Ends {
         work()
     }
 
-    /// The call whose springs this thread evaluates; `own` if there is none.
+    /// The call whose springs this thread evaluates, or `own` if this thread evaluates no springs.
     pub fn current(own: &Arc<Ends>) -> Arc<Ends> {
         CURRENT.with_borrow(Option::clone).unwrap_or_else(|| own.clone())
     }

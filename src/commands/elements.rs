@@ -1,12 +1,12 @@
 //! `springfit elements`.
 
 use super::output::OutputOptions;
+use super::shipped::shipped_text;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::{Element, SHIPPED};
 use springfit::error::Result;
 use springfit::report::{self, ElementRecord};
-use springfit::unknown;
 use std::process::ExitCode;
 
 /// List the shipped elements with their spring groups, or print the file of one
@@ -32,12 +32,7 @@ With --json: a list of elements with the keys name, title, cell, nodes, springs,
 impl Elements {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         if let Some(name) = &self.name {
-            let names = || SHIPPED.iter().map(|file| file.name);
-            let file = SHIPPED.iter().find(|file| file.name == name).ok_or_else(|| {
-                let expected = format!("one of {}", names().collect::<Vec<_>>().join(", "));
-                unknown(expected, names(), name).at_key("NAME")
-            })?;
-            terminal.print(file.text)?;
+            terminal.print(shipped_text(SHIPPED.iter().map(|file| (file.name, file.text)), name)?)?;
             return Ok(ExitCode::SUCCESS);
         }
         let record = |file| Ok(ElementRecord::of(&Element::shipped(file)?, file));

@@ -1,12 +1,12 @@
 //! `springfit materials`.
 
 use super::output::OutputOptions;
+use super::shipped::shipped_text;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
 use springfit::material::{Energy, SHIPPED};
 use springfit::report::{self, MaterialRecord};
-use springfit::unknown;
 use std::process::ExitCode;
 
 /// List the shipped hyperelastic materials, which "law" names, or print the file of one
@@ -32,12 +32,7 @@ With --json: a list of materials with the keys name, title, parameters, fibres, 
 impl Materials {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         if let Some(name) = &self.name {
-            let names = || SHIPPED.iter().map(|(name, _)| *name);
-            let (_, text) = SHIPPED.iter().find(|(shipped, _)| shipped == name).ok_or_else(|| {
-                let expected = format!("one of {}", names().collect::<Vec<_>>().join(", "));
-                unknown(expected, names(), name).at_key("NAME")
-            })?;
-            terminal.print(text)?;
+            terminal.print(shipped_text(SHIPPED.iter().copied(), name)?)?;
             return Ok(ExitCode::SUCCESS);
         }
         let materials: Vec<MaterialRecord> = Energy::shipped()?.iter().map(MaterialRecord::from).collect();

@@ -23,6 +23,7 @@ mod referee;
 mod run;
 mod scene_file;
 mod schema;
+mod shipped;
 mod stability;
 mod state;
 mod sweep;

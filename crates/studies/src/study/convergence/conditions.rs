@@ -5,7 +5,7 @@ use crate::model::{Action, nodal_forces};
 use crate::study::scene::{Part, Scene};
 
 /// Contents that differ by less than this share are equal up to rounding.
-const ROUNDING: f64 = 1e-6;
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// What a condition selects on a mesh.
 #[derive(Debug, Clone, PartialEq)]
