@@ -97,17 +97,10 @@ pub mod referee;
 #[cfg(feature = "cli")]
 pub mod report;
 
-// The examples of the README and of the book are compiled and run with those of this page.
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
-#[cfg(doctest)]
-#[doc = include_str!("../docs/src/reference/library.md")]
-struct LibraryPage;
-
-pub use springfit_bodies::{dynamics, mesh, model, positive, solve, whole};
+pub use springfit_bodies::{dynamics, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
 pub use springfit_kernels::{element, fit, material, springs, stiffness};
+pub use springfit_mesh::mesh;
 pub use springfit_studies::study;
 
 #[cfg(feature = "cli")]

@@ -69,7 +69,7 @@ fn sources() -> Vec<Source> {
         };
         if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
-    ["shipped", "multigrid", "page", "foundation", "kernels", "bodies", "studies", ""]
+    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "studies", ""]
         .into_iter()
         .flat_map(read)
         .collect()

@@ -135,7 +135,7 @@ impl Mesh {
     }
 
     /// One cell alone, without its groups. Its points are in the order of its nodes.
-    pub(crate) fn of_cell(&self, index: CellIndex) -> Mesh {
+    pub fn of_cell(&self, index: CellIndex) -> Mesh {
         let nodes = self.cell_nodes(index);
         let points = nodes.iter().flat_map(|&p| self.point(p)).copied().collect();
         let element = self.blocks[index.block].element.clone();
@@ -153,11 +153,12 @@ impl Mesh {
     }
 
     /// The points of one cell, in the node order of its element.
-    pub(crate) fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
+    pub fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
         self.blocks[block].cell(cell)
     }
 
-    pub(crate) fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {
+    /// Every cell, block by block.
+    pub fn cell_indices(&self) -> impl Iterator<Item = CellIndex> {
         let counts = self.blocks.iter().map(|block| block.cells().len()).enumerate();
         counts.flat_map(|(block, count)| (0..count).map(move |cell| CellIndex { block, cell }))
     }

@@ -1,0 +1,11 @@
+//! Meshes: points, cells and named groups, and what is known at their points and cells.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on its module [`mesh`].
+
+#![forbid(unsafe_code)]
+
+pub mod mesh;
+
+// The layers below, by the same names as everywhere.
+use springfit_foundation::{bound, error, file, named, range, symbolic};
+use springfit_kernels::{element, springs, stiffness};
