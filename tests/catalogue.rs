@@ -27,6 +27,16 @@ fn references() -> Vec<(String, usize, f64)> {
     text.lines().filter(|l| !l.starts_with('#')).map(line).collect()
 }
 
+/// The build of the program finds the numbers of cell types without a parser of TOML.
+#[test]
+fn cell_types_of_shipped_elements_are_those_of_their_files() {
+    for file in SHIPPED {
+        let table: toml::Table = file.text.parse().unwrap();
+        let number = |format: &str| table.get("formats").and_then(|f| f.get(format)?.get("type")?.as_integer());
+        assert_eq!((file.gmsh, file.vtk), (number("gmsh"), number("vtk")), "{}", file.name);
+    }
+}
+
 /// Curved cells with their nodes in the wrong order have another content or none. Files of text have 12 digits. Curves and
 /// surfaces are laid flat cell by cell, which shortens those that are bent.
 #[test]

@@ -1,4 +1,4 @@
-//! The referee of simulators: what it prints, and programs that are missing, end early or answer nonsense. Real engines run in `.ci/run`.
+//! The referee of simulators: what it prints, and programs that are missing, end early or answer nonsense. Real engines run in `.ci/long`.
 
 use serde_json::Value;
 use springfit::referee::ENGINES;

@@ -167,7 +167,7 @@ class Prover:
 def prove(browser, path, arguments):
     faults = []
     desktop, phone = ((1280, 900), "light"), ((390, 844), "dark")
-    for size, scheme in [desktop] if arguments.desktop else [desktop, phone]:
+    for size, scheme in [desktop] if path in arguments.desktop else [desktop, phone]:
         prover = Prover(browser, path, {"width": size[0], "height": size[1]}, scheme)
         page = prover.page
         if page.locator("#view canvas").count():
@@ -212,11 +212,11 @@ def main():
     parser.add_argument("pages", nargs="+", type=pathlib.Path)
     parser.add_argument("--pictures")
     parser.add_argument("--frame", type=float)
-    parser.add_argument("--desktop", action="store_true", help="at the size of a desktop alone")
+    parser.add_argument("--desktop", nargs="*", default=[], type=pathlib.Path, help="further pages, at the size of a desktop alone")
     arguments = parser.parse_args()
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=ARGUMENTS)
-        faults = [fault for path in arguments.pages for fault in prove(browser, path, arguments)]
+        faults = [fault for path in arguments.pages + arguments.desktop for fault in prove(browser, path, arguments)]
         browser.close()
     print("\n".join(faults))
     sys.exit(1 if faults else 0)

@@ -55,7 +55,7 @@ fn the_figures_for_a_paper_are_those_of_a_fresh_run() {
 
 /// Of the study of the paper, whose command draws them.
 #[test]
-#[ignore = "takes minutes; .ci/run has it"]
+#[ignore = "takes minutes; .ci/long has it"]
 fn the_pictures_of_the_paper_are_those_of_a_fresh_run() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["paper", "--only", "1", "--only", "3", "--only", "figure 9", "--out", "paper"];

@@ -119,7 +119,7 @@ fn the_tables_are_those_of_a_fresh_run() {
 
 /// Some minutes in an optimised build.
 #[test]
-#[ignore = "takes minutes; .ci/run has it"]
+#[ignore = "takes minutes; .ci/long has it"]
 fn the_long_tables_are_those_of_a_fresh_run() {
     check(true);
 }

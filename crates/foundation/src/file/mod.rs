@@ -3,12 +3,14 @@
 //! TOML is read into structures with errors that name the key and the line.
 
 mod identity;
+mod node;
 mod partial;
 
 pub use identity::check_apart;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::named::suggestion;
+use node::Fault;
 use partial::Partial;
 use std::fs;
 use std::io::{self, BufWriter, Read, Seek, Write};
@@ -225,10 +227,11 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
         let error = Error::new(format!("expected TOML: {}", one_line(e.message()))).of_kind(ErrorKind::Syntax);
         place(error, line(e.span()))
     };
-    let deserializer = toml::Deserializer::parse(text).map_err(not_toml)?;
-    serde_path_to_error::deserialize(deserializer).map_err(|e| {
-        let span = line(e.inner().span());
-        on_line_of_key(place(keyed(&e), span), text)
+    let root = DeTable::parse(text).map_err(not_toml)?;
+    let start = root.span().start;
+    node::structure_of_text(root.into_inner(), start).map_err(|fault| {
+        let span = fault.place.map(|place| place..place);
+        on_line_of_key(place(keyed(&fault), line(span)), text)
     })
 }
 
@@ -237,7 +240,7 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
 /// # Errors
 /// A key is unknown, missing or of the wrong type.
 pub fn parse_table<T: serde::de::DeserializeOwned>(table: toml::Table) -> Result<T> {
-    serde_path_to_error::deserialize(table).map_err(|e| keyed(&e))
+    node::structure_of_table(table).map_err(|fault| keyed(&fault))
 }
 
 /// Adds to `error` the line of the value that its key leads to in the TOML text, or of the nearest table around that
@@ -292,11 +295,12 @@ fn next_entry<'t, 'i, 'k>(
     table.iter().filter_map(fits).min_by_key(|(.., rest)| rest.len())
 }
 
-fn keyed(error: &serde_path_to_error::Error<toml::de::Error>) -> Error {
-    let key = error.path().to_string();
-    let message = error.inner().message();
-    let problem = one_line(message) + &meant(message);
-    if key == "." { Error::new(problem) } else { Error::at(key, problem) }
+fn keyed(fault: &Fault) -> Error {
+    let problem = one_line(&fault.message) + &meant(&fault.message);
+    match fault.key.as_deref() {
+        None | Some("") => Error::new(problem),
+        Some(key) => Error::at(key, problem),
+    }
 }
 
 /// A suggestion for an unknown key or name. The message of serde quotes the unknown name first and the known names
