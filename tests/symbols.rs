@@ -56,9 +56,11 @@ fn kernels(library: &Path) -> Vec<String> {
     let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || b"_$.".contains(byte);
     let mut found = Vec::new();
     for member in members(library) {
-        for name in member.split(|byte| !is_part(byte)).filter(|name| name.starts_with(b"_")) {
+        for name in member.split(|byte| !is_part(byte)).filter(|name| name.len() > KERNEL[1].len()) {
             let name = String::from_utf8_lossy(name);
-            found.extend(KERNEL.iter().any(|part| name.contains(part)).then(|| name.into_owned()));
+            // The name of a section ends with that of its function, and stands for both.
+            let name = name.strip_prefix(".text.").unwrap_or(&name);
+            found.extend(KERNEL.iter().any(|part| name.contains(part)).then(|| name.to_string()));
         }
     }
     found.sort();
