@@ -66,9 +66,8 @@ pub fn relaxed_stiffness(
             own.iter().for_each(|&(j, gj)| inner[(i, j)] += slope * gi * gj);
         }
     }
-    let force = DMatrix::from_fn(count * space, cases, |row, case| {
-        forces[(interior[row / space] * space + row % space, case)]
-    });
+    let force =
+        DMatrix::from_fn(count * space, cases, |row, case| forces[(interior[row / space] * space + row % space, case)]);
     let (inner, force) = in_frame(inner, force, frame);
     affine - force.tr_mul(&solve(inner, &force))
 }
