@@ -91,6 +91,7 @@ mod springs;
 mod stability;
 mod sums;
 mod sweeps;
+mod symbols;
 mod symmetry;
 mod typeset;
 mod voxels;

@@ -454,7 +454,7 @@ fn a_field_on_a_hundred_thousand_cells() {
         let constants = a.network.lengths.iter().zip(&b.network.lengths);
         constants.for_each(|(a, b)| assert!((a.constant - b.constant).abs() < 1e-9 * 1e3, "{a:?} {b:?}"));
     }
-    assert!(file.fits[1].frobenius.unwrap().max < 1e-10);
+    assert!(file.fits[1].frobenius().unwrap().max < 1e-10);
     assert_close(file.masses.unwrap().iter().sum(), 1000.0, 1e-10);
 }
 

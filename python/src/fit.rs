@@ -15,7 +15,7 @@ use springfit::error::{Error, Result};
 use springfit::material::{CellMap, Material, MaterialMap, Plane};
 use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{
-    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_mesh, point_masses,
+    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_without_errors, point_masses,
 };
 
 /// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²), and the density.
@@ -93,18 +93,18 @@ pub fn fit(
             (None, _) => None,
         };
         let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
-        let fit = fit_mesh(&mesh, material, &reference, &named, told)?;
+        let (fit, cells) = fit_without_errors(&mesh, &map, &reference, &named, told)?;
         let masses = constants.density.map(|density| point_masses(&mesh, density, material)).transpose()?;
         let assumed = assumed(&mesh, constants.thickness, constants.area);
         let material = MaterialMap::from(material).with_density(constants.density.map(CellMap::Uniform));
         let outcome = Outcome::of_fit(String::new(), springfit::mesh::Mesh::clone(&mesh), material, masses, fit);
-        Ok(Outcome { assumed, ..outcome })
+        Ok((Outcome { assumed, ..outcome }, cells))
     };
-    let outcome = match &ends {
+    let (outcome, cells) = match &ends {
         Some(ends) => progress::run_functions(py, progress, ends, work)?,
         None => progress::run(py, progress, work)?,
     };
-    Ok(Network::new(outcome, ends.is_some()))
+    Ok(Network::new(outcome, cells, ends.is_some()))
 }
 
 /// What is held at rest, `[points, dimension]`.

@@ -11,17 +11,17 @@ use pyo3::types::PyDict;
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
 use springfit::export::target_named;
-use springfit::fit::Spread;
+use springfit::fit::{CellFits, Spread};
 use springfit::mesh::Mesh;
 use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
 use springfit::report::{self, NetworkFile, NetworkFormat};
 use springfit::solve::System;
 use springfit::springs::Measure;
-use springfit::study::{FitOutcome, Outcome};
+use springfit::study::{FitOutcome, Outcome, matrix_errors};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The share of the forces that a solution may leave; a network that leaves more has a motion without stiffness.
 const LEFT: f64 = 1e-3;
@@ -30,6 +30,8 @@ const LEFT: f64 = 1e-3;
 #[pyclass(frozen, module = "springfit._core")]
 pub struct Network {
     outcome: Arc<Outcome>,
+    /// The springs of the cells, until the errors of their matrices have been asked for.
+    cells: Mutex<Vec<CellFits>>,
     /// Whether its laws of force call functions of Python.
     has_functions: bool,
 }
@@ -39,8 +41,19 @@ pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, 
 
 impl Network {
     /// That of an outcome of one fit.
-    pub fn new(outcome: Outcome, has_functions: bool) -> Network {
-        Network { outcome: Arc::new(outcome), has_functions }
+    pub fn new(outcome: Outcome, cells: Vec<CellFits>, has_functions: bool) -> Network {
+        Network { outcome: Arc::new(outcome), cells: Mutex::new(cells), has_functions }
+    }
+
+    /// Computes the errors of the matrices, if it has not been done.
+    fn measure(&self) -> Result<()> {
+        let mut cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.fit().errors.get().is_none() {
+            let errors = matrix_errors(self.mesh(), &self.outcome.material, &cells)?;
+            self.fit().errors.get_or_init(|| errors);
+            *cells = Vec::new();
+        }
+        Ok(())
     }
 
     /// Evaluates the springs, whose functions may raise exceptions; a function of Python hears signals itself.
@@ -186,6 +199,9 @@ impl Network {
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
+            if format.has_errors {
+                self.measure()?;
+            }
             format.write(&path, &NetworkFile::of(&self.outcome, self.fit()))
         });
         written.map_err(|error| raised(py, error))
@@ -206,6 +222,7 @@ impl Network {
             return Err(invalid(py, &format!("gravity[{place}]"), "a finite number, m/s²", found));
         }
         let target = target_named(&to).map_err(|error| raised(py, error.at_key("to")))?;
+        apart(py, || self.measure()).map_err(|error| raised(py, error))?;
         let outcome = self.outcome.clone();
         let (files, left_out) = alone(py, move || {
             outcome.fits[0].network.check_formulas()?;
@@ -240,6 +257,7 @@ impl Network {
     /// What the fit cost and how far its matrices are from those of the finite elements.
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        apart(py, || self.measure()).map_err(|error| raised(py, error))?;
         let (fit, record) = (self.fit(), PyDict::new(py));
         record.set_item("name", &fit.fit.name)?;
         record.set_item("status", fit.status())?;
@@ -249,9 +267,9 @@ impl Network {
         record.set_item("unreached_cells", fit.unreached)?;
         record.set_item("reused_cells", fit.reused)?;
         record.set_item("negative", fit.network.negative())?;
-        for (key, spread) in [("frobenius", &fit.frobenius), ("spectral", &fit.spectral)] {
-            let pair = |spread: &Spread| (spread.mean, spread.max);
-            record.set_item(key, spread.as_ref().map(pair))?;
+        for (key, spread) in [("frobenius", fit.frobenius()), ("spectral", fit.spectral())] {
+            let pair = |spread: Spread| (spread.mean, spread.max);
+            record.set_item(key, spread.map(pair))?;
         }
         Ok(record)
     }

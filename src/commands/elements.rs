@@ -4,7 +4,7 @@ use super::output::OutputOptions;
 use super::shipped::shipped_text;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::{Element, SHIPPED};
+use springfit::element::{Outline, SHIPPED};
 use springfit::error::Result;
 use springfit::report::{self, ElementRecord};
 use std::process::ExitCode;
@@ -35,7 +35,7 @@ impl Elements {
             terminal.print(shipped_text(SHIPPED.iter().map(|file| (file.name, file.text)), name)?)?;
             return Ok(ExitCode::SUCCESS);
         }
-        let record = |file| Ok(ElementRecord::of(&Element::shipped(file)?, file));
+        let record = |file| Ok(ElementRecord::of(&Outline::shipped(file)?, file));
         let elements = SHIPPED.iter().map(record).collect::<Result<Vec<_>>>()?;
         let tables = || vec![report::elements_table(&elements)];
         self.output.print(terminal, || &elements, tables, || report::elements_text(&elements))?;

@@ -16,7 +16,7 @@ use springfit::range;
 use springfit::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
 use springfit::study::{
     BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
-    fit_some, point_masses,
+    fit_some, fit_without_errors, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -113,6 +113,9 @@ pub struct Fit {
     /// Fit the NUMBER-th of COUNT ranges of cells only, into a file that ends in .shard; springfit merge makes one network of all
     #[arg(long, value_name = "NUMBER/COUNT", help_heading = "Fit")]
     shard: Option<String>,
+    /// Leave out the errors of the elements' matrices, which take up to half of the time
+    #[arg(long, help_heading = "Output")]
+    no_errors: bool,
     /// Where the springs go: .json with all that is known of them, .npz, .csv or .vtu
     #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
@@ -199,7 +202,11 @@ impl Fit {
         }
         let body = support.as_ref().map(|support| WholeBody::new(&mesh, material, support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
-        let fit = fit_mesh(&mesh, material, &reference, &named, &mut |event: Event| terminal.show(event));
+        let told = &mut |event: Event| terminal.show(event);
+        let fit = match self.no_errors {
+            false => fit_mesh(&mesh, material, &reference, &named, told),
+            true => fit_without_errors(&mesh, &material.into(), &reference, &named, told).map(|(fit, _)| fit),
+        };
         let fit = fit.map_err(|e| e.placed(|e| self.of_option(e)))?;
         let masses =
             density.map(|density| point_masses(&mesh, density, material)).transpose().map_err(|e| self.of_option(e))?;

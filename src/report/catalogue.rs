@@ -2,7 +2,7 @@
 
 use super::columns::{Heading, aligned};
 use super::result_table::ResultTable;
-use crate::element::{Cell, Element, ElementFile};
+use crate::element::{Cell, ElementFile, Outline};
 use crate::material::Energy;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -57,8 +57,8 @@ pub struct MaterialRecord {
 }
 
 impl ElementRecord {
-    /// The element of a file.
-    pub fn of(element: &Element, file: &ElementFile) -> ElementRecord {
+    /// What the file of an element says of it.
+    pub fn of(element: &Outline, file: &ElementFile) -> ElementRecord {
         let springs = element.springs.iter().map(|group| SpringGroupRecord {
             name: group.name.clone(),
             kind: group.kind.name().into(),
@@ -69,7 +69,7 @@ impl ElementRecord {
             name: element.name.clone(),
             title: element.title.clone(),
             cell: element.cell,
-            nodes: element.nodes(),
+            nodes: element.nodes,
             springs: springs.collect(),
             gmsh: file.gmsh,
             vtk: file.vtk,

@@ -78,7 +78,7 @@ pub struct LoadRecord {
 /// How linear equations were solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolvedRecord {
-    /// `cholesky` or `lu`; `multigrid`, or `minres` with it where a network is not positive definite.
+    /// `cholesky` or `lu`; `multigrid`.
     pub method: String,
     /// Displacements that are not held.
     pub unknowns: usize,

@@ -118,8 +118,8 @@ fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
         fit.fit.name.clone(),
         fit.network.len().to_string(),
         fit.network.negative().to_string(),
-        pair(fit.frobenius),
-        pair(fit.spectral),
+        pair(fit.frobenius()),
+        pair(fit.spectral()),
         format!("{:.2}{}", 1e6 * fit.seconds / elements.max(1) as f64, if fit.reused > 0 { "*" } else { "" }),
     ];
     if sampled {

@@ -1,4 +1,8 @@
-//! Texts from outside the program, made safe to print.
+//! Texts from outside the program, made safe to print, and numbers as text.
+
+mod numerals;
+
+pub use numerals::{push_exponential, push_list, push_whole};
 
 use std::borrow::Cow;
 

@@ -5,7 +5,7 @@ use crate::element::SpringKind;
 use crate::mesh::Mesh;
 use crate::model::{LengthSpring, MeasureSpring, Network};
 use crate::springs::Law;
-use std::fmt::Write as _;
+use crate::text::{push_exponential, push_list};
 use std::io::{self, Write};
 
 /// One spring per line: `kind,points,constant,rest,unit`. Points count from 0 among those of the mesh, which has no points without a cell.
@@ -65,12 +65,16 @@ impl<'a> SpringRow<'a> {
 pub(super) const COLUMNS: [&str; 8] = ["kind", "points", "constant", "rest", "unit", "law", "parameters", "nodes"];
 const CONSTANT: usize = 2;
 
-/// A table of springs that is being written.
+/// Bytes that are gathered before they are written.
+const PIECE: usize = 8192;
+
+/// A table of springs that is being written. The text is that of the crate `csv`, of which the fields of most springs need no quotes.
 pub(super) struct SpringTable<W: Write> {
-    table: csv::Writer<W>,
+    to: W,
     lawful: bool,
     numbered: bool,
-    field: String,
+    text: Vec<u8>,
+    numbers: Vec<u64>,
 }
 
 impl<W: Write> SpringTable<W> {
@@ -83,26 +87,44 @@ impl<W: Write> SpringTable<W> {
 
     /// With all columns and no header.
     pub fn bare(to: W) -> SpringTable<W> {
-        SpringTable { table: csv::Writer::from_writer(to), lawful: true, numbered: true, field: String::new() }
+        let (text, numbers) = (Vec::with_capacity(2 * PIECE), Vec::new());
+        SpringTable { to, lawful: true, numbered: true, text, numbers }
     }
 
     /// Writes a spring whose points have the numbers `nodes` in the mesh file.
     pub fn write(&mut self, row: &SpringRow, nodes: &[u64]) -> io::Result<()> {
-        self.table.write_field(row.kind.name())?;
-        self.joined(row.points.iter(), |text, point| write!(text, "{point}"))?;
+        let text = &mut self.text;
+        text.extend_from_slice(row.kind.name().as_bytes());
+        text.push(b',');
+        self.numbers.clear();
+        self.numbers.extend(row.points.iter().map(|point| *point as u64));
+        push_list(text, &self.numbers);
         for value in [row.constant, row.rest] {
-            self.joined([value].iter(), |text, value| write!(text, "{value:e}"))?;
+            text.push(b',');
+            push_exponential(text, value);
         }
-        self.table.write_field(row.kind.properties().unit)?;
+        text.push(b',');
+        push_field(text, row.kind.properties().unit);
         if self.lawful {
-            self.table.write_field(row.law.map_or("", |(law, _)| &law.text))?;
-            let parameters = row.law.iter().flat_map(|(law, values)| law.parameters.iter().zip(values.iter()));
-            self.joined(parameters, |text, (name, value)| write!(text, "{name}={value:e}"))?;
+            text.push(b',');
+            push_field(text, row.law.map_or("", |(law, _)| &law.text));
+            text.push(b',');
+            let mut joined = Vec::new();
+            for (name, value) in row.law.iter().flat_map(|(law, values)| law.parameters.iter().zip(values.iter())) {
+                if !joined.is_empty() {
+                    joined.push(b' ');
+                }
+                joined.extend_from_slice(name.as_bytes());
+                joined.push(b'=');
+                push_exponential(&mut joined, *value);
+            }
+            push_field(text, &String::from_utf8_lossy(&joined));
         }
         if self.numbered {
-            self.joined(nodes.iter(), |text, node| write!(text, "{node}"))?;
+            text.push(b',');
+            push_list(text, nodes);
         }
-        Ok(self.table.write_record(None::<&[u8]>)?)
+        self.end_line()
     }
 
     /// Writes a row of a table with all columns, and returns the constant of the spring, NaN if it is no number.
@@ -119,33 +141,47 @@ impl<W: Write> SpringTable<W> {
             _ => true,
         };
         let own = COLUMNS.into_iter().zip(all).filter(|(column, _)| has(column));
-        Ok(self.table.write_record(own.map(|(_, field)| field))?)
+        for (place, (_, field)) in own.enumerate() {
+            if place > 0 {
+                self.text.push(b',');
+            }
+            push_field(&mut self.text, field);
+        }
+        self.end_line()
     }
 
-    /// Writes a field of texts with spaces between them.
-    fn joined<T>(
-        &mut self,
-        values: impl Iterator<Item = T>,
-        write: impl Fn(&mut String, T) -> std::fmt::Result,
-    ) -> io::Result<()> {
-        self.field.clear();
-        for value in values {
-            if !self.field.is_empty() {
-                self.field.push(' ');
-            }
-            write(&mut self.field, value).map_err(io::Error::other)?;
-        }
-        Ok(self.table.write_field(&self.field)?)
+    fn end_line(&mut self) -> io::Result<()> {
+        self.text.push(b'\n');
+        if self.text.len() >= PIECE { self.pass_on() } else { Ok(()) }
+    }
+
+    fn pass_on(&mut self) -> io::Result<()> {
+        let written = self.text.chunks(PIECE).try_for_each(|piece| self.to.write_all(piece));
+        self.text.clear();
+        written
     }
 
     pub fn flush(&mut self) -> io::Result<()> {
-        self.table.flush()
+        self.pass_on()?;
+        self.to.flush()
     }
 
     /// What was written to, with all of it.
-    pub fn into_inner(self) -> io::Result<W> {
-        self.table.into_inner().map_err(csv::IntoInnerError::into_error)
+    pub fn into_inner(mut self) -> io::Result<W> {
+        self.flush()?;
+        Ok(self.to)
     }
+}
+
+/// Appends a field, in quotes where it has what ends a field or a line.
+fn push_field(text: &mut Vec<u8>, field: &str) {
+    if !field.contains([',', '"', '\r', '\n']) {
+        text.extend_from_slice(field.as_bytes());
+        return;
+    }
+    text.push(b'"');
+    text.extend_from_slice(field.replace('"', "\"\"").as_bytes());
+    text.push(b'"');
 }
 
 /// One point per line, in the order in which springs name them: its place, its number in the mesh file, its coordinates (m), its mass

@@ -15,19 +15,27 @@ use std::path::Path;
 pub struct NetworkFormat {
     /// The ending of its files, without a dot.
     pub ending: &'static str,
+    /// Whether its files hold the errors of the elements' matrices.
+    pub has_errors: bool,
     write: fn(&Path, &NetworkFile) -> Result<()>,
 }
 
 /// A new format is a row here.
 pub const NETWORK_FORMATS: [NetworkFormat; 4] = [
-    NetworkFormat { ending: "vtu", write: |path, file| vtk::write(path, &network_grid(file)) },
-    NetworkFormat { ending: "json", write: |path, file| write_with(path, |to| network_json(file, to)) },
+    NetworkFormat { ending: "vtu", has_errors: false, write: |path, file| vtk::write(path, &network_grid(file)) },
+    NetworkFormat {
+        ending: "json",
+        has_errors: true,
+        write: |path, file| write_with(path, |to| network_json(file, to)),
+    },
     NetworkFormat {
         ending: "csv",
+        has_errors: false,
         write: |path, file| write_with(path, |to| network_csv(file.mesh, file.network, to)),
     },
     NetworkFormat {
         ending: "npz",
+        has_errors: false,
         write: |path, file| {
             let record = file.listed();
             let parts = Parts::with_room(file.network).with_springs(&record, record.springs.iter());

@@ -47,7 +47,7 @@ enum Hierarchy {
 /// How equations were solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// `cholesky` or `lu`; `multigrid`, or `minres` with the multigrid of the finite elements where a network is not positive definite.
+    /// `cholesky` or `lu`; `multigrid`.
     pub method: &'static str,
     /// Free degrees of freedom.
     pub unknowns: usize,
@@ -164,29 +164,6 @@ impl Levels {
             solutions.extend(found.map_err(|fault| unsolved("conjugate gradients", &fault, solver))?);
         }
         Ok(solutions)
-    }
-
-    /// The displacements of another model with the same supports, whose stiffness is not positive definite, under the nodal forces f, by
-    /// minimal residuals with these levels.
-    ///
-    /// # Errors
-    /// The iterations stall: kind `Limit`.
-    pub fn solve_other(&self, other: &BlockStiffness, f: &[f64], solver: &StaticSolver) -> Result<(Vec<f64>, Solved)> {
-        let (mut displacement, reaction) = self.held(other);
-        let force: Vec<f64> = f.iter().zip(reaction).map(|(f, r)| f - r).collect();
-        let watch: &mut Watch = &mut |_| ControlFlow::Continue(());
-        let found = match (&self.hierarchy, other) {
-            (Hierarchy::Plane(levels), BlockStiffness::Plane(other)) => {
-                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
-            }
-            (Hierarchy::Space(levels), BlockStiffness::Space(other)) => {
-                levels.solve_indefinite(other, &force, solver.tolerance, solver.iterations, watch)
-            }
-            _ => return Err(Error::new("expected stiffnesses of one dimension, found two")),
-        };
-        let found = found.map_err(|fault| unsolved("minimal residuals", &fault, solver))?;
-        displacement.iter_mut().zip(&found.displacement).for_each(|(u, free)| *u += free);
-        Ok((displacement, self.told("minres", &found)))
     }
 
     /// The `count` lowest natural vibrations ([`super::lowest_modes`]), each product with the inverse by iterations.

@@ -54,7 +54,8 @@ mod wide;
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
 pub use exact::{
-    DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, exact_constants_of_kind, fit_exact,
+    DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, exact_constants_of_kind,
+    exact_double_double_constants, fit_exact,
 };
 pub use gradient::{ConstantsGradient, GradientFit, constants_gradient};
 pub use least_squares::constants_in;
@@ -63,7 +64,9 @@ pub use modulus::Modulus;
 pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Balance, Choices, Objective};
-pub use precision::{bounded_constants, condition, constants_of_kind, distance_from_optimum};
+pub use precision::{
+    bounded_constants, condition, constants_of_kind, distance_from_optimum, double_double_constants, single_constants,
+};
 pub use residual::{ElementErrors, Spread, SpreadSum, each_element_errors, element_errors};
 pub use rest::Rest;
 pub use sampled::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};

@@ -44,6 +44,35 @@ pub fn constants_of_kind<T: Real>(
     finite.ok_or_else(|| no_answer("the springs do not have one optimum, or the element has no stiffness"))
 }
 
+/// [`constants_of_kind`] in double-double numbers. As it has no parameters of type it is compiled in this package, which is optimised, whoever
+/// calls it.
+///
+/// # Errors
+/// Those of [`constants_of_kind`].
+pub fn double_double_constants(
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    fit: &Fit,
+) -> Result<Vec<DoubleDouble>> {
+    constants_of_kind(&DoubleDouble::from(0.0), element, springs, x, moduli, fit)
+}
+
+/// [`constants_of_kind`] in `f32`, compiled as [`double_double_constants`].
+///
+/// # Errors
+/// Those of [`constants_of_kind`].
+pub fn single_constants(
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    fit: &Fit,
+) -> Result<Vec<f32>> {
+    constants_of_kind(&0f32, element, springs, x, moduli, fit)
+}
+
 /// The normal equations of the unknowns of a fit with a closed form.
 fn closed_equations<T: Real>(
     any: &T,

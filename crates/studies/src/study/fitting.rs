@@ -1,15 +1,17 @@
 //! Runs the fit of one recipe on a body.
 
 use super::fits::{NamedFit, Reference, Task};
-use super::outcome::FitOutcome;
+use super::outcome::{FitOutcome, MatrixErrors};
 use super::progress::Progress;
 use super::tensor::network_material;
 use crate::error::Result;
-use crate::fit::{SpreadSum, each_element_errors};
+use crate::fit::{CellFits, SpreadSum, each_element_errors};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
+use std::sync::OnceLock;
 
-/// Fits one recipe on every cell and assembles the network; `reference` is required by sampled and whole-object fits.
+/// Fits one recipe on every cell, assembles the network, and computes the errors of the matrices; `reference` is required by sampled and
+/// whole-object fits.
 ///
 /// # Errors
 /// The elements have no such spring group, a law does not belong to the groups, or there is nothing to sample.
@@ -21,38 +23,65 @@ pub fn fit_mesh(
     progress: &mut Progress,
 ) -> Result<FitOutcome> {
     let material = &material.into();
+    let (outcome, cells) = fit_without_errors(mesh, material, reference, named, progress)?;
+    let errors = matrix_errors(mesh, material, &cells)?;
+    Ok(FitOutcome { errors: OnceLock::from(errors), ..outcome })
+}
+
+/// [`fit_mesh`] without the errors of the matrices, on which nothing else depends. Also the springs of each block of cells, from which
+/// [`matrix_errors`] finds them; none where springs belong to no element.
+///
+/// # Errors
+/// As [`fit_mesh`].
+pub fn fit_without_errors(
+    mesh: &Mesh,
+    material: &MaterialMap,
+    reference: &Reference,
+    named: &NamedFit,
+    progress: &mut Progress,
+) -> Result<(FitOutcome, Vec<CellFits>)> {
     // Threads are started before the clock.
     rayon::broadcast(|_| ());
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;
-    let (mut frobenius, mut spectral) = (SpreadSum::default(), SpreadSum::default());
-    let of_cells = if fitted.kind.is_of_cells() { &fitted.cells[..] } else { &[] };
-    let moduli = material.moduli();
-    for (index, (block, fit)) in mesh.blocks.iter().zip(of_cells).enumerate() {
-        let moduli = moduli.block(index);
-        each_element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit, |errors| {
-            frobenius.add(&errors.frobenius);
-            spectral.add(&errors.spectral);
-        })?;
-    }
-    let spread = |sum: SpreadSum| (!of_cells.is_empty()).then(|| sum.spread());
     let as_material = network_material(mesh, material, fitted.owners(), &fitted.network);
-    Ok(FitOutcome {
+    let outcome = FitOutcome {
         fit: named.clone(),
         seconds: fitted.seconds,
         seconds_assembly: fitted.seconds_assembly,
         deficient: fitted.cells.iter().map(|cells| cells.deficient).sum(),
         unreached: fitted.cells.iter().map(|cells| cells.unreached).sum(),
         reused: fitted.cells.iter().map(|cells| cells.reused).sum(),
-        frobenius: spread(frobenius),
-        spectral: spread(spectral),
+        errors: OnceLock::new(),
         springs: fitted.springs,
         network: fitted.network,
-        kind: fitted.kind,
         as_material,
         moduli: None,
         stability: None,
         loose_points: Vec::new(),
         loads: Vec::new(),
-    })
+        kind: fitted.kind,
+    };
+    let is_of_cells = outcome.kind.is_of_cells();
+    Ok((outcome, if is_of_cells { fitted.cells } else { Vec::new() }))
+}
+
+/// The errors of the matrices of all cells, of which `cells` are the springs, block after block.
+///
+/// # Errors
+/// The springs are not those of the mesh.
+pub fn matrix_errors(mesh: &Mesh, material: &MaterialMap, cells: &[CellFits]) -> Result<MatrixErrors> {
+    if cells.is_empty() {
+        return Ok(MatrixErrors::default());
+    }
+    let (mut frobenius, mut spectral) = (SpreadSum::default(), SpreadSum::default());
+    let moduli = material.moduli();
+    for (index, (block, fit)) in mesh.blocks.iter().zip(cells).enumerate() {
+        let moduli = moduli.block(index);
+        each_element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit, |errors| {
+            frobenius.add(&errors.frobenius);
+            spectral.add(&errors.spectral);
+        })?;
+    }
+    Ok(MatrixErrors { frobenius: Some(frobenius.spread()), spectral: Some(spectral.spread()) })
 }

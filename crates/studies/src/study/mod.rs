@@ -60,14 +60,14 @@ pub use fits::{
     TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe,
     WholeRecord, WorseLoad,
 };
-pub use fitting::fit_mesh;
+pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
 pub use masses::{PointMasses, point_masses};
 pub use metrics::{DisplacementError, displacement_error};
 pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
-    BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, Measured, ModelMotion, MotionEnding,
-    MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
+    BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
+    MotionEnding, MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
 };
 pub use own_name::BODY;
 pub use paper::{

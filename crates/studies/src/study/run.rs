@@ -3,7 +3,7 @@
 use super::body::{Case, FineBody, Gauged, LargeBody, LinearBody, load_cases, load_notes};
 use super::checkpoint::Controls;
 use super::fits::{Finer, Reference, WholeBody};
-use super::fitting::fit_mesh;
+use super::fitting::{fit_mesh, fit_without_errors};
 use super::forecast::Forecast;
 use super::masses::point_masses;
 use super::moduli::moduli_of_body;
@@ -80,7 +80,10 @@ fn worked_out(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Re
     let reference = Reference { large: large.as_ref(), whole: Some(&whole), held: &held };
     let mut fits = Vec::new();
     for fit in scene.fits() {
-        let fitted = fit_mesh(&mesh, material, &reference, fit, progress);
+        let fitted = match scene.output().has_errors() {
+            true => fit_mesh(&mesh, material, &reference, fit, progress),
+            false => fit_without_errors(&mesh, material, &reference, fit, progress).map(|(fitted, _)| fitted),
+        };
         fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
     }
     let count = fits.len();

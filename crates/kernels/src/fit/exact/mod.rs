@@ -22,7 +22,7 @@ mod volume;
 
 pub use domain::{DomainSprings, ExactDomains};
 pub use energy::ExactEnergy;
-pub use precision::exact_constants_of_kind;
+pub use precision::{exact_constants_of_kind, exact_double_double_constants};
 pub use shear::ShearSprings;
 pub use volume::VolumeSprings;
 

@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::fit::input::{check_finite, check_nodes};
 use crate::fit::precision::{differences, no_answer};
-use crate::scalar::Real;
+use crate::scalar::{DoubleDouble, Real};
 use crate::stiffness::Geometry;
 
 /// The springs between nodes of the exact network of one element, in numbers of the kind of `any`, `[pairs]`, N/m. `mu`
@@ -22,4 +22,12 @@ pub fn exact_constants_of_kind<T: Real>(any: &T, element: &Element, x: &[f64], m
         return Err(no_answer("the element has no stiffness"));
     }
     Ok(edges(&geometry, mu))
+}
+
+/// [`exact_constants_of_kind`] in double-double numbers, compiled in this package, which is optimised.
+///
+/// # Errors
+/// Those of [`exact_constants_of_kind`].
+pub fn exact_double_double_constants(element: &Element, x: &[f64], mu: f64) -> Result<Vec<DoubleDouble>> {
+    exact_constants_of_kind(&DoubleDouble::from(0.0), element, x, mu)
 }

@@ -8,6 +8,16 @@ use crate::springs::Springs;
 use crate::study::fits::{FittedKind, NamedFit};
 use crate::study::moduli::EffectiveModuli;
 use crate::study::tensor::NetworkMaterial;
+use std::sync::OnceLock;
+
+/// The relative errors `‖R − K‖/‖R‖` of the elements' matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MatrixErrors {
+    /// In the Frobenius norm; `None` for whole-object fits, whose springs belong to no element.
+    pub frobenius: Option<Spread>,
+    /// In the induced 2-norm.
+    pub spectral: Option<Spread>,
+}
 
 /// A fit with its network and its errors.
 #[derive(Debug)]
@@ -29,11 +39,8 @@ pub struct FitOutcome {
     pub unreached: usize,
     /// The number of cells that received the constants of a congruent cell.
     pub reused: usize,
-    /// The relative errors of the elements' matrices in the Frobenius norm; `None` for whole-object fits, whose springs
-    /// belong to no element.
-    pub frobenius: Option<Spread>,
-    /// The same errors in the induced 2-norm.
-    pub spectral: Option<Spread>,
+    /// The relative errors of the elements' matrices, once they are computed.
+    pub errors: OnceLock<MatrixErrors>,
     /// The network as a material, from samples of its cells.
     pub as_material: NetworkMaterial,
     /// The moduli of the whole network under linear displacements of its boundary, in plane strain those of the solid, if the scene
@@ -50,6 +57,17 @@ pub struct FitOutcome {
 }
 
 impl FitOutcome {
+    /// The relative errors of the elements' matrices in the Frobenius norm; `None` if they were not computed, and for whole-object fits, whose
+    /// springs belong to no element.
+    pub fn frobenius(&self) -> Option<Spread> {
+        self.errors.get()?.frobenius
+    }
+
+    /// The same errors in the induced 2-norm.
+    pub fn spectral(&self) -> Option<Spread> {
+        self.errors.get()?.spectral
+    }
+
     /// The masses of the network, `[points]`, kg, if they were fitted.
     pub fn masses(&self) -> Option<&[f64]> {
         self.kind.whole()?.masses.as_ref().map(|found| &found.masses[..])

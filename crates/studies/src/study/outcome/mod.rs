@@ -7,7 +7,7 @@ mod load;
 mod motion;
 mod scene;
 
-pub use fit::{FitOutcome, standing_word};
+pub use fit::{FitOutcome, MatrixErrors, standing_word};
 pub use frequencies::FrequencyOutcome;
 pub use gauge::{GaugeResult, Reading};
 pub use load::{BodyLoad, Followed, LoadOutcome, Measured};

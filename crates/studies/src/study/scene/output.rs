@@ -13,6 +13,8 @@ pub struct Output {
     pub csv: bool,
     /// Whether the networks are written whole as JSON files; they are unless switched off.
     pub json: Option<bool>,
+    /// Whether the errors of the elements' matrices are computed; they are unless switched off.
+    pub errors: Option<bool>,
     /// Whether each network is measured as a material: Young's modulus, Poisson's ratio, Zener's ratio.
     pub moduli: bool,
     /// The number of natural frequencies of each model, besides those of rigid motions.
@@ -25,6 +27,11 @@ impl Output {
     /// Whether the report is written as a page.
     pub fn has_page(&self) -> bool {
         self.report == Some(true)
+    }
+
+    /// Whether the errors of the elements' matrices are computed.
+    pub fn has_errors(&self) -> bool {
+        self.errors != Some(false)
     }
 
     /// Whether the states of a motion are kept for pictures.

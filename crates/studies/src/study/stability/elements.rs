@@ -5,8 +5,8 @@ use super::shapes::{ShapeCase, shape_cases};
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{
-    CellFits, ExactFit, Fit, Objective, Weight, bounded_constants, condition, constants_of_kind, distance_from_optimum,
-    exact_constants_of_kind, fit_cells, fit_element, fit_exact,
+    CellFits, ExactFit, Fit, Objective, Weight, bounded_constants, condition, distance_from_optimum,
+    double_double_constants, exact_double_double_constants, fit_cells, fit_element, fit_exact, single_constants,
 };
 use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
@@ -98,9 +98,7 @@ impl Subject<'_> {
         let reference = match fit.nonnegative {
             _ if is_spectral => None,
             true => bounded_constants(element, springs, &case.x, &moduli, &fit, k).ok(),
-            false => {
-                constants_of_kind(&DoubleDouble::from(0.0), element, springs, &case.x, &moduli, &fit).ok().map(Some)
-            }
+            false => double_double_constants(element, springs, &case.x, &moduli, &fit).ok().map(Some),
         };
         let mut row = match (objective, &reference) {
             _ if k.iter().any(|k| !k.is_finite()) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
@@ -121,7 +119,7 @@ impl Subject<'_> {
             (_, None) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
         };
         if choice == Choice::Free {
-            let single = constants_of_kind(&0f32, element, springs, &case.x, &moduli, &fit).ok();
+            let single = single_constants(element, springs, &case.x, &moduli, &fit).ok();
             row.single = single
                 .zip(reference.flatten())
                 .map(|(k, reference)| distance(&k.iter().map(Real::rounded).collect::<Vec<_>>(), &reference))
@@ -147,7 +145,7 @@ impl Subject<'_> {
         };
         let pairs = |fits: &CellFits| fits.constants[..fits.springs.pairs().len()].to_vec();
         let k = pairs(&fits);
-        let mut row = match exact_constants_of_kind(&DoubleDouble::from(0.0), element, &case.x, moduli.mu) {
+        let mut row = match exact_double_double_constants(element, &case.x, moduli.mu) {
             Ok(reference) => {
                 self.judged(of, distance(&k, &reference), PROMISED, |x| made(x).ok().map(|fits| pairs(&fits)))
             }

@@ -3,7 +3,7 @@
 use super::sample::{Sample, Stars};
 use crate::fit::CellFits;
 use crate::mesh::Mesh;
-use crate::model::{LengthSpring, MeasureSpring, Network};
+use crate::model::{LengthSpring, MeasureSpring, Network, PatchSpring};
 use crate::springs::{Measure, Patch};
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -17,18 +17,6 @@ pub(super) struct Piece {
     /// The share of each spring that belongs to the sample, length springs first.
     pub(super) shares: Vec<f64>,
     pub(super) patches: Vec<PatchSpring>,
-}
-
-/// A spring on the content of a patch of cells, which does not pull at rest: its stiffness is `k g gᵀ`.
-pub(super) struct PatchSpring {
-    /// The points of the piece that it measures.
-    pub(super) points: Vec<usize>,
-    /// The gradient g, `[points · dimension]`.
-    pub(super) gradient: Vec<f64>,
-    /// The slope k of its force.
-    pub(super) slope: f64,
-    /// The share of it that belongs to the sample.
-    pub(super) share: f64,
 }
 
 impl Piece {
