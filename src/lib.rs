@@ -107,6 +107,8 @@ pub use springfit_studies::study;
 use springfit_foundation::file;
 pub use springfit_foundation::file::{check_apart, check_file, check_folder, files_in, write_whole, write_with};
 pub use springfit_foundation::named::{suggestion, unknown};
+#[cfg(feature = "cli")]
+use springfit_networks::network;
 
 // The examples of README and of the book are compiled and run with those of this page.
 #[cfg(doctest)]

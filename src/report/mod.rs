@@ -35,7 +35,6 @@ mod region_record;
 mod result_table;
 mod rows;
 mod series;
-mod shard;
 mod stability;
 mod stretches;
 mod study_lines;
@@ -80,7 +79,6 @@ pub use referee::{
 pub use region_record::RegionRecord;
 pub use result_table::{CellRecord, ColumnRecord, ResultTable};
 pub use series::write_series;
-pub use shard::Shard;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_stretches};
 pub use study_lines::StudyLines;

@@ -1,9 +1,9 @@
 //! Files of one line for each study, which grow while a sweep runs and which it goes on from.
 
-use super::shard::Shard;
 use super::study_record::StudyRecord;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{create_folder, files_in, read_text};
+use crate::network::Shard;
 use crate::study::Sweep;
 use std::collections::HashMap;
 use std::fs::{File, TryLockError};

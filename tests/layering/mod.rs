@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 31] = [
+const LAYERS: [&str; 32] = [
     "shipped",
     "multigrid",
     "page",
@@ -35,6 +35,7 @@ const LAYERS: [&str; 31] = [
     "positive",
     "dynamics",
     "whole",
+    "network",
     "study",
     "generate",
     "prelude",
@@ -69,7 +70,7 @@ fn sources() -> Vec<Source> {
         };
         if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
-    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "studies", ""]
+    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "networks", "studies", ""]
         .into_iter()
         .flat_map(read)
         .collect()

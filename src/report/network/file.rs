@@ -1,21 +1,19 @@
 //! A network and all that belongs to it, from which its files are made.
 
-use super::measures::Measures;
-use super::origins::Origins;
-use super::record::{
-    CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, MaterialDataRecord, NETWORK_VERSION,
-    NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord, SpringRecord,
-    TimedForceRecord, TimedPullRecord,
-};
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
 use crate::material::{CellMap, State};
-use crate::mesh::{CellBlock, Mesh};
-use crate::model::{Elastic, MeasureSpring, Network, SpringLaw, Support};
+use crate::mesh::Mesh;
+use crate::model::{Elastic, Network, Support};
+use crate::network::{
+    DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, ListedRecord, Lists, LoadErrorsRecord, MaterialDataRecord,
+    NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord,
+    TimedForceRecord, TimedPullRecord,
+};
 use crate::report::fit_record::FitRecord;
+use crate::report::load_record::LoadRecord;
 use crate::report::table::notes;
 use crate::study::{BodyLoad, DampingRecipe, FitOutcome, MotionOutcome, Outcome};
-use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
 /// A network on the points of its mesh, and the study that it comes from, if there is one.
@@ -28,18 +26,6 @@ pub struct NetworkFile<'a> {
     /// The run and the fit from which the network comes.
     pub study: Option<(&'a Outcome, &'a FitOutcome)>,
 }
-
-/// The springs of a network; their records are made while they are written.
-pub(super) struct SpringList<'a> {
-    network: &'a Network,
-    measures: Vec<u32>,
-    origins: Origins,
-    /// `[springs]`; none without dampers.
-    dampers: Option<Vec<f64>>,
-}
-
-/// The points of each cell of a block.
-pub(super) struct CellList<'a>(&'a CellBlock);
 
 impl<'a> NetworkFile<'a> {
     /// The network of a fit of `outcome`.
@@ -73,20 +59,13 @@ impl<'a> NetworkFile<'a> {
 
     /// The record with all its springs.
     pub fn record(&self) -> NetworkRecord {
-        let (record, springs) = self.parted();
-        NetworkRecord { springs: springs.iter().map(SpringRecord::into_owned).collect(), ..record }
-    }
-
-    /// The record without its springs, and the springs.
-    pub(super) fn parted(&self) -> (NetworkRecord, SpringList<'a>) {
-        self.listed().parted()
+        self.listed().whole()
     }
 
     /// The record whose cells and springs are made while they are written.
-    pub(super) fn listed(&self) -> NetworkRecord<SpringList<'a>, CellList<'a>> {
-        let measures = Measures::of(self.network);
+    pub(super) fn listed(&self) -> ListedRecord<'a> {
         let springs = self.study.map_or(&[][..], |(_, fit)| &fit.springs);
-        let origins = Origins::of(self.mesh, self.network, springs);
+        let lists = Lists::of(self.mesh, self.network, springs, self.dampers());
         let (mesh, support) = (self.mesh, self.support());
         let d = mesh.dimension;
         let outcome = self.study.map(|(outcome, _)| outcome);
@@ -102,19 +81,18 @@ impl<'a> NetworkFile<'a> {
             numbering: mesh.numbering.as_ref().map(|numbering| numbering.title().into()),
             nodes: mesh.numbering.as_ref().map(|numbering| numbering.nodes.clone()),
             masses: self.masses().map(<[f64]>::to_vec),
-            cells: mesh.blocks.iter().map(CellList::record).collect(),
+            cells: lists.cells,
             surface: mesh.surface_triangles(),
             held: held(&support, d),
-            loads: outcome
-                .map_or(Vec::new(), |outcome| outcome.loads.iter().map(|load| NodalLoadRecord::of(load, d)).collect()),
+            loads: outcome.map_or(Vec::new(), |outcome| outcome.loads.iter().map(|load| nodal_load(load, d)).collect()),
             gravity: gravity.cloned(),
             damping: damping(motion),
-            motion: motion.map(DriveRecord::of),
+            motion: motion.map(drive),
             largest_step: self.largest_step(&support),
-            groups: origins.records.clone(),
-            measures: measures.records,
+            groups: lists.groups,
+            measures: lists.measures,
             notes: self.notes(),
-            springs: SpringList { network: self.network, measures: measures.places, origins, dampers: self.dampers() },
+            springs: lists.springs,
         }
     }
 
@@ -139,7 +117,7 @@ impl<'a> NetworkFile<'a> {
         });
         let fit = self.study.map(|(outcome, fit)| {
             let record = FitRecord::of(fit, self.mesh.cell_count(), outcome.material.thicknesses().uniform().copied());
-            FitSummaryRecord::of(&record)
+            summary(&record)
         });
         ProvenanceRecord {
             program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
@@ -183,102 +161,6 @@ impl<'a> NetworkFile<'a> {
     }
 }
 
-impl<'a> NetworkRecord<SpringList<'a>, CellList<'a>> {
-    fn parted(self) -> (NetworkRecord, SpringList<'a>) {
-        let record = NetworkRecord {
-            springs: Vec::new(),
-            format: self.format,
-            version: self.version,
-            provenance: self.provenance,
-            dimension: self.dimension,
-            units: self.units,
-            points: self.points,
-            numbering: self.numbering,
-            nodes: self.nodes,
-            masses: self.masses,
-            cells: self.cells.into_iter().map(CellBlockRecord::with_all).collect(),
-            surface: self.surface,
-            held: self.held,
-            loads: self.loads,
-            gravity: self.gravity,
-            damping: self.damping,
-            motion: self.motion,
-            largest_step: self.largest_step,
-            groups: self.groups,
-            measures: self.measures,
-            notes: self.notes,
-        };
-        (record, self.springs)
-    }
-}
-
-impl SpringList<'_> {
-    /// The springs one after the other, as they are written.
-    pub fn iter(&self) -> impl Iterator<Item = SpringRecord<'_>> {
-        let lengths = self.network.lengths.iter().enumerate().map(|(s, spring)| SpringRecord {
-            kind: SpringKind::Length.name().into(),
-            points: (&spring.points[..]).into(),
-            constant: spring.constant,
-            rest: spring.rest,
-            measure: 0,
-            law: None,
-            parameters: BTreeMap::new(),
-            damper: self.damper(s),
-            groups: self.origins.groups(s).into(),
-        });
-        let others = (self.network.lengths.len()..).zip(self.network.others.iter().zip(&self.measures));
-        lengths.chain(others.map(|(s, (spring, measure))| self.other(s, spring, *measure as usize)))
-    }
-
-    fn other<'s>(&'s self, s: usize, spring: &'s MeasureSpring, measure: usize) -> SpringRecord<'s> {
-        let named = |own: &SpringLaw| own.law.parameters.iter().cloned().zip(own.parameters.iter().copied()).collect();
-        SpringRecord {
-            kind: spring.kind.name().into(),
-            points: (&spring.points[..]).into(),
-            constant: spring.constant,
-            rest: spring.rest,
-            measure,
-            law: spring.law.as_deref().map(|own| own.law.text.as_str().into()),
-            parameters: spring.law.as_deref().map(named).unwrap_or_default(),
-            damper: self.damper(s),
-            groups: self.origins.groups(s).into(),
-        }
-    }
-
-    fn damper(&self, s: usize) -> f64 {
-        self.dampers.as_ref().map_or(0.0, |dampers| dampers[s])
-    }
-}
-
-impl Serialize for SpringList<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(self.iter())
-    }
-}
-
-impl CellList<'_> {
-    fn record(block: &CellBlock) -> CellBlockRecord<CellList<'_>> {
-        CellBlockRecord {
-            element: block.element.name.clone(),
-            vtk: block.element.formats.vtk.as_ref().map(|vtk| vtk.cell_type),
-            points: CellList(block),
-        }
-    }
-}
-
-impl Serialize for CellList<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(self.0.cells())
-    }
-}
-
-impl CellBlockRecord<CellList<'_>> {
-    fn with_all(self) -> CellBlockRecord {
-        let points = self.points.0.cells().map(<[usize]>::to_vec).collect();
-        CellBlockRecord { element: self.element, vtk: self.vtk, points }
-    }
-}
-
 /// Of lengths, masses and the constants of each kind of springs.
 fn units() -> BTreeMap<String, String> {
     let kinds = SpringKind::all().map(|kind| (format!("{} spring", kind.name()), kind.properties().unit.to_string()));
@@ -301,48 +183,66 @@ fn damping(motion: Option<&MotionOutcome>) -> NetworkDampingRecord {
     NetworkDampingRecord { mass, stiffness, ratio }
 }
 
-impl NodalLoadRecord {
-    fn of(load: &BodyLoad, d: usize) -> NodalLoadRecord {
-        let forces = load.forces.chunks_exact(d).enumerate();
-        let acting = forces.filter(|(_, force)| force.iter().any(|f| *f != 0.0));
-        NodalLoadRecord {
-            name: load.name.clone(),
-            forces: acting.map(|(point, force)| NodalForceRecord { point, force: force.to_vec() }).collect(),
-            held: held(&load.support, d),
-        }
+fn nodal_load(load: &BodyLoad, d: usize) -> NodalLoadRecord {
+    let forces = load.forces.chunks_exact(d).enumerate();
+    let acting = forces.filter(|(_, force)| force.iter().any(|f| *f != 0.0));
+    NodalLoadRecord {
+        name: load.name.clone(),
+        forces: acting.map(|(point, force)| NodalForceRecord { point, force: force.to_vec() }).collect(),
+        held: held(&load.support, d),
     }
 }
 
-impl DriveRecord {
-    fn of(motion: &MotionOutcome) -> DriveRecord {
-        let recipe = &motion.recipe;
-        DriveRecord {
-            duration: recipe.duration,
-            step: recipe.options.step,
-            every: recipe.every,
-            steps: recipe.steps,
-            integrator: recipe.options.integrator.name().into(),
-            linear: recipe.options.linear,
-            watched: motion.watched.clone(),
-            forces: motion
-                .forces
-                .iter()
-                .map(|force| TimedForceRecord {
-                    axis: force.axis,
-                    force: force.curve.clone(),
-                    points: force.shares.iter().map(|(point, _)| *point).collect(),
-                    shares: force.shares.iter().map(|(_, share)| *share).collect(),
-                })
-                .collect(),
-            pulls: motion
-                .pulls
-                .iter()
-                .map(|pull| TimedPullRecord {
-                    axis: pull.axis,
-                    displacement: pull.curve.clone(),
-                    points: pull.points.clone(),
-                })
-                .collect(),
-        }
+fn drive(motion: &MotionOutcome) -> DriveRecord {
+    let recipe = &motion.recipe;
+    DriveRecord {
+        duration: recipe.duration,
+        step: recipe.options.step,
+        every: recipe.every,
+        steps: recipe.steps,
+        integrator: recipe.options.integrator.name().into(),
+        linear: recipe.options.linear,
+        watched: motion.watched.clone(),
+        forces: motion
+            .forces
+            .iter()
+            .map(|force| TimedForceRecord {
+                axis: force.axis,
+                force: force.curve.clone(),
+                points: force.shares.iter().map(|(point, _)| *point).collect(),
+                shares: force.shares.iter().map(|(_, share)| *share).collect(),
+            })
+            .collect(),
+        pulls: motion
+            .pulls
+            .iter()
+            .map(|pull| TimedPullRecord {
+                axis: pull.axis,
+                displacement: pull.curve.clone(),
+                points: pull.points.clone(),
+            })
+            .collect(),
+    }
+}
+
+fn summary(fit: &FitRecord) -> FitSummaryRecord {
+    let settings = serde_json::to_value(&fit.kind).ok();
+    let settings: BTreeMap<String, serde_json::Value> =
+        settings.and_then(|value| Some(value.as_object()?.clone())).into_iter().flatten().collect();
+    let objective = settings.get("objective").and_then(|name| name.as_str()).unwrap_or_default();
+    let frobenius = &fit.relative_frobenius;
+    let load_errors = |load: &LoadRecord| {
+        let LoadRecord { name, e_rms, e_max, e_tip, e_energy, .. } = load.clone();
+        LoadErrorsRecord { name, e_rms, e_max, e_tip, e_energy }
+    };
+    FitSummaryRecord {
+        name: fit.name.clone(),
+        objective: objective.into(),
+        settings,
+        status: fit.status.clone(),
+        negative_springs: fit.negative_springs,
+        relative_frobenius: frobenius.mean.zip(frobenius.max).map(|(mean, max)| [mean, max]),
+        relative_tensor: fit.as_material.tensor_distance,
+        loads: fit.loads.iter().map(load_errors).collect(),
     }
 }

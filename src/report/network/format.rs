@@ -1,13 +1,11 @@
 //! The file formats that networks are written in.
 
-use super::csv::network_csv;
 use super::file::NetworkFile;
 use super::json::network_json;
-use super::npz::arrays_of;
-use super::parts::Parts;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file::{write_seekable, write_with};
+use crate::file::write_with;
 use crate::mesh::vtk;
+use crate::network::{network_csv, write_npz};
 use crate::report::pictures::network_grid;
 use std::path::Path;
 
@@ -36,13 +34,7 @@ pub const NETWORK_FORMATS: [NetworkFormat; 4] = [
     NetworkFormat {
         ending: "npz",
         has_errors: false,
-        write: |path, file| {
-            let record = file.listed();
-            let parts = Parts::with_room(file.network).with_springs(&record, record.springs.iter());
-            let parts = parts.map_err(|e| e.in_file(path))?;
-            let cells = || file.mesh.blocks.iter().flat_map(|block| block.cells());
-            write_seekable(path, |to| arrays_of(&record, cells, &parts, to))
-        },
+        write: |path, file| write_npz(path, &file.listed(), file.mesh, file.network),
     },
 ];
 

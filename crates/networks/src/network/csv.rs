@@ -1,9 +1,8 @@
 //! Networks as tables.
 
-use super::file::NetworkFile;
 use crate::element::SpringKind;
 use crate::mesh::Mesh;
-use crate::model::{LengthSpring, MeasureSpring, Network};
+use crate::model::{LengthSpring, MeasureSpring, Network, Support};
 use crate::springs::Law;
 use crate::text::{push_exponential, push_list};
 use std::io::{self, Write};
@@ -13,7 +12,7 @@ use std::io::{self, Write};
 /// spring on an area N/m³ and m², on a volume N/m⁵ and m³, on an angle N·m and rad.
 ///
 /// A spring of the kinds `point-content`, `point-area` and `patch`, which exact networks have, measures what the columns do not tell:
-/// [`network_json`](super::network_json) does.
+/// [`write_json`](super::write_json) does.
 ///
 /// Where springs have laws of force, two columns more give the law and its parameters, `k=1.5 a=2`; the constant is the slope at
 /// rest then.
@@ -189,8 +188,7 @@ fn push_field(text: &mut Vec<u8>, field: &str) {
 ///
 /// # Errors
 /// The writer fails.
-pub fn points_csv(file: &NetworkFile, to: &mut dyn Write) -> io::Result<()> {
-    let (mesh, masses, support) = (file.mesh, file.masses(), file.support());
+pub fn write_points(mesh: &Mesh, masses: Option<&[f64]>, support: &Support, to: &mut dyn Write) -> io::Result<()> {
     let d = mesh.dimension;
     let axes = &["x", "y", "z"][..d];
     let mut table = csv::Writer::from_writer(to);

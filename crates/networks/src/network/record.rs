@@ -1,7 +1,5 @@
 //! The record of a network: the keys of its JSON file, for writing, for reading and for the schema.
 
-use crate::report::fit_record::FitRecord;
-use crate::report::load_record::LoadRecord;
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -336,33 +334,6 @@ impl SpringRecord<'_> {
             groups: Cow::Owned(self.groups.into_owned()),
             ..self
         }
-    }
-}
-
-impl FitSummaryRecord {
-    pub(super) fn of(fit: &FitRecord) -> FitSummaryRecord {
-        let settings = serde_json::to_value(&fit.kind).ok();
-        let settings: BTreeMap<String, serde_json::Value> =
-            settings.and_then(|value| Some(value.as_object()?.clone())).into_iter().flatten().collect();
-        let objective = settings.get("objective").and_then(|name| name.as_str()).unwrap_or_default();
-        let frobenius = &fit.relative_frobenius;
-        FitSummaryRecord {
-            name: fit.name.clone(),
-            objective: objective.into(),
-            settings,
-            status: fit.status.clone(),
-            negative_springs: fit.negative_springs,
-            relative_frobenius: frobenius.mean.zip(frobenius.max).map(|(mean, max)| [mean, max]),
-            relative_tensor: fit.as_material.tensor_distance,
-            loads: fit.loads.iter().map(LoadErrorsRecord::from).collect(),
-        }
-    }
-}
-
-impl From<&LoadRecord> for LoadErrorsRecord {
-    fn from(load: &LoadRecord) -> LoadErrorsRecord {
-        let LoadRecord { name, e_rms, e_max, e_tip, e_energy, .. } = load.clone();
-        LoadErrorsRecord { name, e_rms, e_max, e_tip, e_energy }
     }
 }
 

@@ -4,10 +4,10 @@
 //! a table of all other springs, which belong to one cell each, and the CRC-32 of all that.
 
 use super::csv::{COLUMNS, SpringRow, SpringTable};
+use super::part::Shard;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::write_with;
 use crate::model::{LengthShare, MeasureSpring, SharedSpring};
-use crate::report::shard::Shard;
 use crate::springs::distance;
 use flate2::{CrcReader, CrcWriter};
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub struct NetworkShard<'a> {
     pub run: ShardRun,
     /// The positions of the points, `[points × dimension]`, m.
     pub points: &'a [f64],
-    /// Of space.
+    /// The number of coordinates of a point.
     pub dimension: usize,
     /// The places of the points in the mesh of the body, ascending; the same if there are none.
     pub places: Option<&'a [usize]>,

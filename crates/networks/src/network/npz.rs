@@ -1,8 +1,14 @@
 //! Networks as arrays of NumPy: a ZIP file of `.npy` files.
 
+use super::lists::ListedRecord;
 use super::parts::Parts;
 use super::record::NetworkRecord;
+use crate::error::Result;
+use crate::file::write_seekable;
+use crate::mesh::Mesh;
+use crate::model::Network;
 use std::io::{self, BufWriter, Seek, Write};
+use std::path::Path;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -29,8 +35,19 @@ pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: impl Write + Seek
     arrays_of(network, cells, parts, to)
 }
 
+/// Writes the arrays of [`network_npz`] from a record whose cells and springs, those of `mesh` and `network`, are made while they are written.
+///
+/// # Errors
+/// The network has springs that the arrays do not hold, or the file cannot be written. The error names the file.
+pub fn write_npz(path: &Path, record: &ListedRecord<'_>, mesh: &Mesh, network: &Network) -> Result<()> {
+    let parts = Parts::with_room(network).with_springs(record, record.springs.iter());
+    let parts = parts.map_err(|e| e.in_file(path))?;
+    let cells = || mesh.blocks.iter().flat_map(|block| block.cells());
+    write_seekable(path, |to| arrays_of(record, cells, &parts, to))
+}
+
 /// As [`network_npz`], with `cells` in place of those of the record.
-pub(super) fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
+fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
     network: &NetworkRecord<S, C>,
     cells: impl Fn() -> I,
     parts: &Parts,

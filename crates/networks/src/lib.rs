@@ -1,0 +1,13 @@
+//! Networks as files. What is written for each spring is compiled here, optimised, as little else of a report is.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on what its module `report` has of it.
+
+#![forbid(unsafe_code)]
+
+pub mod network;
+
+// The layers below, by the same names as everywhere.
+use springfit_bodies::model;
+use springfit_foundation::{error, file, text};
+use springfit_kernels::{element, springs};
+use springfit_mesh::mesh;

@@ -1,0 +1,28 @@
+//! Networks as files: one record for JSON, tables and arrays, and its reader.
+
+mod csv;
+mod json;
+mod lists;
+mod measures;
+mod npz;
+mod origins;
+mod part;
+mod parts;
+mod reader;
+mod record;
+mod shard;
+
+pub use csv::{network_csv, write_points};
+pub use json::write_json;
+pub use lists::{CellList, ListedRecord, Lists, SpringList};
+pub use npz::{ArrayFile, network_npz, write_npz};
+pub use part::Shard;
+pub use parts::{ContentPart, LengthPart, Parts};
+pub use reader::read_network;
+pub use record::{
+    CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LoadErrorsRecord, MaterialDataRecord,
+    MeasureKind, MeasureRecord, NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord,
+    NodalLoadRecord, OriginRecord, ProvenanceRecord, ShareRecord, SpringRecord, TermRecord, TimedForceRecord,
+    TimedPullRecord, network_schema,
+};
+pub use shard::{Merged, NetworkShard, ShardRun, merge_shards};
