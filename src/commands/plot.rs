@@ -29,7 +29,7 @@ pub struct Plot {
     /// Columns of the page that the figure is as wide as: 85 or 178 mm
     #[arg(long, value_enum, default_value_t)]
     columns: Columns,
-    /// Where it goes: of a figure .svg, or .pdf or .png in a program with the feature "pictures" [default: standard output, as SVG]
+    /// Where it goes: of a figure .svg, or .pdf or .png by the program springfit-pictures [default: standard output, as SVG]
     #[arg(short, long, help_heading = "Output")]
     output: Option<PathBuf>,
 }

@@ -246,8 +246,8 @@ pub fn javascript(cases: &[Case]) -> Option<Vec<Outcome>> {
 /// Programs that check the syntax of a language and are not needed to build springfit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Tool {
-    /// The parser and validator of WGSL, of naga-cli.
-    Naga,
+    /// The parser and validator of WGSL, in `crates/shaders`.
+    Shaders,
     /// The reference compiler of GLSL.
     Glslang,
     /// A C++ compiler, with the words of CUDA defined away; no compiler of CUDA is asked for.
@@ -261,7 +261,7 @@ impl Tool {
         let mut paths = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let (language, first, last, name) = match self {
-                Tool::Naga => ("wgsl", "", "", "code.wgsl"),
+                Tool::Shaders => ("wgsl", "", "", "code.wgsl"),
                 Tool::Glslang => {
                     let main = "layout(local_size_x = 1) in;\nvoid main() {}\n";
                     ("glsl", "#version 450\n", main, "code.comp")
@@ -274,23 +274,14 @@ impl Tool {
             paths.push(path.to_str().unwrap().to_string());
         }
         let program = match self {
-            Tool::Naga => "naga",
+            Tool::Shaders => "springfit-shaders",
             Tool::Glslang => "glslangValidator",
             Tool::Cuda => "c++",
         };
         let strict = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused"];
-        match self {
-            Tool::Cuda | Tool::Glslang => {
-                let options = if self == Tool::Cuda { &strict[..] } else { &[] };
-                let arguments: Vec<&str> = options.iter().copied().chain(paths.iter().map(String::as_str)).collect();
-                run(folder.path(), program, &arguments)?;
-            }
-            Tool::Naga => {
-                for path in &paths {
-                    run(folder.path(), program, &[path])?;
-                }
-            }
-        }
+        let options = if self == Tool::Cuda { &strict[..] } else { &[] };
+        let arguments: Vec<&str> = options.iter().copied().chain(paths.iter().map(String::as_str)).collect();
+        run(folder.path(), program, &arguments)?;
         Some(paths.len())
     }
 }

@@ -7,9 +7,11 @@ use crate::parallel::list_rows;
 /// A node in no aggregate.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The aggregate of each node, and how many there are.
-pub(crate) struct Aggregates {
+/// Nodes that are one node on the next level.
+pub struct Aggregates {
+    /// The aggregate of each node, or `NONE`.
     pub of: Vec<u32>,
+    /// How many aggregates there are.
     pub count: usize,
 }
 

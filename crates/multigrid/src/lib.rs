@@ -25,6 +25,15 @@ mod smoother;
 mod tentative;
 mod tridiagonal;
 
+// The tests of these parts are in the one binary of all tests, which reaches public items alone.
+#[doc(hidden)]
+pub mod parts {
+    pub use crate::aggregation::Aggregates;
+    pub use crate::block::{inverse, softest};
+    pub use crate::tentative::{Tentative, tentative};
+    pub use crate::tridiagonal::Tridiagonal;
+}
+
 pub use block::Block;
 pub use definiteness::Definiteness;
 pub use entry::WIDTH;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 const DEPENDENT: f64 = 1e-8;
 
 /// `B_i = T_i B_c` for the nodes i of each aggregate c.
-pub(crate) struct Tentative<const R: usize, const C: usize> {
+pub struct Tentative<const R: usize, const C: usize> {
     /// `T`, one block per node; zero in no aggregate.
     pub basis: Vec<Block<R, C>>,
     /// `B_c`, the motions on the next level.
@@ -18,10 +18,7 @@ pub(crate) struct Tentative<const R: usize, const C: usize> {
 }
 
 /// Gram's and Schmidt's method, twice, on each aggregate.
-pub(crate) fn tentative<const R: usize, const C: usize>(
-    aggregates: &Aggregates,
-    motions: &[Block<R, C>],
-) -> Tentative<R, C> {
+pub fn tentative<const R: usize, const C: usize>(aggregates: &Aggregates, motions: &[Block<R, C>]) -> Tentative<R, C> {
     let mut starts = vec![0; aggregates.count + 1];
     let members = || aggregates.of.iter().enumerate().filter(|(_, own)| **own != NONE);
     members().for_each(|(_, &own)| starts[own as usize + 1] += 1);
@@ -73,41 +70,4 @@ fn orthonormalize<const R: usize, const C: usize>(q: &mut [Block<R, C>]) -> (Blo
         q.iter_mut().flatten().for_each(|row| row[j] *= scale);
     }
     (r, held)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::rigid::space_motions;
-
-    /// The span of aggregates with less than three points that are not on a line has not all six motions.
-    #[test]
-    fn the_basis_is_orthonormal_and_spans_the_motions_whatever_the_points() {
-        let shapes: [(&[f64], usize); 3] = [
-            (&[0.3, 0.1, 5.0], 3),
-            (&[0.0, 0.0, 0.0, 1.0, 2.0, 3.0], 5),
-            (&[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 0.5, -1.0, 2.0, 4.0, 4.0, 0.0], 6),
-        ];
-        for (points, rank) in shapes {
-            let n = points.len() / 3;
-            let motions = space_motions(points, &vec![false; 3 * n]);
-            let t = tentative(&Aggregates { of: vec![0; n], count: 1 }, &motions);
-            assert_eq!(t.is_held[0].iter().filter(|held| !**held).count(), rank);
-            for a in 0..6 {
-                for b in 0..6 {
-                    let product: f64 = t.basis.iter().flatten().map(|row| row[a] * row[b]).sum();
-                    let expected = f64::from(u8::from(a == b && !t.is_held[0][a]));
-                    assert!((product - expected).abs() < 1e-12, "q_{a}·q_{b} = {product}");
-                }
-            }
-            for (motion, basis) in motions.iter().zip(&t.basis) {
-                for i in 0..3 {
-                    for j in 0..6 {
-                        let again: f64 = (0..6).map(|k| basis[i][k] * t.motions[0][k][j]).sum();
-                        assert!((again - motion[i][j]).abs() < 1e-7, "B = T B_c");
-                    }
-                }
-            }
-        }
-    }
 }

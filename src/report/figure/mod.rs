@@ -4,6 +4,7 @@ mod axis;
 mod camera;
 mod chart;
 mod convergence;
+mod converter;
 mod deformation;
 mod format;
 mod moduli;

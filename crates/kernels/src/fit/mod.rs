@@ -51,6 +51,16 @@ mod visit;
 mod weight;
 mod wide;
 
+// The tests of the small dense solvers are in the one binary of all tests, which reaches public items alone.
+#[doc(hidden)]
+pub mod solvers {
+    pub use super::constrained::{interior_point, solve_nonnegative};
+    pub use super::extremes::Extremes;
+    pub use super::jacobi::eigenvectors;
+    pub use super::normal::Normal;
+    pub use super::norms::solve_norm;
+}
+
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
 pub use exact::{

@@ -261,6 +261,3 @@ fn interior_point(
     let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
     solved.then_some((solver.solution.x, solver.solution.z))
 }
-
-#[cfg(test)]
-mod tests;

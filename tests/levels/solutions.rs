@@ -1,6 +1,6 @@
 //! Solutions are those of dense factors and of manufactured problems, at a cost that does not grow.
 
-use crate::elastic::{Body, Shape, random};
+use super::elastic::{Body, Shape, random};
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 use proptest::prelude::*;

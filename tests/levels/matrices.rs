@@ -1,6 +1,6 @@
 //! Block matrices are the sums of what is added to them.
 
-use crate::elastic::{Body, Shape};
+use super::elastic::{Body, Shape};
 use proptest::prelude::*;
 use springfit_multigrid::{BlockMatrix, Groups, Pattern};
 use std::collections::BTreeMap;

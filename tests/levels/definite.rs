@@ -1,6 +1,6 @@
 //! Whether a matrix is positive definite: found, or shown by a motion.
 
-use crate::elastic::{Body, Shape, random};
+use super::elastic::{Body, Shape, random};
 use springfit_multigrid::{
     BlockMatrix, Definiteness, End, Fault, Motion, Multigrid, Settings, space_motions, unwatched,
 };

@@ -1,6 +1,6 @@
 //! Several right hand sides that are solved side by side.
 
-use crate::elastic::{Body, Shape, random};
+use super::elastic::{Body, Shape, random};
 use proptest::prelude::*;
 use springfit_multigrid::{BlockMatrix, Event, Fault, Multigrid, Settings, Solution, space_motions, unwatched};
 use std::ops::ControlFlow;
