@@ -71,6 +71,11 @@ impl<'a> NetworkFile<'a> {
         self.study.map_or(Vec::new(), |(outcome, _)| notes(outcome))
     }
 
+    /// The record without its springs, and the springs; the cells are made while they are written.
+    pub(super) fn unsprung(&self) -> (NetworkRecord<[(); 0], CellList<'a>>, SpringList<'a>) {
+        self.listed().apart()
+    }
+
     /// The record with all its springs.
     pub fn record(&self) -> NetworkRecord {
         let (record, springs) = self.parted();
@@ -185,8 +190,22 @@ impl<'a> NetworkFile<'a> {
 
 impl<'a> NetworkRecord<SpringList<'a>, CellList<'a>> {
     fn parted(self) -> (NetworkRecord, SpringList<'a>) {
+        let all = |cells: Vec<CellBlockRecord<CellList>>| cells.into_iter().map(CellBlockRecord::with_all).collect();
+        self.with(Vec::new(), all)
+    }
+
+    fn apart(self) -> (NetworkRecord<[(); 0], CellList<'a>>, SpringList<'a>) {
+        self.with([], |cells| cells)
+    }
+
+    /// The record with these springs and with what `cells` makes of its own, and its own springs.
+    fn with<S, C>(
+        self,
+        springs: S,
+        cells: impl FnOnce(Vec<CellBlockRecord<CellList<'a>>>) -> Vec<CellBlockRecord<C>>,
+    ) -> (NetworkRecord<S, C>, SpringList<'a>) {
         let record = NetworkRecord {
-            springs: Vec::new(),
+            springs,
             format: self.format,
             version: self.version,
             provenance: self.provenance,
@@ -196,7 +215,7 @@ impl<'a> NetworkRecord<SpringList<'a>, CellList<'a>> {
             numbering: self.numbering,
             nodes: self.nodes,
             masses: self.masses,
-            cells: self.cells.into_iter().map(CellBlockRecord::with_all).collect(),
+            cells: cells(self.cells),
             surface: self.surface,
             held: self.held,
             loads: self.loads,
@@ -247,12 +266,6 @@ impl SpringList<'_> {
 
     fn damper(&self, s: usize) -> f64 {
         self.dampers.as_ref().map_or(0.0, |dampers| dampers[s])
-    }
-}
-
-impl Serialize for SpringList<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(self.iter())
     }
 }
 
