@@ -59,7 +59,7 @@ fn kernels(library: &Path) -> Vec<String> {
         for name in member.split(|byte| !is_part(byte)).filter(|name| name.len() > KERNEL[1].len()) {
             let name = String::from_utf8_lossy(name);
             // The name of a section ends with that of its function, and stands for both.
-            let name = name.strip_prefix(".text.").unwrap_or(&name);
+            let name = name.find("_ZN").or(name.find("_R")).map_or(&*name, |at| &name[at..]);
             found.extend(KERNEL.iter().any(|part| name.contains(part)).then(|| name.to_string()));
         }
     }
