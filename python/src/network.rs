@@ -254,6 +254,18 @@ impl Network {
         report::mesh_notes(self.mesh()).into_iter().chain(report::notes_beside_summary(&self.outcome)).collect()
     }
 
+    /// The name of the fit.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.fit().fit.name
+    }
+
+    /// One word for the state of the fit.
+    #[getter]
+    fn status(&self) -> &'static str {
+        self.fit().status()
+    }
+
     /// What the fit cost and how far its matrices are from those of the finite elements.
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
