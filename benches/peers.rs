@@ -1,10 +1,11 @@
 //! What springfit takes beside other programs for the same work, each pair in one run on one thread: NumPy, scikit-fem, CHOLMOD, PETSc,
-//! pyamg, and a loop in C. `cargo bench --bench peers`; `-- --write` writes the table of the book's page *Speed*.
+//! pyamg, and loops in C and in Rust. `-- program` compares the shipped program alone. `cargo bench --bench peers`; `-- --write` writes the table of the book's page *Speed*.
 //!
 //! `PYTHON` names an interpreter with numpy, scipy, scikit-fem, cvxopt, pyamg and petsc4py. What is absent is "not run" and says why.
 
 mod c_loop;
 mod clock;
+mod program;
 
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight, fit_cells};
@@ -210,11 +211,15 @@ fn main() {
     let material = Material::new(1e4, 0.3, State::Solid).expect("it is valid");
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     faer::set_global_parallelism(faer::Par::Seq);
-    let mut rows = vec![one.install(|| fits(folder.path(), material))];
-    for cells in [20, 30, 45] {
-        one.install(|| bodies(folder.path(), cells, material, &mut rows));
+    let mut rows = Vec::new();
+    if !std::env::args().any(|argument| argument == "program") {
+        rows.push(one.install(|| fits(folder.path(), material)));
+        for cells in [20, 30, 45] {
+            one.install(|| bodies(folder.path(), cells, material, &mut rows));
+        }
+        rows.push(one.install(|| steps(folder.path())));
     }
-    rows.push(one.install(|| steps(folder.path())));
+    rows.extend(one.install(|| program::files(folder.path())));
     for Row { work, own, peer } in &rows {
         let Ok(peer) = peer else { continue };
         let apart = (own.number - peer.number).abs() / own.number.abs();
@@ -226,7 +231,8 @@ fn main() {
             peer.name
         );
     }
-    let text = format!("One thread, {}:\n\n{}", machine(), table(&rows));
+    let bounds = program::bounds(folder.path());
+    let text = format!("One thread, {}:\n\n{}\nThe program, with its bounds:\n\n{bounds}", machine(), table(&rows));
     println!("{text}");
     if std::env::args().any(|argument| argument == "--write") {
         let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/src/studies/speed.md");

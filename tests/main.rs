@@ -62,6 +62,7 @@ mod networks;
 mod nonlinear;
 mod nonnegative;
 mod numbering;
+mod numerals;
 mod outputs;
 mod page;
 mod paper;

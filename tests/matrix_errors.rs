@@ -118,3 +118,33 @@ fn errors_of_cells_side_by_side_are_those_of_their_matrices() {
     println!("{compared} errors");
     assert!(compared > 3000);
 }
+
+/// K = R of an exact network on linear simplices: what rounding leaves is not worth eigenvalues, and the bound is not below the 2-norm. A
+/// constant that is wrong in its tenth digit is found, with the 2-norm of its matrix.
+#[test]
+fn rounded_differences_have_a_bound_and_wrong_constants_their_error() {
+    let mut random = Random(5);
+    for name in ["tri3", "tet4"] {
+        let element = Element::load(name).unwrap();
+        let (n, d) = (element.nodes(), element.dimension());
+        let points: Vec<f64> = (0..CELLS).flat_map(|_| distorted(&element, &mut random)).collect();
+        let nodes: Vec<usize> = (0..CELLS * n).collect();
+        for material in materials(d) {
+            let Ok(mut fits) = fit_exact(&element, &points, &nodes, material, &ExactFit::default(), &mut |_| {}) else {
+                continue;
+            };
+            let errors = element_errors(&element, &points, &nodes, material.moduli(), &fits).unwrap();
+            for (frobenius, spectral) in errors.frobenius.iter().zip(&errors.spectral) {
+                assert!(*frobenius < 1e-13, "{name} {material:?}: {frobenius:e}");
+                let bound = ((n * d) as f64).sqrt() * frobenius;
+                assert!((spectral - bound).abs() <= 1e-15 * bound, "{name} {material:?}: {spectral:e}, {bound:e}");
+            }
+            // k g gᵀ has one eigenvalue, so that both norms of what is left are the same.
+            fits.constants[0] *= 1.0 + 1e-10;
+            let errors = element_errors(&element, &points, &nodes, material.moduli(), &fits).unwrap();
+            let (frobenius, spectral) = (errors.frobenius[0], errors.spectral[0]);
+            assert!(frobenius > 1e-13 && spectral > 1e-13, "{name} {material:?}: {frobenius:e}, {spectral:e}");
+            assert!(spectral <= frobenius * ((n * d) as f64).sqrt(), "{name} {material:?}: {spectral:e}");
+        }
+    }
+}

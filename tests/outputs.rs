@@ -1,7 +1,7 @@
 //! The files that a run writes.
 
 use springfit::model::{Lumping, lumped_masses};
-use springfit::report::{NetworkFile, notes, write_outputs};
+use springfit::report::{NetworkFile, notes, table, write_outputs};
 use springfit::study::{Scene, run};
 use std::path::Path;
 
@@ -89,4 +89,20 @@ fn each_file_of_points_has_the_masses_of_its_network() {
             assert_eq!(masses, NetworkFile::of(&outcome, fit).masses().unwrap());
         }
     }
+}
+
+/// Networks, loads and files are the same, and the table has a dash.
+#[test]
+fn errors_that_are_not_asked_for_are_not_computed() {
+    let text = SCENE.replace("json = false", "errors = false") + "[[fit]]\nname = \"one\"\nobjective = \"frobenius\"\n";
+    let outcome = |text: &str| run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    let (without, with) = (outcome(&text), outcome(&text.replace("errors = false", "errors = true")));
+    let fits = [&without, &with].map(|outcome| &outcome.fits[0]);
+    assert_eq!(fits[0].network.lengths, fits[1].network.lengths);
+    assert!(fits[0].frobenius().is_none() && fits[0].spectral().is_none());
+    assert!(fits[1].frobenius().unwrap().max > 0.0 && fits[1].spectral().unwrap().max > 0.0);
+    let row = |outcome| table(outcome).lines().find(|line| line.trim_start().starts_with("one")).unwrap().to_string();
+    let words = |outcome| row(outcome).split_whitespace().map(String::from).collect::<Vec<_>>();
+    assert_eq!(words(&without)[3..5], ["-", "-"]);
+    assert_eq!(words(&with)[4], "/");
 }

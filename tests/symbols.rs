@@ -9,7 +9,14 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// The packages of ours that are compiled at the highest level, in which vectorised work may be.
-const FAST: [&str; 4] = ["springfit-foundation", "springfit-kernels", "springfit-multigrid", "springfit-bodies"];
+const FAST: [&str; 6] = [
+    "springfit-foundation",
+    "springfit-kernels",
+    "springfit-multigrid",
+    "springfit-mesh",
+    "springfit-bodies",
+    "springfit-networks",
+];
 
 /// Parts of the symbols of a vector kernel: the function of `pulp` that is compiled for the instructions of the machine, and the
 /// instructions of the standard library, which are functions of their own where they were not inlined.
@@ -59,7 +66,7 @@ fn kernels(library: &Path) -> Vec<String> {
         for name in member.split(|byte| !is_part(byte)).filter(|name| name.len() > KERNEL[1].len()) {
             let name = String::from_utf8_lossy(name);
             // The name of a section ends with that of its function, and stands for both.
-            let name = name.strip_prefix(".text.").unwrap_or(&name);
+            let name = name.find("_ZN").or(name.find("_R")).map_or(&*name, |at| &name[at..]);
             found.extend(KERNEL.iter().any(|part| name.contains(part)).then(|| name.to_string()));
         }
     }

@@ -234,13 +234,13 @@ class Network:
 
     @property
     def statistics(self) -> dict:
-        """Seconds, counts, and the mean and largest ‖R−K‖/‖R‖ of the cells in both norms."""
+        """Seconds, counts, and the mean and largest ‖R−K‖/‖R‖ of the cells in both norms, which are computed when this is first read."""
         return self._core.statistics
 
     @property
     def status(self) -> str:
         """One word for the state of the fit."""
-        return self._core.statistics["status"]
+        return self._core.status
 
     @property
     def notes(self) -> "list[str]":
@@ -332,7 +332,7 @@ class Network:
         return data
 
     def __repr__(self) -> str:
-        name = self.statistics["name"]
+        name = self._core.name
         others = "".join(f", {len(kind['constants'])} {kind['kind']}" for kind in self.contents)
         return f"<springfit.Network {name}: {len(self.points)} points, {len(self.springs)} springs{others}>"
 

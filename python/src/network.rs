@@ -196,12 +196,12 @@ impl Network {
 
     /// Writes the springs: .json, .npz, .csv or .vtu.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
+        if NetworkFormat::of(&path).is_ok_and(|format| format.has_errors) {
+            self.evaluated(py, || self.measure())?;
+        }
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
-            if format.has_errors {
-                self.measure()?;
-            }
             format.write(&path, &NetworkFile::of(&self.outcome, self.fit()))
         });
         written.map_err(|error| raised(py, error))
@@ -222,7 +222,7 @@ impl Network {
             return Err(invalid(py, &format!("gravity[{place}]"), "a finite number, m/s²", found));
         }
         let target = target_named(&to).map_err(|error| raised(py, error.at_key("to")))?;
-        apart(py, || self.measure()).map_err(|error| raised(py, error))?;
+        self.evaluated(py, || self.measure())?;
         let outcome = self.outcome.clone();
         let (files, left_out) = alone(py, move || {
             outcome.fits[0].network.check_formulas()?;
@@ -254,10 +254,22 @@ impl Network {
         report::mesh_notes(self.mesh()).into_iter().chain(report::notes_beside_summary(&self.outcome)).collect()
     }
 
+    /// The name of the fit.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.fit().fit.name
+    }
+
+    /// One word for the state of the fit.
+    #[getter]
+    fn status(&self) -> &'static str {
+        self.fit().status()
+    }
+
     /// What the fit cost and how far its matrices are from those of the finite elements.
     #[getter]
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        apart(py, || self.measure()).map_err(|error| raised(py, error))?;
+        self.evaluated(py, || self.measure())?;
         let (fit, record) = (self.fit(), PyDict::new(py));
         record.set_item("name", &fit.fit.name)?;
         record.set_item("status", fit.status())?;

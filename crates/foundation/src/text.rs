@@ -2,7 +2,7 @@
 
 mod numerals;
 
-pub use numerals::{push_exponential, push_list, push_whole};
+pub use numerals::{push_exponential, push_list, push_number, push_whole};
 
 use std::borrow::Cow;
 

@@ -9,5 +9,5 @@ use std::io::{self, Write};
 /// # Errors
 /// The writer fails.
 pub fn network_json(file: &NetworkFile, to: &mut dyn Write) -> io::Result<()> {
-    write_json(&file.listed(), to)
+    write_json(file.listed(), to)
 }

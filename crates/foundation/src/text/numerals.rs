@@ -15,6 +15,14 @@ pub fn push_list(text: &mut Vec<u8>, values: &[u64]) {
     }
 }
 
+/// Appends a number of JSON: the fewest digits that are read as the same number; `null` if it is not finite.
+pub fn push_number(text: &mut Vec<u8>, value: f64) {
+    match value.is_finite() {
+        true => text.extend_from_slice(zmij::Buffer::new().format_finite(value).as_bytes()),
+        false => text.extend_from_slice(b"null"),
+    }
+}
+
 /// Appends what `{value:e}` prints: the fewest digits that are read as the same number, with an exponent, such as `1.5e-3`.
 pub fn push_exponential(text: &mut Vec<u8>, value: f64) {
     if value == 0.0 || !value.is_finite() {

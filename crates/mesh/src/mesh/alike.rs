@@ -56,7 +56,8 @@ fn running_sums(counts: impl Iterator<Item = usize>) -> (Vec<usize>, usize) {
 /// item in any order; they are below `bound`.
 ///
 /// Items are sorted as single numbers: the high bits are the lowest point, so that the items of a set are near each other in memory, then
-/// comes a hash of the set, which does not depend on the order of its points, and the low bits are the item.
+/// comes a hash of the set, which does not depend on the order of its points, and the low bits are the item. Points have few items each, so
+/// that these are counted, put beside each other, and sorted in short lists.
 fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>), mut visit: impl FnMut(&[usize])) {
     let of_item = usize::BITS - count.leading_zeros();
     let of_hash = (u64::BITS - of_item).saturating_sub(usize::BITS - bound.leading_zeros()).max(1);
@@ -68,8 +69,20 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
         let lowest = set.iter().copied().min().unwrap_or(0) as u64;
         (lowest << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item as u64
     };
-    let mut keys: Vec<u64> = (0..count).map(key).collect();
-    keys.par_sort_unstable();
+    let keys: Vec<u64> = (0..count).map(key).collect();
+    // No more than the bits of all points.
+    let lowest = |key: &u64| key.checked_shr(of_item + of_hash).unwrap_or(0) as usize;
+    let mut next = vec![0_u32; keys.iter().map(lowest).max().map_or(0, |most| most + 2)];
+    keys.iter().for_each(|key| next[lowest(key) + 1] += 1);
+    (1..next.len()).for_each(|point| next[point] += next[point - 1]);
+    let mut sorted = vec![0; count];
+    for key in &keys {
+        let place = &mut next[lowest(key)];
+        sorted[*place as usize] = *key;
+        *place += 1;
+    }
+    let mut keys = sorted;
+    keys.par_chunk_by_mut(|a, b| lowest(a) == lowest(b)).for_each(<[u64]>::sort_unstable);
     let item = |key: &u64| (key & ((1 << of_item) - 1)) as usize;
     let sorted = |item: usize, set: &mut Vec<usize>| {
         set.clear();

@@ -93,11 +93,14 @@ impl Mesh {
         let CellBlock { element, connectivity } = &mut self.blocks[index];
         let first = connectivity.len() / element.nodes();
         let order = entry(element, format).and_then(|e| e.order.clone());
-        for nodes in block.connectivity.chunks_exact(block.nodes_per_cell) {
-            match &order {
-                Some(order) => connectivity.extend(order.iter().map(|&place| nodes[place])),
-                None => connectivity.extend(nodes),
+        connectivity.reserve_exact(block.connectivity.len());
+        match &order {
+            Some(order) => {
+                for nodes in block.connectivity.chunks_exact(block.nodes_per_cell) {
+                    connectivity.extend(order.iter().map(|&place| nodes[place]));
+                }
             }
+            None => connectivity.extend_from_slice(&block.connectivity),
         }
         let last = connectivity.len() / element.nodes();
         for name in &block.groups {

@@ -103,7 +103,7 @@ impl<W: Write> SpringTable<W> {
             push_exponential(text, value);
         }
         text.push(b',');
-        push_field(text, row.kind.properties().unit);
+        text.extend_from_slice(row.kind.properties().unit.as_bytes());
         if self.lawful {
             text.push(b',');
             push_field(text, row.law.map_or("", |(law, _)| &law.text));

@@ -53,10 +53,24 @@ pub struct SpringList<'a> {
 pub struct CellList<'a>(&'a CellBlock);
 
 impl<'a> ListedRecord<'a> {
-    /// The record without its springs, and the springs.
     fn parted(self) -> (NetworkRecord, SpringList<'a>) {
+        let all = |cells: Vec<CellBlockRecord<CellList>>| cells.into_iter().map(CellBlockRecord::with_all).collect();
+        self.with(Vec::new(), all)
+    }
+
+    /// The record without its springs, and the springs; the cells are made while they are written.
+    pub(super) fn apart(self) -> (NetworkRecord<[(); 0], CellList<'a>>, SpringList<'a>) {
+        self.with([], |cells| cells)
+    }
+
+    /// The record with these springs and with what `cells` makes of its own, and its own springs.
+    fn with<S, C>(
+        self,
+        springs: S,
+        cells: impl FnOnce(Vec<CellBlockRecord<CellList<'a>>>) -> Vec<CellBlockRecord<C>>,
+    ) -> (NetworkRecord<S, C>, SpringList<'a>) {
         let record = NetworkRecord {
-            springs: Vec::new(),
+            springs,
             format: self.format,
             version: self.version,
             provenance: self.provenance,
@@ -66,7 +80,7 @@ impl<'a> ListedRecord<'a> {
             numbering: self.numbering,
             nodes: self.nodes,
             masses: self.masses,
-            cells: self.cells.into_iter().map(CellBlockRecord::with_all).collect(),
+            cells: cells(self.cells),
             surface: self.surface,
             held: self.held,
             loads: self.loads,
@@ -125,12 +139,6 @@ impl SpringList<'_> {
 
     fn damper(&self, s: usize) -> f64 {
         self.dampers.as_ref().map_or(0.0, |dampers| dampers[s])
-    }
-}
-
-impl Serialize for SpringList<'_> {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.collect_seq(self.iter())
     }
 }
 

@@ -16,7 +16,7 @@ pub struct Measures {
 }
 
 /// What makes measures equal: shared tables and expressions.
-#[derive(PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Identity {
     Cell(usize),
     Point(usize, u32),
@@ -28,10 +28,19 @@ impl Measures {
     pub fn of(network: &Network) -> Measures {
         let mut records = vec![plain(MeasureKind::Length)];
         let mut known: HashMap<Identity, usize> = HashMap::new();
+        // Neighbours mostly measure the same.
+        let mut last: Option<(Identity, usize)> = None;
         let place = |spring: &crate::model::MeasureSpring| {
             let next = records.len();
             let place = match identity(&spring.measure) {
-                Some(identity) => *known.entry(identity).or_insert(next),
+                Some(identity) => match &last {
+                    Some((same, place)) if *same == identity => *place,
+                    _ => {
+                        let place = *known.entry(identity).or_insert(next);
+                        last = Some((identity, place));
+                        place
+                    }
+                },
                 None if matches!(spring.measure, Measure::Length) => 0,
                 None => next,
             };
