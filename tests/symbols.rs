@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 /// The packages of ours that are compiled at the highest level, in which vectorised work may be.
-const FAST: [&str; 6] = [
+const FAST: [&str; 7] = [
     "springfit-foundation",
     "springfit-kernels",
     "springfit-multigrid",
     "springfit-mesh",
     "springfit-bodies",
+    "springfit-analysis",
     "springfit-networks",
 ];
 

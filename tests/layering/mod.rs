@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 32] = [
+const LAYERS: [&str; 33] = [
     "shipped",
     "multigrid",
     "page",
@@ -36,6 +36,7 @@ const LAYERS: [&str; 32] = [
     "dynamics",
     "whole",
     "network",
+    "analysis",
     "study",
     "generate",
     "prelude",
@@ -70,7 +71,7 @@ fn sources() -> Vec<Source> {
         };
         if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
-    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "networks", "studies", ""]
+    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "networks", "analysis", "studies", ""]
         .into_iter()
         .flat_map(read)
         .collect()

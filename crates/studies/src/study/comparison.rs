@@ -3,13 +3,13 @@
 use super::body::applied_cases;
 use super::checkpoint::Controls;
 use super::fits::{ExactRecipe, NamedFit, Recipe, WholeBody};
-use super::moduli::{EffectiveModuli, Lattice};
 use super::outcome::Outcome;
 use super::progress::{Event, Progress};
 use super::run::run_with;
 use super::scene::{Output, Scene};
-use super::shapes::random_shapes;
 use super::stretches::sampled_fits;
+use crate::analysis::moduli::{EffectiveModuli, Lattice};
+use crate::analysis::shapes::random_shapes;
 use crate::bound::{self, check_count};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};

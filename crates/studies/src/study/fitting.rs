@@ -3,7 +3,7 @@
 use super::fits::{NamedFit, Reference, Task};
 use super::outcome::{FitOutcome, MatrixErrors};
 use super::progress::Progress;
-use super::tensor::network_material;
+use crate::analysis::tensor::network_material;
 use crate::error::Result;
 use crate::fit::{CellFits, SpreadSum, each_element_errors};
 use crate::material::MaterialMap;

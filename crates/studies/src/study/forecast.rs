@@ -4,7 +4,7 @@ use super::body::{Case, LargeBody, load_cases};
 use super::fits::{NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
-use super::tensor::most_samples;
+use crate::analysis::tensor::most_samples;
 use crate::error::Result;
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};

@@ -10,7 +10,6 @@
 
 mod body;
 mod body_material;
-mod check;
 mod checkpoint;
 mod choice;
 mod comparison;
@@ -22,26 +21,25 @@ mod fits;
 mod fitting;
 mod forecast;
 mod masses;
-mod metrics;
-mod moduli;
 mod outcome;
 mod own_name;
 mod paper;
 mod progress;
-mod random;
 mod run;
 mod scene;
-mod shapes;
 mod stability;
 mod stages;
 mod stretches;
 mod sweep;
-mod tensor;
 mod time;
 
+pub use crate::analysis::check::{Inspection, Mark, Property, inspect};
+pub use crate::analysis::metrics::{DisplacementError, displacement_error};
+pub use crate::analysis::moduli::{EffectiveModuli, Lattice, moduli_of_body};
+pub use crate::analysis::shapes::random_shapes;
+pub use crate::analysis::tensor::{NetworkMaterial, SpringOwners, network_material};
 pub use body::{Case, LargeBody};
 pub use body_material::{BodyConstants, assumed};
-pub use check::{Inspection, Mark, Property, inspect};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, compared, measure_recipes};
 pub use convergence::{
@@ -63,8 +61,6 @@ pub use fits::{
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
 pub use masses::{PointMasses, point_masses};
-pub use metrics::{DisplacementError, displacement_error};
-pub use moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
     MotionEnding, MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
@@ -79,9 +75,7 @@ pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, LoadCase, LoadKind, MeshInput, MotionRecipe, Output,
     Part, PrescribedMotion, ReferenceEntry, Scene, Setting, check_unit, load_elements, scene_schema,
 };
-pub use shapes::random_shapes;
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
 pub use sweep::{Study, Sweep, SweepEntry};
-pub use tensor::{NetworkMaterial, SpringOwners, network_material};

@@ -4,8 +4,8 @@
 use super::body::LargeBody;
 use super::fits::{ExactRecipe, ForceRecipe, NamedFit, Recipe, Reference, SampledRecipe};
 use super::fitting::fit_without_errors;
-use super::metrics::displacement_error;
 use super::progress::{Event, Progress};
+use crate::analysis::metrics::displacement_error;
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
 use crate::fit::{Balance, DeformationFamily, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};

@@ -1,10 +1,10 @@
 //! What the solvers of a body at small deformation answer, whichever way they solve.
 
 use super::case::Case;
+use crate::analysis::metrics::SOLVED;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::solve::{Solved, StaticSolver};
-use crate::study::metrics::SOLVED;
 
 /// The answer of the finite elements to one load.
 pub(super) struct BodyAnswer {

@@ -1,8 +1,8 @@
 //! One load case on a mesh.
 
+use crate::analysis::metrics::{DisplacementError, displacement_error, product};
 use crate::mesh::Field;
 use crate::model::Support;
-use crate::study::metrics::{DisplacementError, displacement_error, product};
 use crate::study::outcome::Measured;
 
 /// A load case on a mesh: its support and nodal forces.

@@ -2,12 +2,12 @@
 
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
+use crate::analysis::metrics::{SOLVED, square};
 use crate::error::Result;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, check_body, finite_elements};
 use crate::solve::{Factor, Solved, Stability, Standing, System, compare_energies};
-use crate::study::metrics::{SOLVED, square};
 use crate::study::progress::{Event, Progress};
 use std::sync::Arc;
 use std::time::Instant;

@@ -2,12 +2,12 @@
 
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, largest_residual, not_definite, shared};
 use super::case::Case;
+use crate::analysis::metrics::product;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
 use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
-use crate::study::metrics::product;
 use crate::study::progress::{Event, Progress};
 use std::sync::Arc;
 use std::time::Instant;

@@ -1,13 +1,13 @@
 //! The loads of a scene at large deformation: Newton's method on both models.
 
 use super::case::Case;
+use crate::analysis::metrics::product;
 use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::model::{Elastic, RegionsBody, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton, System};
-use crate::study::metrics::product;
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;

@@ -1,13 +1,13 @@
 //! The quantities that are compared from mesh to mesh: the work of the load, and the mean displacement of the loaded
 //! part.
 
+use crate::analysis::metrics::product;
 use crate::error::Result;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
 use crate::study::body::applied_cases;
-use crate::study::metrics::product;
 use crate::study::scene::{LoadCase, Part, Scene};
 
 /// A load on a mesh, which weights displacements.

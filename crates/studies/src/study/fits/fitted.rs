@@ -5,12 +5,12 @@ use super::published::PublishedOutcome;
 use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
+use crate::analysis::tensor::SpringOwners;
 use crate::fit::{CellFits, ShearSprings};
 use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Springs;
-use crate::study::tensor::SpringOwners;
 use std::time::Instant;
 
 /// The springs of a fit.

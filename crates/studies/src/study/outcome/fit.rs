@@ -1,13 +1,13 @@
 //! The results of a fit: its springs, their errors, and the response of the network to loads.
 
 use super::load::LoadOutcome;
+use crate::analysis::moduli::EffectiveModuli;
+use crate::analysis::tensor::NetworkMaterial;
 use crate::fit::Spread;
 use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
 use crate::springs::Springs;
 use crate::study::fits::{FittedKind, NamedFit};
-use crate::study::moduli::EffectiveModuli;
-use crate::study::tensor::NetworkMaterial;
 use std::sync::OnceLock;
 
 /// The relative errors `‖R − K‖/‖R‖` of the elements' matrices.

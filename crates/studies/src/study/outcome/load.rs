@@ -1,9 +1,9 @@
 //! The results of the body and of its networks under a load.
 
 use super::gauge::{GaugeResult, Reading};
+use crate::analysis::metrics::DisplacementError;
 use crate::model::{Deformation, Support};
 use crate::solve::{Ending, Solved};
-use crate::study::metrics::DisplacementError;
 
 /// A load of a scene, and the response of the finite elements.
 #[derive(Debug, Clone, PartialEq)]

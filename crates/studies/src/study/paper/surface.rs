@@ -3,10 +3,10 @@
 use super::index::{Column, RowEntry, TableEntry};
 use super::material::material;
 use super::outcome::{PaperRow, Surface};
+use crate::analysis::moduli::Lattice;
 use crate::error::{Error, Result};
 use crate::springs::Springs;
 use crate::study::fits::NamedFit;
-use crate::study::moduli::Lattice;
 use crate::study::scene::load_element;
 use std::path::Path;
 

@@ -2,6 +2,7 @@
 
 use super::outcome::{StabilityRow, Verdict, worst};
 use super::shapes::{ShapeCase, shape_cases};
+use crate::analysis::random::Random;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{
@@ -11,7 +12,6 @@ use crate::fit::{
 use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-use crate::study::random::Random;
 use nalgebra::{DMatrix, DVectorView};
 use rayon::prelude::*;
 

@@ -1,10 +1,10 @@
 //! The cases of one element: materials, sizes, positions and shapes, from ordinary to impossible ones.
 
 use super::outcome::Family;
+use crate::analysis::shapes::random_shapes;
 use crate::element::{Cell, Element};
 use crate::error::Result;
 use crate::material::{Material, Plane};
-use crate::study::shapes::random_shapes;
 use nalgebra::{Rotation3, Vector3};
 
 /// The seed of the ordinary shape.

@@ -2,9 +2,9 @@
 
 use super::range::Values;
 use super::sobol::{DIMENSIONS, Sobol};
+use crate::analysis::random::Random;
 use crate::bound::{self, check_count};
 use crate::error::{Error, ErrorKind, Result};
-use crate::study::random::Random;
 use crate::study::scene::Setting;
 use schemars::JsonSchema;
 use serde::Deserialize;

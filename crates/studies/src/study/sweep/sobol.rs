@@ -3,7 +3,7 @@
 //! The direction numbers are those of S. Joe and F. Y. Kuo, *Constructing Sobol sequences with better two-dimensional projections*,
 //! SIAM J. Sci. Comput. 30 (2008), which SciPy and many other programs have.
 
-use crate::study::random::Random;
+use crate::analysis::random::Random;
 
 /// Bits of a coordinate, and the binary logarithm of the length of the sequence.
 const BITS: usize = 32;

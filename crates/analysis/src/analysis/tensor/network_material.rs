@@ -63,7 +63,7 @@ pub struct NetworkMaterial {
 }
 
 /// The number of samples that a mesh has room for.
-pub(in crate::study) fn most_samples(mesh: &Mesh) -> usize {
+pub fn most_samples(mesh: &Mesh) -> usize {
     SAMPLES.min(mesh.point_count().div_ceil(POINTS))
 }
 

@@ -3,11 +3,11 @@
 
 use super::property::Property;
 use super::shape::{ASKED, geometry, shapes};
+use crate::analysis::moduli::Lattice;
 use crate::element::Element;
 use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_exact};
 use crate::material::Material;
 use crate::springs::Springs;
-use crate::study::moduli::Lattice;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 

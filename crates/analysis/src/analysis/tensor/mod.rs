@@ -8,6 +8,6 @@ mod piece;
 mod relaxation;
 mod sample;
 
-pub(in crate::study) use network_material::most_samples;
+pub use network_material::most_samples;
 pub use network_material::{NetworkMaterial, network_material};
 pub use owners::SpringOwners;

@@ -1,14 +1,14 @@
 //! The element at distorted shapes with straight edges: stiffness, patch test, moduli, and its form in mesh files.
 
 use super::property::Property;
+use crate::analysis::moduli::Lattice;
+use crate::analysis::shapes::straight_shapes;
 use crate::element::{Element, FormatEntry, permutations};
 use crate::fit::{Fit, Objective, Weight};
 use crate::material::{Material, Moduli};
 use crate::mesh::{Mesh, MeshSource, gmsh, vtk};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
-use crate::study::moduli::Lattice;
-use crate::study::shapes::straight_shapes;
 use std::fmt::Write;
 use std::sync::Arc;
 

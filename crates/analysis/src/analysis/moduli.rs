@@ -1,5 +1,6 @@
 //! The effective elastic moduli of a network of springs, measured on a periodic box.
 
+use crate::analysis::metrics::SOLVED;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
@@ -8,7 +9,6 @@ use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
 use crate::model::{Entries, Network, Support, content, finite_elements};
 use crate::solve::System;
 use crate::springs::Springs;
-use crate::study::metrics::SOLVED;
 use faer::sparse::Triplet;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;

@@ -1,0 +1,13 @@
+//! What elements and networks are, found by loops over cells and points that are worth optimising; studies call it.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on what its module `study` has of it.
+
+#![forbid(unsafe_code)]
+
+pub mod analysis;
+
+// The layers below, by the same names as everywhere.
+use springfit_bodies::{model, solve};
+use springfit_foundation::{error, scalar};
+use springfit_kernels::{element, fit, material, springs, stiffness};
+use springfit_mesh::mesh;
