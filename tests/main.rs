@@ -36,6 +36,7 @@ mod fraction;
 mod functions;
 mod generate;
 mod golden;
+mod golden_files;
 mod integrals;
 mod large;
 mod law_fields;

@@ -1,0 +1,158 @@
+"""A springfit network in MuJoCo (pip install mujoco numpy).
+
+    python run.py            two seconds of motion, then where the points are
+    python run.py 5          five seconds
+    python run.py --rest F   comes to rest and writes the positions to the file F
+    python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
+
+What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoCo's energy of a tetrahedron is
+1/4 sum_ab M_ab e_a e_b over its six edges, with e = l^2 - L^2, l the length of an edge and L that at rest. A spring of constant k
+and rest length L is M_aa = k/(2 L^2) in one tetrahedron that has the edge; a spring of constant K on the volume V is
+M = 2 K c c^T + 2 T C at rest, with c and C the first and second derivatives of V by e and T = K (V - rest). The energy is equal up
+to second order in e, so that small deformations are those of the network and large ones are not.
+"""
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+
+def settle(advance, energy, damp, periods):
+    """Advances until a body is at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on
+    all velocities are multiplied so that this motion hardly swings, for so many quarters as long."""
+    highest = quarter = count = 0
+    while not quarter or count <= periods * quarter:
+        advance()
+        moving = energy()
+        if not np.isfinite(moving):
+            sys.exit("the motion has diverged")
+        count += 1
+        if not quarter and moving >= highest:
+            highest = moving
+            continue
+        quarter = quarter or max(count, 3)
+        damp(np.exp(-np.pi / quarter))
+
+
+folder = Path(__file__).parent
+net = np.load(folder / "network.npz")
+points, masses, springs, k, rest = (net[name] for name in ["points", "masses", "springs", "k", "rest"])
+tets, volumes, k_volume, rest_volume = (net[name] for name in ["tets", "volumes", "k_volume", "rest_volume"])
+step = 0.002  # s; the integrator "discrete" is implicit in the stiffness
+
+
+def volume_by_edges(x):
+    """V, dV/de and d2V/de2 of a tetrahedron, by differentiating 288 V^2, a cubic polynomial of the squared edge lengths."""
+    pairs = [(a, b) for a in range(4) for b in range(a)]
+
+    def cubic(s):
+        matrix = np.zeros((5, 5))
+        matrix[0, 1:] = matrix[1:, 0] = 1
+        for (a, b), value in zip(pairs, s):
+            matrix[a + 1, b + 1] = matrix[b + 1, a + 1] = value
+        return np.linalg.det(matrix)
+
+    s = np.array([np.sum((x[a] - x[b]) ** 2) for a, b in pairs])
+    h = s.mean()  # differences of a cubic with steps of its own size are exact but for the third derivative
+    unit = np.eye(6) * h
+    q = cubic(s)
+    up, down = (np.array([cubic(s + sign * unit[a]) for a in range(6)]) for sign in (1, -1))
+    up2, down2 = (np.array([cubic(s + 2 * sign * unit[a]) for a in range(6)]) for sign in (1, -1))
+    first = (8 * (up - down) - (up2 - down2)) / (12 * h)
+    second = np.zeros((6, 6))
+    for a in range(6):
+        second[a, a] = (up[a] - 2 * q + down[a]) / h**2
+        for b in range(a):
+            around = [cubic(s + i * unit[a] + j * unit[b]) for i, j in [(1, 1), (1, -1), (-1, 1), (-1, -1)]]
+            second[a, b] = second[b, a] = (around[0] - around[1] - around[2] + around[3]) / (4 * h**2)
+    volume = np.sqrt(q / 288)
+    slope = first / (576 * volume)
+    bend = (second / 288 - 2 * np.outer(slope, slope)) / (2 * volume)
+    return volume, slope, bend, {frozenset(pair): a for a, pair in enumerate(pairs)}
+
+
+def model(material=None):
+    """The model, with the stiffness of the springs; or MuJoCo's own finite elements of the same tetrahedra, of material (E, nu)."""
+    young, poisson = material or (1.0, 0.0)
+    text = lambda values: " ".join(map(repr, np.asarray(values).ravel().tolist()))
+    gravity = text(net["gravity"])
+    pins = f'<pin id="{text(net["fixed"])}"/>' if len(net["fixed"]) else ""
+    m = mujoco.MjModel.from_xml_string(f"""
+    <mujoco>
+      <option integrator="discrete" timestep="{step}" gravity="{gravity}"/>
+      <size memory="1G"/>
+      <visual><map znear="0.001"/></visual>
+      <worldbody>
+        <light pos="0 0 3"/>
+        <flexcomp name="network" type="direct" dim="3" radius="1e-5" mass="{float(masses.sum())!r}" rgba=".8 .4 .3 1"
+            point="{text(points)}" element="{text(tets)}">
+          <contact contype="0" conaffinity="0" selfcollide="none"/>
+          <elasticity young="{young!r}" poisson="{poisson!r}" damping="1e-9"/>
+          {pins}
+        </flexcomp>
+      </worldbody>
+    </mujoco>""")
+    m.flex_damping[:] = 0  # MuJoCo warns of a flex without damping
+    body = m.flex_vertbodyid
+    free = body > 0
+    m.body_inertia[body[free]] *= (masses[free] / m.body_mass[body[free]])[:, None]
+    m.body_mass[body[free]] = masses[free]
+    mujoco.mj_setConst(m, mujoco.MjData(m))
+    m.dof_damping[:] = float(net["damping"]) * m.body_mass[m.dof_bodyid]
+    if material:
+        return m
+    elements = m.flex_elem.reshape(-1, 4)
+    ends = m.flex_edge[m.flex_elemedge.reshape(-1, 6)]
+    place = {}
+    for t, edges in enumerate(ends):
+        for a, edge in enumerate(edges):
+            place.setdefault(frozenset(edge.tolist()), (t, a))
+    stiffness = np.zeros((len(elements), 6, 6))
+    for (i, j), constant, length in zip(springs.tolist(), k, rest):
+        if length > 0:  # springs of rest length zero are linear in e: they balance the volume springs
+            t, a = place[frozenset((i, j))]
+            stiffness[t, a, a] += constant / (2 * length**2)
+    of_corners = {frozenset(corners.tolist()): t for t, corners in enumerate(elements)}
+    for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
+        t = of_corners[frozenset(corners.tolist())]
+        volume, slope, bend, names = volume_by_edges(points[corners])
+        order = [names[frozenset(np.flatnonzero(corners == p)[0] for p in edge)] for edge in ends[t]]
+        matrix = 2 * constant * (np.outer(slope, slope) + (volume - at_rest) * bend)
+        stiffness[t] += matrix[np.ix_(order, order)]
+    rows, columns = np.triu_indices(6)
+    stored = np.zeros((len(elements), m.flex_stiffness.size // len(elements)))
+    stored[:, :21] = stiffness[:, rows, columns]
+    stored[stored[:, 0] == 0, 0] = 1e-30  # MuJoCo leaves out tetrahedra whose first number is zero
+    m.flex_stiffness[:] = stored.reshape(m.flex_stiffness.shape)
+    return m
+
+
+def positions(m, d):
+    return d.flexvert_xpos.copy()
+
+
+def come_to_rest(material=None):
+    """Positions at rest."""
+    m = model(material)
+    d = mujoco.MjData(m)
+    weight = m.body_mass[m.dof_bodyid]
+
+    def damp(factor):
+        d.qvel[:] *= factor
+
+    settle(lambda: mujoco.mj_step(m, d), lambda: float(np.sum(weight * d.qvel**2)), damp, 40)
+    mujoco.mj_forward(m, d)
+    return positions(m, d)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--rest"]:
+        np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
+    else:
+        m = model()
+        d = mujoco.MjData(m)
+        for _ in range(round(float((sys.argv[1:] or [2])[0]) / step)):
+            mujoco.mj_step(m, d)
+        moved = np.linalg.norm(positions(m, d) - points, axis=1)
+        print(f"{len(points)} points, {d.time:g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")
