@@ -6,17 +6,14 @@
 use serde::de::value::StringDeserializer;
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, MapAccess, SeqAccess,
-    VariantAccess, Visitor,
+    Unexpected, VariantAccess, Visitor,
 };
 use serde::forward_to_deserialize_any;
 use std::fmt::{self, Display};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
-/// The key under which serde passes the text of a date, as the crate toml does.
-const DATE: &str = "$__toml_private_datetime";
-
-/// What a value is.
+/// What a value is. Dates are texts.
 enum Content {
     Text(String),
     Whole(i128),
@@ -126,7 +123,7 @@ fn node(value: toml::Spanned<DeValue<'_>>) -> Node {
             _ => Content::TooLarge,
         },
         DeValue::Boolean(truth) => Content::Truth(truth),
-        DeValue::Datetime(date) => Content::date(date.to_string()),
+        DeValue::Datetime(date) => Content::Text(date.to_string()),
         DeValue::Array(items) => Content::List(items.into_iter().map(node).collect()),
         DeValue::Table(table) => entries(table),
     };
@@ -134,9 +131,17 @@ fn node(value: toml::Spanned<DeValue<'_>>) -> Node {
 }
 
 impl Content {
-    fn date(text: String) -> Content {
-        let node = Node { content: Content::Text(text), place: None };
-        Content::Table(vec![Entry { key: DATE.into(), place: None, node }])
+    /// What serde calls it in a message.
+    fn unexpected(&self) -> Unexpected<'_> {
+        match self {
+            Content::Text(text) => Unexpected::Str(text),
+            Content::Whole(number) => i64::try_from(*number).map_or(Unexpected::Other("integer"), Unexpected::Signed),
+            Content::Number(number) => Unexpected::Float(*number),
+            Content::TooLarge => Unexpected::Other("number that is too large"),
+            Content::Truth(truth) => Unexpected::Bool(*truth),
+            Content::List(_) => Unexpected::Seq,
+            Content::Table(_) => Unexpected::Map,
+        }
     }
 }
 
@@ -147,7 +152,7 @@ impl From<Value> for Node {
             Value::Integer(number) => Content::Whole(number.into()),
             Value::Float(number) => Content::Number(number),
             Value::Boolean(truth) => Content::Truth(truth),
-            Value::Datetime(date) => Content::date(date.to_string()),
+            Value::Datetime(date) => Content::Text(date.to_string()),
             Value::Array(items) => Content::List(items.into_iter().map(Node::from).collect()),
             Value::Table(table) => {
                 let entry = |(key, value)| Entry { key, place: None, node: Node::from(value) };
@@ -208,10 +213,8 @@ impl<'de> Deserializer<'de> for At<'_> {
                 let entry = entries.pop().expect("there is one");
                 visitor.visit_enum(Variant { entry, way })
             }
-            Content::Table(entries) => {
-                Err(Fault::custom(format!("expected a table with one key, found {} keys", entries.len())))
-            }
-            _ => Err(Fault::custom("expected a text or a table")),
+            table @ Content::Table(_) => Err(Fault::invalid_value(table.unexpected(), &"a table with one key")),
+            other => Err(Fault::invalid_type(other.unexpected(), &"a string or a table")),
         };
         read.map_err(|fault| fault.at(way, place))
     }
