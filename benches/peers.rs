@@ -1,5 +1,6 @@
 //! What springfit takes beside other programs for the same work, each pair in one run on one thread: NumPy, scikit-fem, CHOLMOD, PETSc,
-//! pyamg, and loops in C and in Rust. `-- program` compares the shipped program alone. `cargo bench --bench peers`; `-- --write` writes the table of the book's page *Speed*.
+//! pyamg, and loops in C and in Rust. `cargo bench --bench peers`; `-- --write` writes the table of the book's page *Speed*, `-- program` measures
+//! the program alone.
 //!
 //! `PYTHON` names an interpreter with numpy, scipy, scikit-fem, cvxopt, pyamg and petsc4py. What is absent is "not run" and says why.
 
@@ -212,7 +213,9 @@ fn main() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
     faer::set_global_parallelism(faer::Par::Seq);
     let mut rows = Vec::new();
-    if !std::env::args().any(|argument| argument == "program") {
+    let given = |word: &str| std::env::args().any(|argument| argument == word);
+    let is_whole = !given("program");
+    if is_whole {
         rows.push(one.install(|| fits(folder.path(), material)));
         for cells in [20, 30, 45] {
             one.install(|| bodies(folder.path(), cells, material, &mut rows));
@@ -234,7 +237,7 @@ fn main() {
     let bounds = program::bounds(folder.path());
     let text = format!("One thread, {}:\n\n{}\nThe program, with its bounds:\n\n{bounds}", machine(), table(&rows));
     println!("{text}");
-    if std::env::args().any(|argument| argument == "--write") {
+    if is_whole && given("--write") {
         let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/src/studies/speed.md");
         let old = std::fs::read_to_string(&page).expect("the book has the page");
         let (before, rest) = old.split_once("<!-- peers -->\n").expect("the page has a place for the table");
