@@ -89,8 +89,6 @@
 
 #[cfg(feature = "cli")]
 pub mod export;
-#[cfg(feature = "cli")]
-pub mod generate;
 pub mod prelude;
 #[cfg(feature = "cli")]
 pub mod referee;
@@ -99,6 +97,8 @@ pub mod report;
 
 pub use springfit_bodies::{dynamics, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
+#[cfg(feature = "cli")]
+pub use springfit_generate::generate;
 pub use springfit_kernels::{element, fit, material, springs, stiffness};
 pub use springfit_mesh::mesh;
 pub use springfit_studies::study;

@@ -42,7 +42,6 @@ mod large;
 mod law_fields;
 mod laws;
 mod layering;
-mod levels;
 mod limits;
 mod linear_theory;
 mod loads;

@@ -187,6 +187,7 @@ fn whole_object_fits() {
 }
 
 #[test]
+#[ignore = "takes minutes; .ci/long has it"]
 fn scenes_of_the_paper() {
     check("paper");
 }

@@ -71,10 +71,23 @@ fn sources() -> Vec<Source> {
         };
         if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
-    ["shipped", "multigrid", "page", "foundation", "kernels", "mesh", "bodies", "networks", "analysis", "studies", ""]
-        .into_iter()
-        .flat_map(read)
-        .collect()
+    [
+        "shipped",
+        "multigrid",
+        "page",
+        "foundation",
+        "kernels",
+        "mesh",
+        "bodies",
+        "networks",
+        "analysis",
+        "generate",
+        "studies",
+        "",
+    ]
+    .into_iter()
+    .flat_map(read)
+    .collect()
 }
 
 /// The layer of a source; `None` for the roots of libraries, which only declare and pass on.

@@ -2,7 +2,7 @@
 //! times are those of the processor.
 //! `columns=8` solves for so many forces side by side as well. With `export=FOLDER` the matrix is written for other solvers.
 
-#[path = "../../../tests/levels/elastic/mod.rs"]
+#[path = "../tests/levels/elastic/mod.rs"]
 mod elastic;
 
 use elastic::{Body, Shape};

@@ -81,6 +81,7 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
         sorted[*place as usize] = *key;
         *place += 1;
     }
+    drop(keys);
     let mut keys = sorted;
     keys.par_chunk_by_mut(|a, b| lowest(a) == lowest(b)).for_each(<[u64]>::sort_unstable);
     let item = |key: &u64| (key & ((1 << of_item) - 1)) as usize;

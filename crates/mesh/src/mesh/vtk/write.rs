@@ -136,7 +136,8 @@ fn encode(grid: &Grid, file: &mut Text) -> io::Result<()> {
     Ok(())
 }
 
-/// The number of bytes that are encoded at a time: a multiple of three, of which base64 makes whole groups of letters.
+/// The number of bytes that are encoded at a time: a multiple of three, of which base64 makes whole groups of letters, and of the size of any
+/// value.
 const PIECE: usize = 3 << 12;
 
 /// The file that is written.
@@ -153,22 +154,23 @@ impl Text<'_> {
         scalar: &str,
         name: &str,
         components: usize,
-        values: impl ExactSizeIterator<Item = [u8; SIZE]>,
+        mut values: impl ExactSizeIterator<Item = [u8; SIZE]>,
     ) -> io::Result<()> {
         let size = values.len() * SIZE;
         let name = escaped(name);
         // meshio makes a matrix of an array whose attribute says that it has one component.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"))?;
-        let mut bytes = (size as u64).to_le_bytes().into_iter().chain(values.flatten());
         let mut piece = Vec::with_capacity(PIECE);
+        piece.extend_from_slice(&(size as u64).to_le_bytes());
         loop {
-            piece.clear();
-            piece.extend(bytes.by_ref().take(PIECE));
+            let room = (PIECE - piece.len()) / SIZE;
+            values.by_ref().take(room).for_each(|value| piece.extend_from_slice(&value));
             self.0.write_all(base64(&piece).as_bytes())?;
             if piece.len() < PIECE {
                 break;
             }
+            piece.clear();
         }
         self.line("")?;
         self.line("</DataArray>")

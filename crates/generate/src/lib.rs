@@ -1,0 +1,12 @@
+//! Code that computes the springs of a cell at run time.
+//!
+//! Users of springfit need not name this crate: `springfit` passes on its module [`generate`].
+
+#![forbid(unsafe_code)]
+
+pub mod generate;
+
+// The layers below, by the same names as everywhere.
+use springfit_foundation::named::unknown;
+use springfit_foundation::{error, scalar, symbolic};
+use springfit_kernels::{element, fit, material, springs, stiffness};
