@@ -11,6 +11,16 @@ use super::tolerance::Tolerance;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
+/// Columns of a motion's table with the components of one vector, and its group.
+const VECTORS: [(&str, &str); 6] = [
+    ("# px", "momentum"),
+    ("# py", "momentum"),
+    ("# pz", "momentum"),
+    ("# ux", "watched"),
+    ("# uy", "watched"),
+    ("# uz", "watched"),
+];
+
 /// Where the forms do not agree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
@@ -128,6 +138,8 @@ fn next(group: &str, key: &str, entries: &serde_json::Map<String, Value>) -> Str
     let kind = entries.get("kind").and_then(Value::as_str).unwrap_or_default();
     // Samples of a list are numbered.
     let key = if key.bytes().all(|b| b.is_ascii_digit()) { "" } else { key };
+    // Columns of one vector: the component across a plane of symmetry has rounding errors of the others.
+    let key = VECTORS.iter().find(|(pattern, _)| fits(key, pattern)).map_or(key, |(_, vector)| vector);
     format!("{group}/{kind}{key}")
 }
 

@@ -23,7 +23,7 @@ enum At {
 }
 
 /// Patterns, in which `*` stands for any letters and `#` for a whole number.
-const MASKS: [(At, &str, &str); 22] = [
+const MASKS: [(At, &str, &str); 23] = [
     (At::Key, "seconds*", "a time"),
     (At::Key, "steps_per_second", "from a time"),
     (At::Key, "residual", "what rounding leaves of the forces after a solve; its digits are those of rounding errors"),
@@ -39,6 +39,7 @@ const MASKS: [(At, &str, &str); 22] = [
     (At::Column, "gap max", "as the key certificate_gap"),
     (At::Before, "ms", "a time"),
     (At::Before, "us", "a time"),
+    (At::Before, "s with *", "a time of equations that take long"),
     (At::Before, "s, # lost", "the time of a study of stability"),
     (At::After, "springfit ", "the version"),
     (At::Line, "note: *: # of #", "progress, which is printed where work takes long"),
