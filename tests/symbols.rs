@@ -20,8 +20,9 @@ const FAST: [&str; 7] = [
 ];
 
 /// Parts of the symbols of a vector kernel: the function of `pulp` that is compiled for the instructions of the machine, and the
-/// instructions of the standard library, which are functions of their own where they were not inlined.
-const KERNEL: [&str; 2] = ["12imp_fastcall", "9core_arch"];
+/// instructions of the standard library, which are functions of their own where they were not inlined. Those of SSE2 are in hash tables.
+const KERNEL: [&str; 5] =
+    ["12imp_fastcall", "9core_arch3x863avx", "9core_arch3x864avx2", "9core_arch3x867avx512f", "9core_arch3x863fma"];
 
 /// The libraries of ours beside this binary, by package: of each the newest, which is that of this build.
 fn libraries() -> BTreeMap<String, PathBuf> {
