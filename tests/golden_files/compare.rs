@@ -27,7 +27,7 @@ pub struct Difference {
     pub place: String,
     pub expected: String,
     pub found: String,
-    /// Of two numbers, as a share of the larger one.
+    /// The difference of two numbers as a share of the larger one.
     pub relative: Option<f64>,
 }
 

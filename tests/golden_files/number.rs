@@ -30,7 +30,7 @@ pub fn pieces(line: &str) -> Vec<Piece<'_>> {
     found
 }
 
-/// The length of the number at the beginning, 0 if there is none.
+/// How many bytes the number at the beginning of the text has; 0 if the text begins with no number.
 fn length(bytes: &[u8]) -> usize {
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
     let sign = usize::from(matches!(bytes.first(), Some(b'-' | b'+')));

@@ -4,7 +4,7 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 use std::sync::Arc;
 
-/// Of the units of a figure.
+/// The units of a figure that make an inch.
 const PIXELS_AN_INCH: f32 = 96.0;
 /// What journals ask of pictures in colour.
 const DOTS_AN_INCH: f32 = 300.0;
@@ -12,9 +12,9 @@ const DOTS_AN_INCH: f32 = 300.0;
 /// The format of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// For LaTeX; its texts are texts.
+    /// A page for LaTeX, whose texts can be selected.
     Pdf,
-    /// Of 300 pixels an inch.
+    /// An image with 300 pixels an inch.
     Png,
 }
 

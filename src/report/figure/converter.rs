@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::thread;
 
-/// Of the package in `crates/pictures`.
+/// The name of the program of the package in `crates/pictures`.
 pub(super) const CONVERTER: &str = "springfit-pictures";
 
 /// Where it is: beside the running program, or in a folder of PATH; `None` if it is in neither.

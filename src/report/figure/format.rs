@@ -9,9 +9,9 @@ use std::path::Path;
 pub enum PictureFormat {
     /// Text, for browsers and drawing programs.
     Svg,
-    /// For LaTeX; its texts are texts.
+    /// A page for LaTeX, whose texts can be selected.
     Pdf,
-    /// Of 300 pixels an inch.
+    /// An image with 300 pixels an inch.
     Png,
 }
 

@@ -221,18 +221,16 @@ pub fn parse_toml<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
         let problem = format!("expected at most {LONGEST_TOML} bytes of TOML, found {}", text.len());
         return Err(Error::new(problem).of_kind(ErrorKind::Limit));
     }
-    let line = |span: Option<std::ops::Range<usize>>| span.map(|s| text[..s.start].matches('\n').count() + 1);
+    let line = |at: usize| text[..at].matches('\n').count() + 1;
     let place = |error: Error, at: Option<usize>| at.into_iter().fold(error, Error::on_line);
     let not_toml = |e: toml::de::Error| {
         let error = Error::new(format!("expected TOML: {}", one_line(e.message()))).of_kind(ErrorKind::Syntax);
-        place(error, line(e.span()))
+        place(error, e.span().map(|span| line(span.start)))
     };
     let root = DeTable::parse(text).map_err(not_toml)?;
     let start = root.span().start;
-    node::structure_of_text(root.into_inner(), start).map_err(|fault| {
-        let span = fault.place.map(|place| place..place);
-        on_line_of_key(place(keyed(&fault), line(span)), text)
-    })
+    node::structure_of_text(root.into_inner(), start)
+        .map_err(|fault| on_line_of_key(place(keyed(&fault), fault.place.map(line)), text))
 }
 
 /// Reads a table that is parsed already into a structure, as [`parse_toml`] does. Errors name the key but no line.

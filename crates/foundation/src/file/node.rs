@@ -42,14 +42,14 @@ struct Entry {
 #[derive(Debug)]
 pub(super) struct Fault {
     pub message: String,
-    /// Such as `load[0].force`; `None` of the whole text.
+    /// The key of what is wrong, such as `load[0].force`; it is empty if that is the whole text.
     pub key: Option<String>,
     /// The first byte of what is wrong.
     pub place: Option<usize>,
 }
 
 impl Fault {
-    /// With the way to the innermost value that is wrong, which is told first.
+    /// Adds the way to the value and its place, unless a value inside it has told its own.
     fn at(mut self, way: &Way, place: Option<usize>) -> Fault {
         self.key.get_or_insert_with(|| way.to_string());
         self.place = self.place.or(place);

@@ -63,7 +63,7 @@ impl FitOutcome {
         self.errors.get()?.frobenius
     }
 
-    /// The same errors in the induced 2-norm.
+    /// The relative errors of the elements in the induced 2-norm, as mean and maximum; `None` if they are not computed.
     pub fn spectral(&self) -> Option<Spread> {
         self.errors.get()?.spectral
     }
