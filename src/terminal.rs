@@ -56,6 +56,11 @@ const LONG: Duration = Duration::from_secs(10);
 const PAGE: usize = 120;
 const NARROWEST: usize = 40;
 
+/// A record as a JSON document.
+pub fn json_text(record: &impl Serialize) -> String {
+    serde_json::to_string_pretty(record).expect("keys are text") + "\n"
+}
+
 impl Stage {
     fn new(name: &str, done: usize) -> Stage {
         Stage { name: name.into(), start: Instant::now(), first: done, is_announced: false }
@@ -186,7 +191,7 @@ impl Terminal {
     /// # Errors
     /// As [`Terminal::print`].
     pub fn print_json(&mut self, record: &impl Serialize) -> Result<()> {
-        self.print_document(&(serde_json::to_string_pretty(record).expect("keys are text") + "\n"))
+        self.print_document(&json_text(record))
     }
 
     /// Names the files that were written; beside a document on standard error.

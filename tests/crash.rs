@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
@@ -29,8 +30,8 @@ const MOTION: &str = "[motion]\nduration = 0.01\nstep = 1e-3\nintegrator = \"new
                       gravity = [0, 0, -9.81]\n";
 const INDEX: &str = "title = \"own\"\n[[table]]\nname = \"A\"\ntitle = \"pulled\"\nkind = \"scenes\"\nload = \"tension\"\n\
                      columns = [\"e_rms\"]\n[[table.row]]\nobject = \"cube\"\nscene = \"run.toml\"\n";
-/// What stood in a file before; as a checkpoint it holds no states.
-const OLD: &str = "{\"fits\":{}}";
+/// What stands in the place of a folder.
+const OLD: &str = "of the user";
 const RUN: &str = "run run.toml --out out";
 const MOVED: &str = "run motion.toml --out out";
 const SAVED: &str = "run short.toml --out out --checkpoint out/state.json";
@@ -44,6 +45,8 @@ struct Case {
     folder: TempDir,
     arguments: Vec<String>,
     outputs: BTreeMap<String, Vec<u8>>,
+    /// With the list of these files, as the next run finds it.
+    former: BTreeMap<String, Vec<u8>>,
 }
 
 impl Case {
@@ -62,14 +65,15 @@ impl Case {
         fs::create_dir(folder.path().join("out")).unwrap();
         let command = command.replace("MESH", "cube.msh --scale 0.01 --young 10kPa --poisson 0.3");
         let arguments = command.split(' ').map(String::from).collect();
-        Case { folder, arguments, outputs: BTreeMap::new() }
+        Case { folder, arguments, outputs: BTreeMap::new(), former: BTreeMap::new() }
     }
 
     fn new(command: &str) -> Case {
         let mut case = Case::bare(command);
         let output = case.program().output().unwrap();
         assert!(output.status.success(), "{command}: {output:?}");
-        case.outputs = files(&case.out());
+        case.former = files(&case.out());
+        case.outputs = results(&case.out());
         case
     }
 
@@ -90,14 +94,14 @@ impl Case {
         command
     }
 
-    /// An empty folder `out`, or one with something old in place of every output.
+    /// An empty folder `out`, or one with the outputs of a former run.
     fn fresh(&self, old: bool) {
         let _ = fs::remove_dir_all(self.out());
         fs::create_dir(self.out()).unwrap();
-        for name in self.outputs.keys().filter(|_| old) {
+        for (name, content) in self.former.iter().filter(|_| old) {
             let path = self.out().join(name);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, OLD).unwrap();
+            fs::write(path, content).unwrap();
         }
     }
 
@@ -115,15 +119,13 @@ impl Case {
 
     /// Every file in `place` is whole, or what it was before; how many were begun beside them and left there.
     fn check(&self, place: &Path, old: bool, told: &str) -> usize {
-        let found = files(place);
-        let (begun, there): (Vec<_>, Vec<_>) = found.iter().partition(|(name, _)| name.ends_with(".partial"));
-        for (name, content) in there {
-            let kept = content == OLD.as_bytes();
-            let fine = if kept { old } else { self.outputs.contains_key(name) && self.is_whole(name, content) };
+        let found = results(place);
+        for (name, content) in &found {
+            let fine = self.outputs.contains_key(name) && self.is_whole(name, content);
             assert!(fine, "{}, {told}: {name} has {} bytes of a file", self.arguments.join(" "), content.len());
         }
         assert!(!old || self.outputs.keys().all(|name| found.contains_key(name)), "{told}: a file is gone");
-        begun.len()
+        [place, place.parent().unwrap()].map(begun_in).iter().sum()
     }
 
     fn check_complete(&self, status: ExitStatus, told: &str) {
@@ -146,20 +148,35 @@ impl Case {
                 std::thread::sleep(duration.mul_f64((i as f64 + 0.5) / moments as f64));
             } else {
                 let name = self.outputs.keys().nth(i / 2 % self.outputs.len()).unwrap();
-                let anew = || fs::metadata(self.out().join(name)).is_ok_and(|data| data.len() != OLD.len() as u64);
+                let place = || fs::metadata(self.out().join(name)).ok().map(|data| data.ino());
+                let before = place();
+                let anew = || place().is_some_and(|now| before != Some(now));
                 while !anew() && program.try_wait().unwrap().is_none() {}
                 std::thread::sleep(Duration::from_micros(40 * (i as u64 % 5)));
             }
             send(&mut program, signal);
             let status = program.wait().unwrap();
-            assert!(status.signal().is_some() || status.success(), "{told}: {status}");
+            let ended = status.signal().is_some() || status.success() || status.code() == Some(130);
+            assert!(ended, "{told}: {status}");
             let begun = self.check(&self.out(), old, &told);
-            assert!(begun <= usize::from(!status.success()), "{told}: {begun} files begun and left, {status}");
+            let killed = status.signal().is_some();
+            assert!(begun <= usize::from(killed), "{told}: {begun} files begun and left, {status}");
             if i % 5 == 0 {
                 self.check_complete(self.program().output().unwrap().status, &format!("{told}, run again"));
             }
         }
     }
+}
+
+/// Those that are results, by their paths.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    files(folder).into_iter().filter(|(name, _)| !name.starts_with(".springfit.")).collect()
+}
+
+/// How many files and folders are there that are not in their places.
+fn begun_in(folder: &Path) -> usize {
+    let names = fs::read_dir(folder).unwrap().flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+    names.filter(|name| name.ends_with(".partial")).count()
 }
 
 /// By their paths below the folder.
@@ -228,11 +245,18 @@ fn outputs_replace_files_and_are_not_written_into_them() {
         case.fresh(true);
         let second = case.folder.path().join("second");
         fs::create_dir(&second).unwrap();
-        for (i, name) in case.outputs.keys().enumerate() {
-            fs::hard_link(case.out().join(name), second.join(i.to_string())).unwrap();
-        }
+        let places: Vec<PathBuf> = (0..case.outputs.len()).map(|i| second.join(i.to_string())).collect();
+        case.outputs.keys().zip(&places).for_each(|(name, place)| fs::hard_link(case.out().join(name), place).unwrap());
         case.check_complete(case.program().output().unwrap().status, command);
-        assert!(files(&second).values().all(|content| content == OLD.as_bytes()), "{command}");
+        assert!(
+            places.iter().zip(case.outputs.values()).all(|(place, old)| fs::read(place).unwrap() == *old),
+            "{command}"
+        );
+        let replaced = |(name, place): (&String, &PathBuf)| {
+            let inode = |path: &Path| fs::metadata(path).unwrap().ino();
+            inode(&case.out().join(name)) != inode(place)
+        };
+        assert!(case.outputs.keys().zip(&places).all(replaced), "{command}");
     }
 }
 
@@ -274,13 +298,13 @@ fn a_full_disk_is_an_error_that_leaves_old_files() {
     for command in COMMANDS {
         let case = Case::new(command);
         case.fresh(true);
-        // Room for the old files, of one page each, and for one page less than the largest of the new ones; the mount ends with the
-        // script.
-        let largest = case.outputs.values().map(|content| content.len().div_ceil(4096)).max().unwrap_or(1).max(1);
+        // Room for the old files, and for one page less than the largest of the new ones; the mount ends with the script.
+        let pages = |content: &Vec<u8>| content.len().div_ceil(4096).max(1);
+        let largest = case.outputs.values().map(pages).max().unwrap_or(1);
         let script = format!(
             "cp -R out old && mount -t tmpfs -o size={}k none out && cp -R old/. out || exit 77\n\
              \"$@\"; code=$?; cp -R out seen; exit $code",
-            4 * (case.outputs.len() + largest - 1)
+            4 * (case.former.values().map(pages).sum::<usize>() + largest - 1)
         );
         let output = case.within(way, &script).output().unwrap();
         assert_clean(&output, "out/", "cannot be written: No space left on device");
@@ -355,9 +379,9 @@ fn an_interrupt_ends_a_long_fit_at_its_best_point() {
     fs::copy(seen.join("state.json"), case.out().join("state.json")).unwrap();
     let resumed = case.program().output().unwrap();
     assert!(resumed.status.success() && !told(&resumed).contains("it was ended early"), "{resumed:?}");
-    case.outputs = files(&case.out());
+    case.outputs = results(&case.out());
     case.check(&seen, false, "interrupted");
-    assert!(files(&seen).keys().eq(case.outputs.keys()));
+    assert!(results(&seen).keys().eq(case.outputs.keys()));
 }
 
 /// The motion after the fits would take long.
@@ -371,7 +395,7 @@ fn a_second_interrupt_ends_the_program_at_once() {
         let line = BufReader::new(program.stderr.as_mut().unwrap()).lines().next().unwrap().unwrap();
         assert!(line.contains("again to end at once"), "{line}");
         send(&mut program, "INT");
-        program.wait().unwrap().code() == Some(130) && files(&case.out()).keys().all(|name| name.contains("state.json"))
+        program.wait().unwrap().code() == Some(130) && files(&case.out()).keys().all(|name| name == "state.json")
     };
     assert!((0..5).any(|_| ends_at_once()));
 }

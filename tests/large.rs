@@ -131,7 +131,9 @@ fn the_study_of_stretches_has_all_its_parts() {
     let text = report::stretches_text(&study);
     assert!(text.contains("sampled cubic") && text.contains("100000") && text.contains("Force at the pulled end"));
     let folder = TempDir::new().unwrap();
-    let written = report::write_stretches(&study, folder.path()).unwrap();
+    let written =
+        report::write_stretches(&study, report::open_outputs(folder.path(), &report::STRETCHES_FILES, &[]).unwrap())
+            .unwrap();
     assert_eq!(written.len(), 6);
     assert!(std::fs::read_to_string(folder.path().join("force.svg")).unwrap().contains("sampled free rest"));
     for (law, stretch, error) in [

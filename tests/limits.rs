@@ -2,7 +2,7 @@
 
 use springfit::error::ErrorKind;
 use springfit::model::Network;
-use springfit::report::{NetworkFile, check_scene_outputs, network_csv, network_json};
+use springfit::report::{NetworkFile, network_csv, network_json, open_scene_outputs};
 use springfit::study::{Scene, run};
 use std::fs;
 use std::io::{self, Write};
@@ -196,14 +196,16 @@ fn outputs_that_cannot_be_written_are_found_before_the_work() {
     let scene = Scene::parse(&scene(1, "", more), Path::new("scene.toml")).unwrap();
     let made = TempDir::new().unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
-    let written = springfit::report::write_outputs(&outcome, scene.output(), made.path()).unwrap();
+    let written =
+        springfit::report::write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, made.path()).unwrap())
+            .unwrap();
     assert_eq!(written.len(), 10, "{written:?}");
     for path in written {
         let folder = TempDir::new().unwrap();
         let place = folder.path().join(path.file_name().unwrap());
-        check_scene_outputs(&scene, folder.path(), &[]).unwrap();
+        open_scene_outputs(&scene, folder.path()).unwrap();
         fs::create_dir(&place).unwrap();
-        let error = check_scene_outputs(&scene, folder.path(), &[]).unwrap_err();
+        let error = open_scene_outputs(&scene, folder.path()).unwrap_err();
         assert_eq!((error.kind(), error.file()), (ErrorKind::Io, Some(&*place)));
     }
 }

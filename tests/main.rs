@@ -28,6 +28,7 @@ mod explicit;
 mod exports;
 mod extremes;
 mod fields;
+mod files;
 mod fill_layers;
 mod fills;
 mod fits;

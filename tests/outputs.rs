@@ -1,7 +1,7 @@
 //! The files that a run writes.
 
 use springfit::model::{Lumping, lumped_masses};
-use springfit::report::{NetworkFile, notes, table, write_outputs};
+use springfit::report::{NetworkFile, notes, open_scene_outputs, table, write_outputs};
 use springfit::study::{Scene, run};
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn each_fit_has_a_file_of_its_own() {
     let scene = Scene::parse(&[SCENE, &fits.concat()].concat(), Path::new("scene.toml")).unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let written = write_outputs(&outcome, scene.output(), folder.path()).unwrap();
+    let written = write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
     let written: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     let modal = ["modal-0.1-bulk.csv", "modal-0.1-bulk-2.csv"];
     let others = ["mesh-2.csv", "fit.csv", "fit-2.csv", "A.csv", "a-2.csv", "points.csv"];
@@ -79,7 +79,8 @@ fn each_file_of_points_has_the_masses_of_its_network() {
         let scene = Scene::parse(&text(more), Path::new("scene.toml")).unwrap();
         let outcome = run(&scene, &mut |_| {}).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let written = write_outputs(&outcome, scene.output(), folder.path()).unwrap();
+        let written =
+            write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
         let names: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, expected);
         for (path, fit) in written[2..].iter().zip(&outcome.fits) {

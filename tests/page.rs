@@ -2,7 +2,7 @@
 
 use springfit::model::LengthSpring;
 use springfit::report::page::{PageRecord, page_html};
-use springfit::report::{Report, write_outputs};
+use springfit::report::{Report, open_scene_outputs, write_outputs};
 use springfit::study::{Outcome, Scene, run};
 use std::path::Path;
 
@@ -161,7 +161,8 @@ fn only_who_asks_has_a_page() {
         let text = [PLANE, FIT, "[output]\njson = false\n", &output].concat();
         let scene = Scene::parse(&text, Path::new("scene.toml")).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let written = write_outputs(&outcome(&text), scene.output(), folder.path()).unwrap();
+        let written =
+            write_outputs(&outcome(&text), scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
         let names: Vec<&str> = written.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, expected);
     }

@@ -234,7 +234,7 @@ fn an_index_of_ones_own_is_run_and_written() {
     let text = report::paper_text(&paper.tables[0]);
     assert!(text.contains("1.00 / 2.00") && text.contains("Differs from print, lloyd: made up"), "{text}");
     let out = folder.path().join("out");
-    let written = report::write_paper(&paper, &out).unwrap();
+    let written = report::write_paper(&paper, report::open_outputs(&out, &report::PAPER_FILES, &[]).unwrap()).unwrap();
     for name in ["a.csv", "b.csv", "paper.md", "scene.precision.svg"] {
         assert!(written.contains(&out.join(name)), "{written:?}");
     }

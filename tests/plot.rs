@@ -1,8 +1,8 @@
 //! Figures and tables for a paper, from the folder of a run.
 
 use springfit::report::{
-    Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, ResultTable, RunFolder, Shape,
-    write_convergence, write_outputs,
+    CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, ResultTable,
+    RunFolder, Shape, open_outputs, open_scene_outputs, write_convergence, write_outputs,
 };
 use springfit::study::{Scene, converge, run};
 use std::path::Path;
@@ -17,7 +17,7 @@ fn scene(name: &str, settings: &str) -> Scene {
 fn folder_of(scene: &Scene) -> TempDir {
     let outcome = run(scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    write_outputs(&outcome, scene.output(), folder.path()).unwrap();
+    write_outputs(&outcome, scene.output(), open_scene_outputs(scene, folder.path()).unwrap()).unwrap();
     folder
 }
 
@@ -249,7 +249,7 @@ fn a_deformation_shows_the_run_and_covers_what_is_behind() {
         let scene = scene(name, "\n[output]\nvtu = true\n");
         let outcome = run(&scene, &mut |_| {}).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        write_outputs(&outcome, scene.output(), folder.path()).unwrap();
+        write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
         let run = RunFolder::at(folder.path());
         let fit = &outcome.fits[1];
         let place = outcome.loads.iter().position(|known| known.name == load).unwrap();
@@ -281,7 +281,7 @@ fn charts_of_convergence_are_those_of_the_study() {
     let scene = scene("square_quad.toml", "");
     let study = converge(&scene, Some(3), &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    write_convergence(&study, folder.path()).unwrap();
+    write_convergence(&study, open_outputs(folder.path(), &CONVERGENCE_FILES, &[]).unwrap()).unwrap();
     let chart = chart_of(Figure::Convergence, &RunFolder::at(folder.path()), None);
     let load = &study.loads[0];
     let guides = chart.series.iter().filter(|series| series.shape == Shape::Guide).count();
@@ -364,7 +364,12 @@ fn a_run_leaves_no_file_of_the_former_one() {
     let folder = tempfile::tempdir().unwrap();
     let write = |settings: &str| {
         let scene = scene("square_quad.toml", settings);
-        write_outputs(&run(&scene, &mut |_| {}).unwrap(), scene.output(), folder.path()).unwrap();
+        write_outputs(
+            &run(&scene, &mut |_| {}).unwrap(),
+            scene.output(),
+            open_scene_outputs(&scene, folder.path()).unwrap(),
+        )
+        .unwrap();
     };
     let has = |name: &str| folder.path().join(name).exists();
     std::fs::write(folder.path().join("mine.vtu"), "of the user").unwrap();
@@ -381,11 +386,12 @@ fn a_run_leaves_no_file_of_the_former_one() {
     assert!(has("mine.vtu") && has("report.json"));
     let error = fault(Figure::Deformation, &run, Some(&fit), Some(&load));
     assert!(error.contains("mesh.vtu") && error.contains("is not there"), "{error}");
-    // A run without a report cannot be known to the next one.
+    // A run without a report is known to the next one as well.
     write("\n[output]\nvtu = true\nreport = false\n");
     assert!(!has("report.json") && has("mesh.vtu"));
     write("");
-    assert!(has("mesh.vtu"));
+    assert!(!has("mesh.vtu"));
+    std::fs::write(folder.path().join("mesh.vtu"), "of another run").unwrap();
     let error = fault(Figure::Deformation, &run, Some(&fit), Some(&load));
     assert!(error.contains("mesh.vtu") && error.contains("of another run"), "{error}");
 }
@@ -395,10 +401,20 @@ fn a_run_leaves_no_file_of_the_former_one() {
 fn a_run_removes_no_input() {
     let folder = tempfile::tempdir().unwrap();
     let first = scene("square_quad.toml", "\n[output]\nvtu = true\n");
-    write_outputs(&run(&first, &mut |_| {}).unwrap(), first.output(), folder.path()).unwrap();
+    write_outputs(
+        &run(&first, &mut |_| {}).unwrap(),
+        first.output(),
+        open_scene_outputs(&first, folder.path()).unwrap(),
+    )
+    .unwrap();
     let text = "[mesh]\nfile = \"mesh.vtu\"\n[material]\nyoung = 1e4\npoisson = 0.3\nplane = \"stress\"\n[[fit]]\nobjective = \"exact\"\n";
     let second = Scene::parse(text, &folder.path().join("scene.toml")).unwrap();
-    write_outputs(&run(&second, &mut |_| {}).unwrap(), second.output(), folder.path()).unwrap();
+    write_outputs(
+        &run(&second, &mut |_| {}).unwrap(),
+        second.output(),
+        open_scene_outputs(&second, folder.path()).unwrap(),
+    )
+    .unwrap();
     assert!(folder.path().join("mesh.vtu").exists());
 }
 

@@ -235,15 +235,9 @@ impl Network {
         })?;
         let written = apart(py, || {
             let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
-            report::check_outputs(&folder, &names, &[])?;
-            fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;
-            let mut paths = Vec::new();
-            for (name, content) in &files {
-                let path = folder.join(name);
-                content.write(&path)?;
-                paths.push(path);
-            }
-            Ok(paths)
+            let mut edition = report::open_outputs(&folder, &names, &[])?;
+            files.iter().try_for_each(|(name, content)| edition.write(name, |path| content.write(path)))?;
+            edition.publish()
         });
         Ok((written.map_err(|error| raised(py, error))?, left_out, target.command))
     }

@@ -31,15 +31,14 @@ pub fn run<'py>(
     let (text, path) = text_of(py, scene, &folder)?;
     let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
     let scene = scene.map_err(|error| raised(py, keyless(error)))?;
-    if let Some(out) = &out {
-        apart(py, || report::check_scene_outputs(&scene, out, &[])).map_err(|error| raised(py, error))?;
-    }
+    let open = |out: PathBuf| apart(py, || report::open_scene_outputs(&scene, &out));
+    let edition = out.map(open).transpose().map_err(|error| raised(py, error))?;
     let (scene, outcome) = progress::run(py, progress, move |told| {
         let outcome = run_with(&scene, &Controls::default(), told)?;
         Ok((scene, outcome))
     })?;
-    let write = |out: PathBuf| apart(py, || report::write_outputs(&outcome, scene.output(), &out));
-    let written = out.map(write).transpose().map_err(|error| raised(py, error))?;
+    let write = |edition| apart(py, || report::write_outputs(&outcome, scene.output(), edition));
+    let written = edition.map(write).transpose().map_err(|error| raised(py, error))?;
     Ok((report::report(&outcome), displacements(py, &outcome), written.unwrap_or_default()))
 }
 

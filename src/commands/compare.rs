@@ -6,6 +6,7 @@ use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use serde::Serialize;
+use springfit::Edition;
 use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::Solver;
@@ -68,7 +69,6 @@ impl Compare {
         let names: &[&str] = if self.law.is_some() { &report::STRETCHES_FILES } else { &report::COMPARISON_FILES };
         let mut inputs = vec![PathBuf::from(&self.what)];
         inputs.extend(self.law.as_ref().map(PathBuf::from));
-        report::check_outputs(&folder, names, &inputs)?;
         self.check_options(is_scene(path))?;
         let mut progress = |event: Event| terminal.show(event);
         if is_scene(path) {
@@ -80,12 +80,13 @@ impl Compare {
                 self.output.print_plan(terminal, &forecast, text)?;
                 return Ok(ExitCode::SUCCESS);
             }
-            report::check_outputs(&folder, names, &scene.inputs())?;
+            let edition = report::open_outputs(&folder, names, &scene.inputs())?;
             let outcome = study::compare_scene(&scene, &mut progress)?;
             outcome.assumed.iter().for_each(|assumed| progress(Event::Note(assumed)));
-            self.print(terminal, &Comparison::of_scene(&outcome), || report::Report::of(&outcome), &folder)
+            self.print(terminal, &Comparison::of_scene(&outcome), || report::Report::of(&outcome), edition)
         } else {
             self.settings.expect_none()?;
+            let edition = report::open_outputs(&folder, names, &inputs)?;
             let element = Element::load(&self.what)?;
             let plane = self.plane.map(Into::into);
             let poisson = self.poisson.unwrap_or(0.3);
@@ -97,7 +98,7 @@ impl Compare {
                 let study = study::compare_stretches(&element, material, law, stretch, &mut progress);
                 let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
                 let study = study.map_err(|e| e.placed(law))?;
-                let paths = report::write_stretches(&study, &folder);
+                let paths = report::write_stretches(&study, edition);
                 let tables = || report::stretches_tables(&study);
                 self.output.print(terminal, || &study, tables, || report::stretches_text(&study))?;
                 terminal.written(&paths?)?;
@@ -112,7 +113,7 @@ impl Compare {
                 .map_err(|e| e.placed(Error::of_option))?;
             let title = format!("{}: {shapes} random shapes, nu = {poisson}, one thread", element.name);
             let comparison = Comparison::of_element(title, &outcomes, material.young());
-            self.print(terminal, &comparison, || &outcomes, &folder)
+            self.print(terminal, &comparison, || &outcomes, edition)
         }
     }
 
@@ -147,9 +148,9 @@ impl Compare {
         terminal: &mut Terminal,
         comparison: &Comparison,
         record: impl FnOnce() -> R,
-        folder: &Path,
+        edition: Edition,
     ) -> Result<ExitCode> {
-        let paths = comparison.write(folder);
+        let paths = comparison.write(edition);
         self.output.print(terminal, record, || vec![comparison.result_table()], || comparison.table())?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)

@@ -1,14 +1,17 @@
 //! `springfit converge`.
 
+use super::interrupt::{Answer, interrupted};
 use super::output::OutputOptions;
 use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::report;
-use springfit::study::{self, Event, Forecast, Scene, stages};
+use springfit::study::{self, Convergence, Event, Forecast, Scene, stages};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Refine the mesh of a scene, and report how finite elements and networks converge
 #[derive(Args)]
@@ -59,17 +62,35 @@ impl Converge {
         let truth = self.truth.as_ref().map(|path| self.settings.reference(path)).transpose()?;
         let inputs: Vec<PathBuf> =
             [Some(&scene), truth.as_ref()].into_iter().flatten().flat_map(Scene::inputs).collect();
-        report::check_outputs(&folder, &report::CONVERGENCE_FILES, &inputs)?;
-        let mut show = |event: Event| terminal.show(event);
-        let convergence = match &truth {
-            None => study::converge(&scene, self.levels, &mut show),
-            Some(truth) => study::converge_to(&scene, truth, self.levels, &mut show),
+        let open = || report::open_outputs(&folder, &report::CONVERGENCE_FILES, &inputs);
+        let mut edition = Some(open()?);
+        let so_far: Arc<Mutex<String>> = Arc::default();
+        let told = so_far.clone();
+        interrupted(move || {
+            // The files have it as well. Whoever reads may have gone away.
+            let text = told.lock().unwrap_or_else(PoisonError::into_inner);
+            _ = std::io::stdout().write_all(text.as_bytes()).and_then(|()| std::io::stdout().flush());
+            Answer::Ends
+        });
+        let mut paths = Vec::new();
+        let mut each = |convergence: &Convergence| {
+            let opened = edition.take().map_or_else(open, Ok)?;
+            paths = report::write_convergence(convergence, opened)?;
+            edition = Some(open()?);
+            *so_far.lock().unwrap_or_else(PoisonError::into_inner) = self.text(convergence);
+            Ok(())
         };
+        let mut show = |event: Event| terminal.show(event);
+        let convergence = study::converge_with(&scene, truth.as_ref(), self.levels, &mut each, &mut show);
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
-        let paths = report::write_convergence(&convergence, &folder);
-        let tables = || report::convergence_tables(&convergence);
-        self.output.print(terminal, || &convergence, tables, || report::convergence_text(&convergence))?;
-        terminal.written(&paths?)?;
+        self.output.print_text(terminal, &self.text(&convergence))?;
+        terminal.written(&paths)?;
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// What is printed of the levels.
+    fn text(&self, convergence: &Convergence) -> String {
+        let tables = || report::convergence_tables(convergence);
+        self.output.text(|| convergence, tables, || report::convergence_text(convergence))
     }
 }

@@ -6,7 +6,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::export::{target_list, target_named};
-use springfit::report::{NetworkFile, NetworkRecord, check_outputs, read_network};
+use springfit::report::{NetworkFile, NetworkRecord, open_outputs, read_network};
 use springfit::study::{Controls, run_with};
 use springfit::unknown;
 use std::path::PathBuf;
@@ -49,18 +49,14 @@ impl Export {
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{}", target.name)));
         let gravity = self.gravity.as_deref().map(numbers).transpose()?;
         let is_network = self.network.extension().is_some_and(|ending| ending == "json");
-        let (network, has_loads) = if is_network { (self.read()?, false) } else { self.fitted(terminal)? };
+        let mut inputs = vec![self.network.clone()];
+        let (network, has_loads) = if is_network { (self.read()?, false) } else { self.fitted(terminal, &mut inputs)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
-        check_outputs(&folder, &names, std::slice::from_ref(&self.network))?;
-        std::fs::create_dir_all(&folder).map_err(|e| Error::io("the folder cannot be created", e).in_file(&folder))?;
-        let mut written = Vec::new();
-        for (name, content) in &files {
-            let path = folder.join(name);
-            content.write(&path)?;
-            written.push(path);
-        }
+        let mut edition = open_outputs(&folder, &names, &inputs)?;
+        files.iter().try_for_each(|(name, content)| edition.write(name, |path| content.write(path)))?;
+        let written = edition.publish()?;
         terminal.print(&summary(&network))?;
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
@@ -84,9 +80,10 @@ impl Export {
         read_network(&self.network)
     }
 
-    /// The network of one fit of a scene, and whether the scene has loads.
-    fn fitted(&self, terminal: &mut Terminal) -> Result<(NetworkRecord, bool)> {
+    /// The network of one fit of a scene, and whether the scene has loads; adds the files of the scene to `inputs`.
+    fn fitted(&self, terminal: &mut Terminal, inputs: &mut Vec<PathBuf>) -> Result<(NetworkRecord, bool)> {
         let scene = self.settings.scene(&self.network)?;
+        inputs.extend(scene.inputs());
         let names = || scene.fits().iter().map(|fit| fit.name.as_str());
         let chosen = match &self.fit {
             None => &scene.fits()[0],

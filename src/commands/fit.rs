@@ -1,15 +1,16 @@
 //! `springfit fit`.
 
-use super::interrupt::end_early;
+use super::interrupt;
 use super::mesh_file::MeshOptions;
 use super::output::{OutputOptions, command};
 use super::state::State;
 use crate::terminal::Terminal;
-use clap::Args;
+use clap::{Args, ValueEnum};
+use springfit::Sum;
 use springfit::element::SpringKind;
 use springfit::error::{Error, ErrorKind, Result};
-use springfit::material::{CellMap, Material, MaterialMap};
-use springfit::mesh::{Mesh, Selection, listed_endings};
+use springfit::material::{CellMap, Material, MaterialMap, Moduli};
+use springfit::mesh::{Mesh, MeshSource, Selection, listed_endings};
 use springfit::model::{Support, is_exact, length_shares};
 use springfit::quantity::Quantity;
 use springfit::range;
@@ -149,7 +150,7 @@ impl Fit {
             return Err(Error::expected("--output", expected, self.output.display()).of_kind(ErrorKind::Unsupported));
         }
         let elements = self.options.elements().iter().chain(&self.law).map(PathBuf::from);
-        let inputs: Vec<PathBuf> = [self.mesh.clone()].into_iter().chain(elements).collect();
+        let inputs: Vec<PathBuf> = MeshSource::files(&self.mesh).into_iter().chain(elements).collect();
         springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
         springfit::check_file(&self.output)?;
         let given =
@@ -198,7 +199,7 @@ impl Fit {
         forecast.announcement().iter().for_each(|words| terminal.note(words));
         let controls = Arc::new(Controls::default());
         if whole {
-            end_early(&controls);
+            interrupt::end_early(&controls);
         }
         let body = support.as_ref().map(|support| WholeBody::new(&mesh, material, support, &controls));
         let reference = Reference { whole: body.as_ref(), ..Reference::default() };
@@ -250,7 +251,7 @@ impl Fit {
                 mesh: format!("{:08x}", mesh.checksum()),
                 points: mesh.point_count(),
                 cells,
-                fit: format!("{:?} {:?} {material:?}", named.recipe, named.springs),
+                fit: self.identity(material)?,
                 is_exact: is_exact(&fitted.cells),
                 is_numbered: mesh.numbering.is_some(),
             },
@@ -268,14 +269,32 @@ impl Fit {
         Ok(ExitCode::SUCCESS)
     }
 
+    /// What tells the shards of one fit and material from those of another: keys, values and the sums of files that are read.
+    fn identity(&self, material: Material) -> Result<String> {
+        let mut set = self.entry().identity();
+        let Moduli { lambda, mu } = material.moduli();
+        set.extend([format!("lambda = {lambda:e}"), format!("mu = {mu:e}")]);
+        let plane = self.plane.and_then(|plane| plane.to_possible_value());
+        set.extend(plane.map(|plane| format!("plane = {}", plane.get_name())));
+        for path in self.options.elements().iter().chain(&self.law).map(Path::new).filter(|path| path.is_file()) {
+            let sum = Sum::of_file(path).map_err(|e| Error::io("cannot be read", e).in_file(path))?;
+            set.push(format!("file = {sum}"));
+        }
+        Ok(set.join("\n"))
+    }
+
     /// What the options say of the fit.
     fn named_fit(&self) -> Result<NamedFit> {
+        Ok(self.entry().fits(Path::new("")).map_err(|e| e.placed(|e| self.of_option(e)))?.remove(0))
+    }
+
+    fn entry(&self) -> FitEntry {
         // The fit that gives the material itself; all others miss some of it on some meshes.
         let objective = self.objective.clone().unwrap_or("exact".into());
         let mut shapes = toml::Table::new();
         shapes.extend(self.shapes.map(|count| ("count".into(), (count as i64).into())));
         shapes.extend(self.stretch.map(|stretch| ("stretch".into(), stretch.into())));
-        let entry = FitEntry::new(objective)
+        FitEntry::new(objective)
             .with_springs(self.springs.clone())
             .with("energy", self.energy.clone())
             .with("shear", self.shear.clone())
@@ -290,8 +309,7 @@ impl Fit {
             .with("gap", self.gap)
             .with("force", self.force.clone())
             .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
-            .with("law", self.law.clone());
-        Ok(entry.fits(Path::new("")).map_err(|e| e.placed(|e| self.of_option(e)))?.remove(0))
+            .with("law", self.law.clone())
     }
 
     /// The groups that are held.

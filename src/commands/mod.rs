@@ -28,6 +28,8 @@ mod stability;
 mod state;
 mod sweep;
 
+pub use interrupt::answer as answer_interrupts;
+
 use crate::terminal::Terminal;
 use clap::Subcommand;
 use springfit::error::Result;

@@ -1,11 +1,12 @@
 //! How results are printed.
 
-use crate::terminal::Terminal;
+use crate::terminal::{Terminal, json_text};
 use clap::Args;
 use serde::Serialize;
 use springfit::error::{Error, Result};
 use springfit::report::{self, Markup, Report, ResultTable};
 use springfit::study::Outcome;
+use springfit::text::printable_lines;
 
 /// The options of a command that prints tables.
 #[derive(Args)]
@@ -36,11 +37,30 @@ impl OutputOptions {
         tables: impl FnOnce() -> Vec<ResultTable>,
         text: impl FnOnce() -> String,
     ) -> Result<()> {
-        match (self.json, self.table) {
-            (true, _) => terminal.print_json(&record()),
-            (false, Some(markup)) => terminal.print_document(&markup.tables(&tables())),
-            (false, None) => terminal.print(&text()),
-        }
+        self.print_text(terminal, &self.text(record, tables, text))
+    }
+
+    /// Prints what [`OutputOptions::text`] has made.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn print_text(&self, terminal: &mut Terminal, text: &str) -> Result<()> {
+        if self.is_text() { terminal.print(text) } else { terminal.print_document(text) }
+    }
+
+    /// What is printed of a result.
+    pub fn text<R: Serialize>(
+        &self,
+        record: impl FnOnce() -> R,
+        tables: impl FnOnce() -> Vec<ResultTable>,
+        text: impl FnOnce() -> String,
+    ) -> String {
+        let text = match (self.json, self.table) {
+            (true, _) => json_text(&record()),
+            (false, Some(markup)) => markup.tables(&tables()),
+            (false, None) => text(),
+        };
+        printable_lines(&text).into_owned()
     }
 
     /// The same of an outcome, with its notes, which a report has as well.

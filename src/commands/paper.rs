@@ -4,7 +4,7 @@ use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::report::{self, check_outputs};
+use springfit::report::{self, open_outputs};
 use springfit::study::{self, Index};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,19 +33,27 @@ Examples:
   springfit paper --only 1 --table latex
   springfit paper --index my-experiments/index.toml";
 
+/// The folder of the experiments, in that of the tables.
+const SCENES: &str = "scenes";
+
 impl Paper {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
-        check_outputs(&folder, &report::PAPER_FILES, self.index.as_slice())?;
         let index = self.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
         index.expect(&self.only).map_err(|e| e.at_key("--only"))?;
+        let mut edition = open_outputs(&folder, &report::PAPER_FILES, self.index.as_slice())?;
         let path = match &self.index {
             Some(path) => path.clone(),
-            None => study::write_experiments(&folder.join("scenes"))?,
+            None => {
+                study::check_experiments(&folder.join(SCENES))?;
+                let path = study::write_experiments(&edition.staging().join(SCENES))?;
+                edition.take_folder(SCENES)?;
+                path
+            }
         };
         let paper = study::run_paper(&index, &self.only, &path, &mut |event| terminal.show(event));
         let paper = paper.map_err(|e| e.placed(Error::of_option))?;
-        let written = report::write_paper(&paper, &folder);
+        let written = report::write_paper(&paper, edition);
         self.output.print(
             terminal,
             || &paper.tables,

@@ -5,7 +5,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
 use springfit::referee::{RefereeOptions, engine_list, engine_named, referee};
-use springfit::report::{self, REFEREE_FILES, check_outputs};
+use springfit::report::{self, REFEREE_FILES, open_outputs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -46,10 +46,13 @@ Examples:
 
 Simulators:";
 
+/// The folder of the scripts, in that of the numbers.
+const SCRIPTS: &str = "scripts";
+
 impl Referee {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("referee"));
-        check_outputs(&folder, &REFEREE_FILES, &[])?;
+        let mut edition = open_outputs(&folder, &REFEREE_FILES, &[])?;
         let options = RefereeOptions {
             engines: self.engine.iter().map(|name| engine_named(name)).collect::<Result<_>>()?,
             solvers: self.solver.clone(),
@@ -57,10 +60,11 @@ impl Referee {
             poisson: if self.poisson.is_empty() { vec![0.3, 0.45] } else { self.poisson.clone() },
             python: self.python.clone(),
             node: self.node.clone(),
-            folder: folder.join("scripts"),
+            folder: edition.staging().join(SCRIPTS),
         };
         let record = referee(&options, &mut |event| terminal.show(event))?;
-        let paths = report::write_referee(&record, &folder);
+        edition.take_folder(SCRIPTS)?;
+        let paths = report::write_referee(&record, edition);
         let tables = || report::referee_tables(&record);
         self.output.print(terminal, || &record, tables, || report::referee_text(&record))?;
         terminal.written(&paths?)?;

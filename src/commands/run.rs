@@ -58,7 +58,7 @@ impl Run {
         }
         let stem = self.scene.file_stem().unwrap_or_default();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
-        report::check_scene_outputs(&scene, &folder, &[])?;
+        let edition = report::open_scene_outputs(&scene, &folder)?;
         let controls =
             Arc::new(Controls { checkpoint: self.checkpoint.clone(), announce: true, ..Controls::default() });
         if scene.fits().iter().any(|fit| fit.recipe.whole().is_some()) {
@@ -73,7 +73,7 @@ impl Run {
         let mut outcome = run_with(&scene, &controls, &mut |event| terminal.show(event))?;
         outcome.command = Some(command());
         // Files first: who reads the table may have gone away.
-        let paths = report::write_outputs(&outcome, scene.output(), &folder);
+        let paths = report::write_outputs(&outcome, scene.output(), edition);
         self.output.print_outcome(terminal, &outcome)?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)

@@ -38,24 +38,20 @@ impl Stability {
         let stem = what.map(|what| Path::new(what).file_stem().unwrap_or_default().to_string_lossy());
         let name = stem.map_or("stability".to_string(), |stem| format!("stability-{stem}"));
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(name));
-        report::check_outputs(
-            &folder,
-            &report::STABILITY_FILES,
-            &what.map(PathBuf::from).into_iter().collect::<Vec<_>>(),
-        )?;
         let mut progress = |event: Event| terminal.show(event);
-        let outcome = match what {
+        let open = |inputs: &[PathBuf]| report::open_outputs(&folder, &report::STABILITY_FILES, inputs);
+        let (edition, outcome) = match what {
             Some(path) if is_scene(Path::new(path)) => {
                 let scene = self.settings.scene(Path::new(path))?;
-                report::check_outputs(&folder, &report::STABILITY_FILES, &scene.inputs())?;
-                study::stability_of_scene(&scene, &mut progress)?
+                (open(&scene.inputs())?, study::stability_of_scene(&scene, &mut progress)?)
             }
             _ => {
                 self.settings.expect_none()?;
-                study::stability(what.map(Element::load).transpose()?, &mut progress)?
+                let edition = open(&what.map(PathBuf::from).into_iter().collect::<Vec<_>>())?;
+                (edition, study::stability(what.map(Element::load).transpose()?, &mut progress)?)
             }
         };
-        let paths = report::write_stability(&outcome, &folder);
+        let paths = report::write_stability(&outcome, edition);
         let tables = || vec![report::stability_table(&outcome)];
         self.output.print(terminal, || &outcome, tables, || report::stability_text(&outcome))?;
         terminal.written(&paths?)?;

@@ -67,7 +67,7 @@ impl Sweep {
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep-{stem}")));
         let name = shard.file_name("table", "csv");
-        report::check_outputs(&folder, &[&name], std::slice::from_ref(&self.scene))?;
+        report::check_study_table(&folder.join(&name), std::slice::from_ref(&self.scene))?;
         let mut lines = StudyLines::open(&folder, shard, self.resume, &sweep)?;
         let own: HashSet<&str> =
             (0..marks.len()).filter(|place| shard.has(*place)).map(|place| marks[place].as_str()).collect();

@@ -174,7 +174,7 @@ impl Session {
         let said = String::from_utf8_lossy(&said);
         let last = said.lines().rev().map(str::trim).find(|line| !line.is_empty()).unwrap_or("it said nothing");
         let last: String = last.chars().take(200).collect();
-        Error::new(format!("{} ended early: {last}", self.program.display())).in_file(&self.log)
+        Error::new(format!("{} ended early: {last}", self.program.display()))
     }
 }
 

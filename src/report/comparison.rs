@@ -7,9 +7,10 @@ use super::rows::csv;
 use super::table::summary_line;
 use super::write_files;
 use crate::error::{Error, Result};
+use crate::file::Edition;
 use crate::study::{EffectiveModuli, MethodOutcome, Outcome};
 use crate::text::printable;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What [`Comparison::write`] writes.
 pub const COMPARISON_FILES: [&str; 2] = ["table.csv", "plot.svg"];
@@ -144,14 +145,14 @@ impl Comparison {
         csv(&texts(&self.columns), &self.rows)
     }
 
-    /// Writes `table.csv` and `plot.svg` into `folder`, and returns the paths.
+    /// Writes `table.csv` and `plot.svg`, and returns the paths.
     ///
     /// # Errors
-    /// Nothing can be plotted; the folder or a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+    /// Nothing can be plotted; a file cannot be written, and the folder is as it was.
+    pub fn write(&self, edition: Edition) -> Result<Vec<PathBuf>> {
         let [table, plot] = COMPARISON_FILES;
         let files = [(table, self.csv()), (plot, self.plot()?)];
-        write_files(folder, &files)
+        write_files(edition, &files)
     }
 
     /// Error against seconds per element, both logarithmic; an SVG file's text.

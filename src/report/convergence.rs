@@ -7,10 +7,11 @@ use super::rows::csv;
 use super::table::size;
 use super::write_files;
 use crate::error::Result;
+use crate::file::Edition;
 use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, rates};
 use crate::text::printable;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn headings() -> [Heading; 11] {
     [
@@ -219,11 +220,11 @@ pub fn convergence_csv(convergence: &Convergence) -> String {
 /// What [`write_convergence`] writes.
 pub const CONVERGENCE_FILES: [&str; 2] = [CONVERGENCE_TABLE, "converge.svg"];
 
-/// Writes `converge.csv` and, where any error is above zero, `converge.svg` into `folder`, and returns the paths.
+/// Writes `converge.csv` and, where any error is above zero, `converge.svg`, and returns the paths.
 ///
 /// # Errors
-/// The plot cannot be drawn; the folder or a file cannot be written.
-pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec<PathBuf>> {
+/// The plot cannot be drawn; a file cannot be written, and the folder is as it was.
+pub fn write_convergence(convergence: &Convergence, edition: Edition) -> Result<Vec<PathBuf>> {
     let [table, figure] = CONVERGENCE_FILES;
     let text = convergence_csv(convergence);
     let charts = convergence_charts(&text)?;
@@ -232,5 +233,5 @@ pub fn write_convergence(convergence: &Convergence, folder: &Path) -> Result<Vec
     if !charts.is_empty() {
         files.push((figure, stacked(&title, &charts, Columns::Two)?));
     }
-    write_files(folder, &files)
+    write_files(edition, &files)
 }

@@ -67,7 +67,7 @@ pub use material_record::NetworkMaterialRecord;
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
-pub use outputs::{check_outputs, check_scene_outputs};
+pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
 pub use pictures::{displacement_grid, network_grid};
@@ -83,88 +83,71 @@ pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stab
 pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_stretches};
 pub use study_lines::StudyLines;
 pub use study_record::StudyRecord;
-pub use study_table::{StudyTable, planned_table, planned_text, studies_table, studies_text};
+pub use study_table::{StudyTable, check_study_table, planned_table, planned_text, studies_table, studies_text};
 pub use table::{notes, notes_beside_summary, summary, table};
 pub use typeset::Markup;
 
 use crate::error::Result;
-use crate::file::{create_folder, write_whole, write_with};
+use crate::file::{Edition, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
 use crate::text::printable_lines;
-use former::remove_former;
 use outputs::{PAGE, POINTS, REPORT, Stems};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 
-/// Writes what `output` asks for into `folder`, and returns the paths. What the report of a former run in the folder lists is
-/// removed first, except inputs of this run, so that all files there are of one run.
+/// Writes what `output` asks for, and returns the paths. All files in the folder that are of runs are of this one then.
 ///
 /// # Errors
-/// The folder or a file cannot be written, or a file of the former run cannot be removed.
-pub fn write_outputs(outcome: &Outcome, output: &Output, folder: &Path) -> Result<Vec<PathBuf>> {
+/// A file cannot be written; the folder is as it was.
+pub fn write_outputs(outcome: &Outcome, output: &Output, mut edition: Edition) -> Result<Vec<PathBuf>> {
     let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
     let names = models().map(|model| model.name.as_str());
     let Stems { fits: stems, motions, points } = Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
     let moved = || models().zip(&motions);
-    let mut written = Vec::new();
-    let reports = output.report != Some(false);
-    let tables = output.csv && !outcome.fits.is_empty();
-    let networks = output.json != Some(false) && !outcome.fits.is_empty();
-    if tables || networks || moved().next().is_some() || output.vtu || reports {
-        create_folder(folder)?;
+    let fits = || outcome.fits.iter().zip(&stems);
+    if output.csv {
+        for (fit, stem) in fits() {
+            let write = |to: &mut dyn Write| network_csv(&outcome.mesh, &fit.network, to);
+            edition.write(&format!("{stem}.csv"), |path| write_with(path, write))?;
+        }
+        for (fit, name) in outcome.fits.iter().zip(&points_names(outcome, points)) {
+            let write = |to: &mut dyn Write| points_csv(&NetworkFile::of(outcome, fit), to);
+            edition.write(name, |path| write_with(path, write))?;
+        }
     }
-    remove_former(folder, &outcome.inputs)?;
-    for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| tables) {
-        let path = folder.join(format!("{stem}.csv"));
-        write_with(&path, |to| network_csv(&outcome.mesh, &fit.network, to))?;
-        written.push(path);
-    }
-    let names = points_names(outcome, points);
-    for (fit, name) in outcome.fits.iter().zip(&names).filter(|_| tables) {
-        let path = folder.join(name);
-        write_with(&path, |to| points_csv(&NetworkFile::of(outcome, fit), to))?;
-        written.push(path);
-    }
-    for (fit, stem) in outcome.fits.iter().zip(&stems).filter(|_| networks) {
-        let path = folder.join(format!("{stem}.json"));
-        write_with(&path, |to| network_json(&NetworkFile::of(outcome, fit), to))?;
-        written.push(path);
+    for (fit, stem) in fits().filter(|_| output.json != Some(false)) {
+        let write = |to: &mut dyn Write| network_json(&NetworkFile::of(outcome, fit), to);
+        edition.write(&format!("{stem}.json"), |path| write_with(path, write))?;
     }
     for (model, stem) in moved() {
-        let path = folder.join(format!("{stem}.csv"));
-        write_whole(&path, motion_csv(model).as_bytes())?;
-        written.push(path);
+        edition.write(&format!("{stem}.csv"), |path| write_whole(path, motion_csv(model).as_bytes()))?;
     }
     if output.vtu {
-        let mesh = folder.join("mesh.vtu");
-        vtk::write(&mesh, &displacement_grid(outcome))?;
-        written.push(mesh);
-        for (fit, stem) in outcome.fits.iter().zip(&stems) {
-            let path = folder.join(format!("{stem}.vtu"));
-            vtk::write(&path, &network_grid(&NetworkFile::of(outcome, fit)))?;
-            written.push(path);
+        edition.write("mesh.vtu", |path| vtk::write(path, &displacement_grid(outcome)))?;
+        for (fit, stem) in fits() {
+            let grid = || network_grid(&NetworkFile::of(outcome, fit));
+            edition.write(&format!("{stem}.vtu"), |path| vtk::write(path, &grid()))?;
         }
         for (model, stem) in moved().filter(|(model, _)| !model.states.is_empty()) {
-            written.push(write_series(outcome, model, stem, folder)?);
+            write_series(outcome, model, stem, &mut edition)?;
         }
     }
-    let later = [(reports, REPORT), (output.has_page(), PAGE)]
-        .into_iter()
-        .filter_map(|(is_written, name)| is_written.then_some(name));
-    let names = written.iter().filter_map(|path| Some(path.strip_prefix(folder).ok()?.to_string_lossy().into_owned()));
-    let files = names.chain(later.map(String::from)).collect();
-    // Last: where it is, the others are.
+    let reports = output.report != Some(false);
+    let later = [(reports, REPORT), (output.has_page(), PAGE)];
+    let later = later.into_iter().filter_map(|(is_written, name)| is_written.then(|| name.to_string()));
+    // The pictures of a motion are named by its collection.
+    let files = edition.names().iter().filter(|name| !name.contains('/')).cloned().chain(later).collect();
     if reports {
-        let path = folder.join(REPORT);
-        write_whole(&path, Report { files, ..Report::of(outcome) }.text().as_bytes())?;
-        written.push(path);
+        let text = Report { files, ..Report::of(outcome) }.text();
+        edition.write(REPORT, |path| write_whole(path, text.as_bytes()))?;
     }
     if output.has_page() {
-        let path = folder.join(PAGE);
-        write_with(&path, |to| page_html(outcome, to))?;
-        written.push(path);
+        edition.write(PAGE, |path| write_with(path, |to| page_html(outcome, to)))?;
     }
-    Ok(written)
+    let folder = edition.folder().to_path_buf();
+    let paths = edition.publish()?.into_iter();
+    Ok(paths.filter(|path| path.parent() == Some(&folder)).collect())
 }
 
 /// One file of points if all networks have the same masses, otherwise one for each fit.
@@ -177,13 +160,10 @@ fn points_names(outcome: &Outcome, stems: Vec<String>) -> Vec<String> {
     }
 }
 
-/// Writes texts under their names into `folder`, and returns the paths.
-fn write_files<N: AsRef<Path>>(folder: &Path, files: &[(N, String)]) -> Result<Vec<PathBuf>> {
-    create_folder(folder)?;
-    let write = |(name, text): &(N, String)| {
-        let path = folder.join(name);
-        write_whole(&path, printable_lines(text).as_bytes())?;
-        Ok(path)
-    };
-    files.iter().map(write).collect()
+/// Writes texts under their names, and returns the paths.
+fn write_files<N: AsRef<str>>(mut edition: Edition, files: &[(N, String)]) -> Result<Vec<PathBuf>> {
+    for (name, text) in files {
+        edition.write(name.as_ref(), |path| write_whole(path, printable_lines(text).as_bytes()))?;
+    }
+    edition.publish()
 }

@@ -1,8 +1,9 @@
 //! The files that a command writes, known before its work.
 
+use super::former::former_names;
 use super::pictures::check_arrays;
 use crate::error::Result;
-use crate::file::{check_apart, check_file, check_folder};
+use crate::file::Edition;
 use crate::study::{BODY, NamedFit, Scene};
 use std::path::{Path, PathBuf};
 
@@ -13,56 +14,46 @@ pub(super) const REPORT: &str = "report.json";
 /// The report as a page.
 pub(super) const PAGE: &str = "report.html";
 
-/// Checks that these files can be written into `folder`, which need not exist yet, and that no file is also an input.
+/// Opens `folder`, which need not exist yet, for these files, before the work whose results they have.
 ///
 /// # Errors
-/// Names the file or the folder.
-pub fn check_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Result<()> {
-    check_folder(folder)?;
-    let files: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
-    check_apart(&files, inputs)?;
-    // A folder that is yet to come holds nothing that is in the way.
-    files.iter().filter(|file| file.symlink_metadata().is_ok()).try_for_each(|file| check_file(file))
+/// Those of [`Edition::begin`].
+pub fn open_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Result<Edition> {
+    Edition::begin(folder, names, inputs, &former_names(folder))
 }
 
-/// The same of all that a run of the scene writes.
+/// The same for all that a run of the scene writes.
 ///
 /// # Errors
 /// As there; or two arrays of a file for ParaView would have the same name.
-pub fn check_scene_outputs(scene: &Scene, folder: &Path, more: &[PathBuf]) -> Result<()> {
+pub fn open_scene_outputs(scene: &Scene, folder: &Path) -> Result<Edition> {
     let output = scene.output();
     let fits: Vec<&str> = scene.fits().iter().map(|fit| fit.name.as_str()).collect();
     let recipe = scene.motion();
     let bodies = recipe.filter(|recipe| recipe.finite_elements).map(|_| BODY);
     let moved: Vec<&str> = recipe.map_or(Vec::new(), |_| bodies.into_iter().chain(fits.iter().copied()).collect());
-    let Stems { fits, motions, points } = Stems::of(fits.iter().copied(), moved.iter().copied());
-    let mut names: Vec<String> = motions.iter().map(|stem| format!("{stem}.csv")).collect();
-    if output.csv {
-        names.extend(fits.iter().map(|stem| format!("{stem}.csv")));
-        names.push(POINTS.into());
-        let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
-        if scene.fits().iter().any(has_masses) {
-            names.extend(points.iter().map(|stem| format!("{stem}.csv")));
-        }
-    }
-    if output.json != Some(false) {
-        names.extend(fits.iter().map(|stem| format!("{stem}.json")));
-    }
+    let stems = Stems::of(fits.iter().copied(), moved.iter().copied());
     if output.vtu {
         check_arrays(scene)?;
-        names.push("mesh.vtu".into());
-        names.extend(fits.iter().map(|stem| format!("{stem}.vtu")));
-        names.extend(motions.iter().map(|stem| format!("{stem}.pvd")));
-        motions.iter().try_for_each(|stem| check_folder(&folder.join(stem)))?;
     }
-    if output.report != Some(false) {
-        names.push(REPORT.into());
+    let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
+    let is_written = |name: &String| match name.rsplit_once('.') {
+        _ if stems.motions.iter().any(|stem| *name == format!("{stem}.csv")) => true,
+        _ if stems.points.iter().any(|stem| *name == format!("{stem}.csv")) => {
+            output.csv && scene.fits().iter().any(has_masses)
+        }
+        Some((_, "csv")) => output.csv,
+        Some((_, "html")) => output.has_page(),
+        Some((_, "json")) if name == REPORT => output.report != Some(false),
+        Some((_, "json")) => output.json != Some(false),
+        _ => output.vtu,
+    };
+    let mut names: Vec<String> = stems.names().filter(is_written).collect();
+    if output.vtu {
+        // The first picture of each motion stands for all.
+        names.extend(stems.motions.iter().map(|stem| format!("{stem}/0000.vtu")));
     }
-    if output.has_page() {
-        names.push(PAGE.into());
-    }
-    let inputs: Vec<PathBuf> = scene.inputs().into_iter().chain(more.iter().cloned()).collect();
-    check_outputs(folder, &names.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)
+    open_outputs(folder, &names.iter().map(String::as_str).collect::<Vec<_>>(), &scene.inputs())
 }
 
 /// The files' names without their endings.
@@ -86,6 +77,18 @@ impl Stems {
         let points = stems.split_off(fits.len() + moved.len());
         let motions = stems.split_off(fits.len());
         Stems { fits: stems, motions, points }
+    }
+
+    /// The names of all files that a run can write, but for the pictures of motions.
+    pub fn names(&self) -> impl Iterator<Item = String> {
+        let with = |stems: &[String], endings: &'static [&'static str]| {
+            let stems = stems.to_vec();
+            stems.into_iter().flat_map(|stem| endings.iter().map(move |ending| format!("{stem}.{ending}")))
+        };
+        with(&self.fits, &["csv", "json", "vtu"])
+            .chain(with(&self.motions, &["csv", "pvd"]))
+            .chain(with(&self.points, &["csv"]))
+            .chain(["mesh.vtu", POINTS, REPORT, PAGE].map(String::from))
     }
 }
 

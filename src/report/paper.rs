@@ -8,9 +8,10 @@ use super::rows::csv;
 use super::surface::surface_figure;
 use super::write_files;
 use crate::error::Result;
+use crate::file::Edition;
 use crate::study::{Column, Paper, PaperRow, PaperTable, file_stem, heading};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What marks a network that does not stand.
 const FALLS: &str = "†";
@@ -68,8 +69,8 @@ pub const PAPER_FILES: [&str; 1] = ["paper.md"];
 /// Writes every table as CSV, all of them as Markdown, and the figures as SVG into `folder`; returns the paths.
 ///
 /// # Errors
-/// A figure cannot be drawn; the folder or a file cannot be written.
-pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
+/// A figure cannot be drawn; a file cannot be written, and the folder is as it was.
+pub fn write_paper(paper: &Paper, edition: Edition) -> Result<Vec<PathBuf>> {
     let mut files: Vec<(String, String)> = Vec::new();
     for table in &paper.tables {
         files.push((format!("{}.csv", file_stem(&table.name)), raw(table)));
@@ -103,7 +104,7 @@ pub fn write_paper(paper: &Paper, folder: &Path) -> Result<Vec<PathBuf>> {
         }
     }
     files.push((PAPER_FILES[0].into(), markdown(paper, &figures)));
-    write_files(folder, &files)
+    write_files(edition, &files)
 }
 
 fn figure(column: Column, value: f64) -> String {

@@ -5,9 +5,10 @@ use super::result_table::ResultTable;
 use super::rows::csv;
 use super::write_files;
 use crate::error::Result;
+use crate::file::Edition;
 use crate::study::{Family, StabilityOutcome, StabilityRow, Verdict};
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use svg::Document;
 use svg::node::element::{Rectangle, Text, Title};
 
@@ -231,11 +232,11 @@ fn shade(error: f64) -> &'static str {
 /// What [`write_stability`] writes whatever the subjects are.
 pub const STABILITY_FILES: [&str; 1] = ["stability.csv"];
 
-/// Writes `stability.csv` and a map for each subject as SVG into `folder`, and returns the paths.
+/// Writes `stability.csv` and a map for each subject as SVG, and returns the paths.
 ///
 /// # Errors
-/// The folder or a file cannot be written.
-pub fn write_stability(outcome: &StabilityOutcome, folder: &Path) -> Result<Vec<PathBuf>> {
+/// A file cannot be written; the folder is as it was.
+pub fn write_stability(outcome: &StabilityOutcome, edition: Edition) -> Result<Vec<PathBuf>> {
     let mut subjects: Vec<&str> = Vec::new();
     for row in &outcome.rows {
         if !subjects.contains(&row.subject.as_str()) {
@@ -247,5 +248,5 @@ pub fn write_stability(outcome: &StabilityOutcome, folder: &Path) -> Result<Vec<
         let rows: Vec<&StabilityRow> = outcome.rows.iter().filter(|row| row.subject == *subject).collect();
         files.push((format!("{stem}.svg"), map(subject, &rows)));
     }
-    write_files(folder, &files)
+    write_files(edition, &files)
 }

@@ -6,9 +6,10 @@ use super::result_table::ResultTable;
 use super::rows::csv;
 use super::write_files;
 use crate::error::{Error, Result};
+use crate::file::Edition;
 use crate::study::{STRETCHES, StretchedFit, Stretches};
 use plotters::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Names and points of the lines of a figure.
 type Lines = Vec<(String, Vec<(f64, f64)>)>;
@@ -45,11 +46,11 @@ pub fn stretches_tables(study: &Stretches) -> Vec<ResultTable> {
 pub const STRETCHES_FILES: [&str; 6] =
     ["stretch.csv", "samples.csv", "force.csv", "stretch.svg", "force.svg", "samples.svg"];
 
-/// Writes `stretch`, `force` and `samples` as CSV and SVG files into `folder`, and returns the paths.
+/// Writes `stretch`, `force` and `samples` as CSV and SVG files, and returns the paths.
 ///
 /// # Errors
-/// A figure cannot be drawn; the folder or a file cannot be written.
-pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>> {
+/// A figure cannot be drawn; a file cannot be written, and the folder is as it was.
+pub fn write_stretches(study: &Stretches, edition: Edition) -> Result<Vec<PathBuf>> {
     let (header, rows) = of_fits(study, |fit| &fit.errors);
     let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
     let (sampled_header, sampled_rows) = runs(study);
@@ -90,7 +91,7 @@ pub fn write_stretches(study: &Stretches, folder: &Path) -> Result<Vec<PathBuf>>
             )?,
         ),
     ];
-    write_files(folder, &files)
+    write_files(edition, &files)
 }
 
 fn title(study: &Stretches) -> String {

@@ -10,6 +10,17 @@ use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+/// Each line of the files begins so.
+const BEGINNING: &[u8] = br#"{"settings":{"#;
+
+/// Whether each line begins as a study does, the last one as far as it was written.
+fn is_of_sweep(text: &[u8]) -> bool {
+    text.split_inclusive(|byte| *byte == b'\n').all(|line| {
+        let length = line.len().min(BEGINNING.len());
+        line[..length] == BEGINNING[..length]
+    })
+}
+
 /// The names of the files begin so.
 const STEM: &str = "studies";
 
@@ -59,6 +70,11 @@ impl StudyLines {
         }
         let mut text = Vec::new();
         file.read_to_end(&mut text).map_err(|e| failed("cannot be read", e))?;
+        if !is_of_sweep(&text) {
+            let words =
+                "expected a file of a sweep, or none, found one of others: move it away, or choose another folder";
+            return Err(Error::new(words).in_file(&path));
+        }
         let found = text.iter().filter(|byte| **byte == b'\n').count();
         if found > 0 && !resume {
             let words = format!(

@@ -4,11 +4,18 @@ use super::columns::{Heading, aligned};
 use super::result_table::ResultTable;
 use super::rows::csv;
 use super::study_record::StudyRecord;
+use crate::error::{Error, ErrorKind, Result};
+use crate::file::{check_apart, check_file, check_folder};
 use crate::solve::Standing;
 use crate::study::{Study, standing_word};
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
+/// The first line of a table begins so.
+const BEGINNING: &[u8] = b"study,";
 /// Studies that are printed at most.
 const PRINTED: usize = 40;
 /// Studies whose errors are printed at most.
@@ -68,6 +75,27 @@ impl StudyTable {
         };
         Value::Array(self.rows.iter().map(object).collect())
     }
+}
+
+/// Checks that the table of a sweep can be written at `path`, before the work.
+///
+/// # Errors
+/// It cannot be written; it is one of the inputs; or there is a file that does not begin as a table of a sweep does.
+pub fn check_study_table(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+    check_folder(path.parent().unwrap_or(Path::new("")))?;
+    check_apart(&[path.to_path_buf()], inputs)?;
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    check_file(path)?;
+    let mut beginning = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(BEGINNING.len() as u64).read_to_end(&mut beginning));
+    read.map_err(|e| Error::io("cannot be read", e).in_file(path))?;
+    if beginning == BEGINNING {
+        return Ok(());
+    }
+    let problem = "would be replaced, and is not the table of a sweep: move it away, or choose another folder";
+    Err(Error::new(problem).of_kind(ErrorKind::Io).in_file(path))
 }
 
 /// The cells of one study: for each fit and load, or with the error alone.

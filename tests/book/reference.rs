@@ -4,7 +4,7 @@ use super::markdown::{Page, page};
 use crate::report::{LARGE, LINEAR, reports};
 use serde_json::Value;
 use springfit::element::{Element, SHIPPED, SpringKind};
-use springfit::report::write_outputs;
+use springfit::report::{open_scene_outputs, write_outputs};
 use springfit::study::{Scene, run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -201,7 +201,12 @@ fn the_page_of_the_report_has_every_key() {
     let scene = Scene::parse(POSITIVE, &super::markdown::root().join("scene.toml")).unwrap();
     // The file, which also has the names of the files of its run.
     let folder = TempDir::new().unwrap();
-    write_outputs(&run(&scene, &mut |_| {}).unwrap(), scene.output(), folder.path()).unwrap();
+    write_outputs(
+        &run(&scene, &mut |_| {}).unwrap(),
+        scene.output(),
+        open_scene_outputs(&scene, folder.path()).unwrap(),
+    )
+    .unwrap();
     let text = std::fs::read_to_string(folder.path().join("report.json")).unwrap();
     keys(&serde_json::from_str(&text).unwrap(), "report", &mut found);
     let scene = Scene::parse(COARSE, &super::markdown::root().join("scene.toml")).unwrap();

@@ -95,6 +95,15 @@ impl Error {
         self
     }
 
+    /// Names `place` where the error names `file`, which stands for it until it is complete.
+    #[must_use]
+    pub fn about(mut self, file: &Path, place: &Path) -> Self {
+        if self.file.as_deref() == Some(file) {
+            self.file = Some(place.to_path_buf());
+        }
+        self
+    }
+
     /// Names the line (from 1).
     pub fn on_line(mut self, line: usize) -> Self {
         self.line.get_or_insert(line);

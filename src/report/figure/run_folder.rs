@@ -1,6 +1,7 @@
 //! What a run wrote, read again.
 
 use crate::error::{Error, Result};
+use crate::file::finish_edition;
 use crate::report::json::{Report, VERSION};
 use crate::report::network::{NetworkRecord, read_network};
 use std::path::{Path, PathBuf};
@@ -25,6 +26,8 @@ impl RunFolder {
     /// The folder has no report, or the report has another version.
     pub fn report(&self) -> Result<Report> {
         let path = self.file("report.json");
+        // A run may have ended while its files took their places.
+        finish_edition(&self.path)?;
         let text = std::fs::read_to_string(&path).map_err(|e| {
             let advice = "the folder of a run has one unless [output] report is false";
             Error::new(format!("cannot be read: {e}; {advice}")).in_file(&path)

@@ -10,17 +10,18 @@ pub use tables::{referee_tables, referee_text};
 
 use super::write_files;
 use crate::error::Result;
-use std::path::{Path, PathBuf};
+use crate::file::Edition;
+use std::path::PathBuf;
 
 /// What [`write_referee`] writes.
 pub const REFEREE_FILES: [&str; 2] = ["referee.json", "referee.svg"];
 
-/// Writes every number and the chart into `folder`, and returns the paths.
+/// Writes every number and the chart, and returns the paths.
 ///
 /// # Errors
-/// The folder or a file cannot be written.
-pub fn write_referee(record: &RefereeRecord, folder: &Path) -> Result<Vec<PathBuf>> {
+/// A file cannot be written; the folder is as it was.
+pub fn write_referee(record: &RefereeRecord, edition: Edition) -> Result<Vec<PathBuf>> {
     let [numbers, chart] = REFEREE_FILES;
     let text = serde_json::to_string_pretty(record).expect("keys are text") + "\n";
-    write_files(folder, &[(numbers, text), (chart, referee_svg(record))])
+    write_files(edition, &[(numbers, text), (chart, referee_svg(record))])
 }

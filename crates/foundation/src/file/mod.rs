@@ -2,11 +2,16 @@
 //!
 //! TOML is read into structures with errors that name the key and the line.
 
+mod edition;
 mod identity;
 mod node;
 mod partial;
+mod sum;
 
+pub use edition::{Edition, finish_edition};
 pub use identity::check_apart;
+pub use partial::abandon;
+pub use sum::Sum;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::named::suggestion;
@@ -124,12 +129,10 @@ fn replace(path: &Path, write: impl FnOnce(&fs::File, bool) -> io::Result<()>) -
         fs::File::options().write(true).open(&target).and_then(|file| write(&file, false))
     } else {
         Partial::beside(&target).and_then(|partial| {
-            let written = old
-                .map_or(Ok(()), |old| partial.file.set_permissions(old.permissions()))
+            old.map_or(Ok(()), |old| partial.file.set_permissions(old.permissions()))
                 .and_then(|()| write(&partial.file, true))
                 .and_then(|()| partial.file.sync_all())
-                .and_then(|()| partial.rename(&target));
-            written.inspect_err(|_| drop(partial.remove()))
+                .and_then(|()| partial.rename(&target))
         })
     };
     written.map_err(|e| Error::io("cannot be written", e).in_file(path))

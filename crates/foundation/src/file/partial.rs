@@ -1,71 +1,167 @@
-//! The temporary file beside a file that it replaces once its content is complete.
+//! The temporary file beside a file that it replaces once its content is complete, and the folder in which an edition is prepared.
+//!
+//! Their names cannot be guessed, they are created new, and no link is followed. A lock on each shows that the process that writes it is
+//! alive: what killed processes left is removed by the next one that writes there.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::{Builder, TempDir, TempPath};
 
-/// Begins the name of a temporary file. The leading dot hides it in listings.
-const PREFIX: &str = ".springfit.";
-/// Ends the name of a temporary file, so that a sweep recognises those of killed processes.
+/// Begins the names of files that are not results. The leading dot hides them in listings.
+pub(super) const PREFIX: &str = ".springfit.";
+/// Ends the name of a temporary file or folder, so that those of killed processes are recognised.
 const SUFFIX: &str = ".partial";
+/// The file in a folder that the process which writes there holds locked.
+pub(super) const LOCK: &str = ".springfit.lock";
 
-/// A new file beside another one. A lock on it shows that the process that writes it is alive.
+/// What this process has begun, and has to remove if it is interrupted.
+static BEGUN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Held while files are given their places.
+static PLACING: Mutex<()> = Mutex::new(());
+
+fn locked<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what this process has begun and not ended, for a program that is about to be ended. Files that are being given their places
+/// come there first. Nothing can be written afterwards.
+pub fn abandon() {
+    let (placing, begun) = (locked(&PLACING), locked(&BEGUN));
+    for path in begun.iter() {
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    }
+    // Never released: a thread that still writes must not begin another file.
+    std::mem::forget((placing, begun));
+}
+
+/// Does what an interrupt must not break off.
+pub(super) fn unbroken<T>(work: impl FnOnce() -> T) -> T {
+    let _placing = locked(&PLACING);
+    work()
+}
+
+/// A path that an interrupted program removes.
+#[derive(Debug)]
+pub(super) struct Begun(PathBuf);
+
+impl Begun {
+    pub fn at(path: &Path) -> Begun {
+        locked(&BEGUN).insert(path.to_path_buf());
+        Begun(path.to_path_buf())
+    }
+}
+
+impl Drop for Begun {
+    fn drop(&mut self) {
+        locked(&BEGUN).remove(&self.0);
+    }
+}
+
+/// A new file beside another one.
 pub(super) struct Partial {
     pub file: File,
-    path: PathBuf,
+    path: TempPath,
+    _begun: Begun,
 }
 
 impl Partial {
     /// Creates a file beside `target` and removes what earlier processes left in that folder.
     pub fn beside(target: &Path) -> io::Result<Partial> {
-        sweep(target.parent().unwrap_or(Path::new("")));
+        let folder = folder_of(target);
+        sweep(folder);
         loop {
-            let path = name_beside(target);
-            let file = File::create(&path)?;
+            let (file, path) = builder(0o666).tempfile_in(folder)?.into_parts();
             // On a file system without locks no file is ever swept.
             let _ = file.lock();
             // Another process may have swept the file between its creation and its lock.
             if path.exists() {
-                return Ok(Partial { file, path });
+                let begun = Begun::at(&path);
+                return Ok(Partial { file, path, _begun: begun });
             }
         }
     }
 
     pub fn remove(self) -> io::Result<()> {
-        match fs::remove_file(&self.path) {
+        match self.path.close() {
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(()),
             removed => removed,
         }
     }
 
     /// Renames the temporary file to `target`.
-    pub fn rename(&self, target: &Path) -> io::Result<()> {
-        fs::rename(&self.path, target)
+    pub fn rename(self, target: &Path) -> io::Result<()> {
+        fs::rename(&self.path, target)?;
+        // There is nothing left to remove.
+        self.path.keep().map(drop).map_err(|e| e.error)
     }
 }
 
-/// A name that differs in each process and thread, and that is short whatever the file is called.
-fn name_beside(path: &Path) -> PathBuf {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    path.with_file_name(format!("{PREFIX}{}.{count}{SUFFIX}", std::process::id()))
+/// A new folder for files that are not in their places yet.
+#[derive(Debug)]
+pub(super) struct PartialFolder {
+    folder: TempDir,
+    /// Its lock shows that the process is alive.
+    _held: File,
+    _begun: Begun,
 }
 
-/// Removes the temporary files of killed processes: those that nobody has locked. A file that cannot be removed does no
-/// harm.
-fn sweep(folder: &Path) {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+impl PartialFolder {
+    /// Creates a folder in `parent` and removes what earlier processes left there.
+    pub fn within(parent: &Path) -> io::Result<PartialFolder> {
+        sweep(parent);
+        loop {
+            let folder = builder(0o777).tempdir_in(parent)?;
+            let Ok(held) = File::create_new(folder.path().join(LOCK)) else { continue };
+            let _ = held.lock();
+            if folder.path().join(LOCK).exists() {
+                let begun = Begun::at(folder.path());
+                return Ok(PartialFolder { folder, _held: held, _begun: begun });
+            }
+        }
+    }
+
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// Whether a file or folder of this name is temporary.
+pub(super) fn is_partial(name: &Path) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX) && !name.contains(['/', '\\']))
+}
+
+/// The folder of a file.
+pub(super) fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Makes what anyone may read and write but for the mask of the user.
+fn builder(mode: u32) -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(mode));
+    #[cfg(not(unix))]
+    let _ = mode;
+    builder
+}
+
+/// Removes the temporary files and folders of killed processes: those that nobody has locked. One that cannot be removed does no harm.
+pub(super) fn sweep(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let is_partial = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
         // Only a regular file can be one: opening a pipe may wait forever.
-        if !is_partial || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        let Some(kind) = entry.file_type().ok().filter(|_| is_partial(Path::new(&entry.file_name()))) else { continue };
+        let path = entry.path();
+        let held = if kind.is_dir() { path.join(LOCK) } else { path.clone() };
+        if !held.symlink_metadata().is_ok_and(|data| data.is_file()) {
             continue;
         }
-        let Ok(file) = File::options().write(true).open(entry.path()) else { continue };
+        let Ok(file) = File::options().write(true).open(&held) else { continue };
         if file.try_lock().is_ok() {
-            let _ = fs::remove_file(entry.path());
+            let _ = if kind.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
         }
     }
 }

@@ -4,7 +4,7 @@ use super::formats::{Parse, parser};
 use super::source::MeshSource;
 use super::tetgen;
 use crate::error::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl MeshSource {
     /// Reads a mesh file in the format of its extension, one of [`MESH_FORMATS`](super::MESH_FORMATS). Of TetGen, the
@@ -27,11 +27,20 @@ impl MeshSource {
             Parse::Alone(_) => MeshSource::parse(&crate::file::read(path)?, &ending).map_err(in_file),
             Parse::TetGen => {
                 let other = |ending: &str| path.with_extension(ending);
-                let (node, ele) = (crate::file::read(&other("node"))?, crate::file::read(&other("ele"))?);
-                let face = other("face").exists().then(|| crate::file::read(&other("face"))).transpose()?;
+                let [node, ele, face] = tetgen::ENDINGS.map(other);
+                let (node, ele) = (crate::file::read(&node)?, crate::file::read(&ele)?);
+                let face = face.exists().then(|| crate::file::read(&face)).transpose()?;
                 let source = tetgen::parse(&node, &ele, face.as_deref());
                 source.and_then(checked).map_err(in_file)
             }
+        }
+    }
+
+    /// All files that are read where a mesh file is named, whether they are there or not.
+    pub fn files(path: &Path) -> Vec<PathBuf> {
+        match parser(&crate::file::ending(path)) {
+            Ok(Parse::TetGen) => tetgen::ENDINGS.map(|ending| path.with_extension(ending)).into(),
+            Ok(Parse::Alone(_)) | Err(_) => vec![path.to_path_buf()],
         }
     }
 

@@ -7,6 +7,9 @@ use super::reader::quoted;
 use super::source::MeshSource;
 use crate::error::{Error, ErrorKind, Result};
 
+/// The endings of the files of a mesh: points, cells and, if they are there, faces.
+pub(super) const ENDINGS: [&str; 3] = ["node", "ele", "face"];
+
 /// The order of VTK by places in that of TetGen: its middles are those of the edges 3-4, 1-4, 1-2, 2-3, 2-4 and 1-3, and
 /// those of Triangle of the edges 2-3, 1-3 and 1-2.
 const TET10: [usize; 10] = [0, 1, 2, 3, 6, 7, 9, 5, 8, 4];

@@ -18,7 +18,7 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 const FORMAT: &str = "springfit shard";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes of a share.
 const RECORD: usize = 64;
 /// Bytes of the checksum.
@@ -40,7 +40,7 @@ pub struct ShardRun {
     pub points: usize,
     /// The number of cells.
     pub cells: usize,
-    /// The fit and the material.
+    /// The fit and the material: a line `key = value` for each setting.
     pub fit: String,
     /// Whether the network is exact, so that its springs have no rest lengths.
     pub is_exact: bool,

@@ -1,11 +1,13 @@
 //! Cancelling a long fit, and continuing it from a checkpoint.
 
 use crate::error::{Error, Result};
-use crate::file;
+use crate::file::{self, Sum};
 use crate::model::Network;
 use crate::whole::{Snapshot, Target, Wanted};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
+use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -22,16 +24,30 @@ pub struct Controls {
     pub announce: bool,
 }
 
-/// The states of the whole-object fits of a scene.
-#[derive(Debug, Default, Serialize, Deserialize)]
+/// The states of the whole-object fits of a scene, on disk.
+#[derive(Debug, Serialize, Deserialize)]
 struct Checkpoint {
+    /// [`FORMAT`].
+    format: String,
+    /// [`VERSION`].
+    version: u32,
     fits: BTreeMap<String, SavedFit>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
 struct SavedFit {
-    fingerprint: Fingerprint,
+    identity: Identity,
     snapshot: Snapshot,
+}
+
+const FORMAT: &str = "springfit checkpoint";
+/// It changes with the meaning of a key, of the file or of a snapshot.
+const VERSION: u32 = 2;
+
+impl Default for Checkpoint {
+    fn default() -> Checkpoint {
+        Checkpoint { format: FORMAT.into(), version: VERSION, fits: BTreeMap::new() }
+    }
 }
 
 /// The time between two writes of a checkpoint: a crash loses no more than this.
@@ -41,7 +57,7 @@ const INTERVAL: Duration = Duration::from_secs(5);
 pub(super) struct Saved<'a> {
     controls: &'a Controls,
     name: &'a str,
-    fingerprint: Fingerprint,
+    identity: Identity,
     last: Instant,
 }
 
@@ -69,10 +85,18 @@ impl Controls {
             return Ok(Checkpoint::default());
         };
         let text = file::read_text(path)?;
-        serde_json::from_str(&text).map_err(|e| {
-            Error::new(format!("expected a checkpoint that springfit has written, found something else: {e}"))
+        let other = |found: String| {
+            Error::new(format!("expected a checkpoint that springfit has written, found something else: {found}"))
                 .in_file(path)
-        })
+        };
+        let value: Value = serde_json::from_str(&text).map_err(|e| other(e.to_string()))?;
+        let is_checkpoint = value["format"] == FORMAT || value["fits"].is_object();
+        if is_checkpoint && value["version"] != VERSION {
+            let found = value["version"].as_u64().map_or("an older one".into(), |version| format!("version {version}"));
+            let problem = format!("expected a checkpoint of version {VERSION}, found {found}: remove it to begin anew");
+            return Err(Error::new(problem).in_file(path));
+        }
+        serde_json::from_value(value).map_err(|e| other(e.to_string()))
     }
 }
 
@@ -81,22 +105,21 @@ impl<'a> Saved<'a> {
     ///
     /// # Errors
     /// The file is not a checkpoint, or its state belongs to another fit of this name.
-    pub fn open(
-        controls: &'a Controls,
-        name: &'a str,
-        fingerprint: Fingerprint,
-    ) -> Result<(Saved<'a>, Option<Snapshot>)> {
+    pub fn open(controls: &'a Controls, name: &'a str, identity: Identity) -> Result<(Saved<'a>, Option<Snapshot>)> {
         let mut known = controls.read()?;
         let snapshot = match known.fits.remove(name) {
-            Some(state) if state.fingerprint != fingerprint => {
-                let expected = "the state of this fit, or a file that does not exist yet";
-                let found = "that of a fit with other springs, loads or keys";
-                let error = Error::expected(format!("fits.{name}"), expected, found);
-                return Err(controls.checkpoint.iter().fold(error, |e, path| e.in_file(path)));
+            Some(state) => {
+                if let Some(change) = identity.change(&state.identity) {
+                    let expected = "the state of this fit, or a file that does not exist yet";
+                    let error =
+                        Error::expected(format!("fits.{name}"), expected, format!("that of a fit with {change}"));
+                    return Err(controls.checkpoint.iter().fold(error, |e, path| e.in_file(path)));
+                }
+                Some(state.snapshot)
             }
-            state => state.map(|state| state.snapshot),
+            None => None,
         };
-        Ok((Saved { controls, name, fingerprint, last: Instant::now() }, snapshot))
+        Ok((Saved { controls, name, identity, last: Instant::now() }, snapshot))
     }
 
     /// Names the checkpoint in an error about the state that was read from it.
@@ -115,41 +138,60 @@ impl<'a> Saved<'a> {
         };
         self.last = Instant::now();
         let mut all = self.controls.read()?;
-        all.fits.insert(self.name.into(), SavedFit { fingerprint: self.fingerprint, snapshot: snapshot.clone() });
+        all.fits.insert(self.name.into(), SavedFit { identity: self.identity.clone(), snapshot: snapshot.clone() });
         let text = serde_json::to_string(&all).expect("a state of finite numbers is JSON");
         file::write_whole(path, text.as_bytes())
     }
 }
 
-/// A hash of all data with which a fit begins; it is the same on every machine (FNV-1a).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Fingerprint(u64);
+/// What a fit begins with: its state belongs to no other fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Identity {
+    /// Its settings, by their keys.
+    settings: BTreeMap<String, Value>,
+    /// A sum of the points, the springs and the loads.
+    data: String,
+}
 
-impl Fingerprint {
-    /// `settings` is a text of all settings of the fit.
-    pub fn of(settings: &str, points: &[f64], network: &Network, wanted: &Wanted) -> Fingerprint {
-        let mut all = Fingerprint(0xcbf2_9ce4_8422_2325);
-        all.text(settings);
-        all.numbers(points);
+impl Identity {
+    /// Of a fit with these settings.
+    pub fn of(settings: BTreeMap<String, Value>, points: &[f64], network: &Network, wanted: &Wanted) -> Identity {
+        let mut data = DataSum(Sum::default());
+        data.numbers(points);
         for spring in &network.lengths {
-            spring.points.iter().for_each(|p| all.word(*p as u64));
-            all.numbers(&[spring.constant, spring.rest]);
+            spring.points.iter().for_each(|p| data.word(*p as u64));
+            data.numbers(&[spring.constant, spring.rest]);
         }
         for spring in &network.others {
-            spring.points.iter().for_each(|p| all.word(*p as u64));
-            all.numbers(&[spring.constant, spring.rest]);
-            all.numbers(spring.law.as_ref().map_or(&[], |own| &own.parameters));
+            spring.points.iter().for_each(|p| data.word(*p as u64));
+            data.numbers(&[spring.constant, spring.rest]);
+            data.numbers(spring.law.as_ref().map_or(&[], |own| &own.parameters));
         }
-        wanted.trained.iter().chain(wanted.validation.loads()).for_each(|target| all.target(target));
+        wanted.trained.iter().chain(wanted.validation.loads()).for_each(|target| data.target(target));
         if let Some(frequencies) = &wanted.frequencies {
-            all.numbers(&frequencies.masses);
-            all.numbers(&frequencies.squares);
+            data.numbers(&frequencies.masses);
+            data.numbers(&frequencies.squares);
         }
-        all
+        Identity { settings, data: data.0.to_string() }
     }
 
+    /// What differs, if anything does.
+    fn change(&self, found: &Identity) -> Option<String> {
+        let keys = self.settings.keys().chain(found.settings.keys());
+        let differs = |key: &&String| self.settings.get(*key) != found.settings.get(*key);
+        let of_key = keys.into_iter().find(differs).map(|key| {
+            let value = |own: &Identity| own.settings.get(key).map_or("none".into(), Value::to_string);
+            format!("{key} = {}, where the scene has {}", value(found), value(self))
+        });
+        of_key.or_else(|| (self.data != found.data).then(|| "other points, springs or loads".into()))
+    }
+}
+
+struct DataSum(Sum);
+
+impl DataSum {
     fn target(&mut self, target: &Target) {
-        self.text(&target.name);
+        target.name.bytes().for_each(|byte| self.word(u64::from(byte)));
         for numbers in [&target.forces, &target.displacement, &target.weights] {
             self.numbers(numbers);
         }
@@ -157,17 +199,11 @@ impl Fingerprint {
         self.numbers(&held);
     }
 
-    fn text(&mut self, text: &str) {
-        text.bytes().for_each(|byte| self.word(u64::from(byte)));
-    }
-
     fn numbers(&mut self, numbers: &[f64]) {
         numbers.iter().for_each(|x| self.word(x.to_bits()));
     }
 
     fn word(&mut self, word: u64) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-        }
+        self.0.write(&word.to_le_bytes());
     }
 }

@@ -43,8 +43,8 @@ pub use body_material::{BodyConstants, assumed};
 pub use checkpoint::Controls;
 pub use comparison::{MethodOutcome, compare_element, compare_scene, compared, measure_recipes};
 pub use convergence::{
-    Convergence, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge, converge_to,
-    limit_of, most_unknowns, rates, refinements,
+    Convergence, EachLevel, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge,
+    converge_to, converge_with, limit_of, most_unknowns, rates, refinements,
 };
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, draft};
@@ -67,7 +67,8 @@ pub use outcome::{
 };
 pub use own_name::BODY;
 pub use paper::{
-    Column, Index, Paper, PaperRow, PaperTable, Surface, file_stem, heading, run_paper, write_experiments,
+    Column, Index, Paper, PaperRow, PaperTable, Surface, check_experiments, file_stem, heading, run_paper,
+    write_experiments,
 };
 pub use progress::{Event, Progress};
 pub use run::{run, run_with};

@@ -11,4 +11,4 @@ mod run;
 pub use levels::most_unknowns;
 pub use limit::{Limit, LimitKind, limit_of};
 pub use outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step, rates};
-pub use run::{MOST_LEVELS, converge, converge_to, refinements};
+pub use run::{EachLevel, MOST_LEVELS, converge, converge_to, converge_with, refinements};

@@ -11,17 +11,24 @@ use crate::mesh::Mesh;
 use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
-use crate::study::outcome::Outcome;
+use crate::study::outcome::{FitOutcome, Outcome};
 use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
 use crate::study::run::run_with;
 use crate::study::scene::{LoadCase, Output, Scene};
+use crate::text::time_in_words;
 use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
 /// Cells are divided, and do not come nearer to a curved boundary.
 const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh on all levels";
+/// The scene and its reference.
+const DIFFERS: &str = "the bodies differ by more than rounding";
+/// A level that takes longer is announced, s.
+const LONG: f64 = 10.0;
+/// A fit that takes longer on that level is named, s.
+const TOLD: f64 = 1.0;
 /// The number of levels if none is requested and memory suffices.
 const USUAL_LEVELS: usize = 4;
 
@@ -36,6 +43,37 @@ const USUAL_LEVELS: usize = 4;
 /// `levels` is not from 2 to [`MOST_LEVELS`]; the finest mesh is too large; the scene has no loads; or a run on some
 /// level fails.
 pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -> Result<Convergence> {
+    converge_with(scene, None, levels, &mut |_| Ok(()), progress)
+}
+
+/// What is done with the results of the levels so far, when one more is there.
+pub type EachLevel<'a> = dyn FnMut(&Convergence) -> Result<()> + 'a;
+
+/// As [`converge`], or as [`converge_to`] with a reference; `each` is given the results of the first levels as soon as they are there.
+///
+/// # Errors
+/// Those of [`converge`] and [`converge_to`], and those of `each`.
+pub fn converge_with(
+    scene: &Scene,
+    reference: Option<&Scene>,
+    levels: Option<usize>,
+    each: &mut EachLevel,
+    progress: &mut Progress,
+) -> Result<Convergence> {
+    match reference {
+        None => of_levels(scene, levels, &mut |_| {}, each, progress),
+        Some(reference) => to_reference(scene, reference, levels, each, progress),
+    }
+}
+
+/// Runs the levels; `completed` puts in what is known besides them.
+fn of_levels(
+    scene: &Scene,
+    levels: Option<usize>,
+    completed: &mut dyn FnMut(&mut Convergence),
+    each: &mut EachLevel,
+    progress: &mut Progress,
+) -> Result<Convergence> {
     let scenes = refinements(scene, levels)?;
     let (scene, count) = (&scenes[0], scenes.len());
     if levels.is_none() && count < USUAL_LEVELS {
@@ -47,7 +85,6 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
     let mut convergence = Convergence { scene: title, extent, law, reference, notes, is_one_problem, levels, loads };
     let mut before: Vec<Selected> = Vec::new();
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
-    let mut prescribed = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
         let start = Instant::now();
@@ -59,8 +96,7 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         let refined = &scenes[level];
         let controls = Controls { announce: true, ..Controls::default() };
         let outcome = run_with(refined, &controls, &mut staged).map_err(in_level)?;
-        let (own, steps) = steps(refined, &outcome).map_err(in_level)?;
-        prescribed = own;
+        let (prescribed, steps) = steps(refined, &outcome).map_err(in_level)?;
         for (load, steps) in steps.into_iter().enumerate() {
             if level == 0 {
                 let names = std::iter::once(BODY).chain(outcome.fits.iter().map(|fit| fit.fit.name.as_str()));
@@ -91,14 +127,32 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
         }
         notes.iter().for_each(|note| progress(Event::Note(note)));
         convergence.notes.extend(notes);
+        let factor = 2f64.powi(mesh.cell_dimension() as i32);
+        if level + 1 < count && factor * seconds > LONG {
+            let next = format!("level {} of {count}: {}", level + 2, expected(&outcome, seconds, factor));
+            progress(Event::Note(&next));
+        }
         convergence.law = outcome.law;
+        let loads = scene.loads().iter().zip(&prescribed).zip(&models);
+        let of_load = |((load, is_prescribed), models): ((&LoadCase, &bool), &Vec<ModelConvergence>)| {
+            LoadConvergence::new(load.name.clone(), *is_prescribed, models.clone())
+        };
+        convergence.loads = loads.map(of_load).collect();
+        completed(&mut convergence);
+        each(&convergence)?;
     }
-    let loads = scene.loads().iter().zip(prescribed).zip(models);
-    let of_load = |((load, is_prescribed), models): ((&LoadCase, bool), _)| {
-        LoadConvergence::new(load.name.clone(), is_prescribed, models)
-    };
-    convergence.loads = loads.map(of_load).collect();
     Ok(convergence)
+}
+
+/// The time of a level with so many times the cells of the last one, in words: what grows with the number of cells alone.
+fn expected(last: &Outcome, seconds: f64, factor: f64) -> String {
+    let of_fit = |fit: &FitOutcome| {
+        let seconds = factor * (fit.seconds + fit.seconds_assembly);
+        (seconds > TOLD).then(|| format!("{} for {}", time_in_words(seconds), fit.fit.name))
+    };
+    let fits: Vec<String> = last.fits.iter().filter_map(of_fit).collect();
+    let fits = if fits.is_empty() { String::new() } else { format!(", of which {}", fits.join(", ")) };
+    format!("at least {} expected by the last level{fits}", time_in_words(factor * seconds))
 }
 
 /// The scenes of all levels: that of the scene, without motion, gauge and output, and others with cells of half the size each.
@@ -130,6 +184,16 @@ pub fn converge_to(
     levels: Option<usize>,
     progress: &mut Progress,
 ) -> Result<Convergence> {
+    converge_with(scene, Some(reference), levels, &mut |_| Ok(()), progress)
+}
+
+fn to_reference(
+    scene: &Scene,
+    reference: &Scene,
+    levels: Option<usize>,
+    each: &mut EachLevel,
+    progress: &mut Progress,
+) -> Result<Convergence> {
     let names: Vec<&str> = reference.loads().iter().map(|load| load.name.as_str()).collect();
     if let Some(load) = scene.loads().iter().find(|load| !names.contains(&load.name.as_str())) {
         let expected = format!("a load \"{}\" as in the scene", load.name);
@@ -141,21 +205,24 @@ pub fn converge_to(
         Event::Stage { name, done, total } => progress(Event::stage(&format!("reference, {name}"), done, total)),
         Event::Note(note) => progress(Event::Note(&format!("reference, {note}"))),
     })?;
-    let mut convergence = converge(scene, levels, progress)?;
-    for load in &mut convergence.loads {
-        if let Some(found) = known.loads.iter().find(|found| found.name == load.name) {
-            (load.truth, load.mean_truth) = (found.truth, found.mean_truth);
+    if let Some(differs) = &differs {
+        progress(Event::Note(&format!("{DIFFERS}: {differs}")));
+    }
+    let mut completed = |convergence: &mut Convergence| {
+        for load in &mut convergence.loads {
+            if let Some(found) = known.loads.iter().find(|found| found.name == load.name) {
+                (load.truth, load.mean_truth) = (found.truth, found.mean_truth);
+            }
         }
-    }
-    convergence.reference = Some(known.scene);
-    convergence.is_one_problem &= known.is_one_problem;
-    convergence.notes.extend(known.notes.into_iter().map(|note| format!("reference, {note}")));
-    if let Some(differs) = differs {
-        let note = format!("the bodies differ by more than rounding: {differs}");
-        progress(Event::Note(&note));
-        convergence.notes.push(note);
-    }
-    Ok(convergence)
+        // With the first level.
+        if convergence.reference.is_none() {
+            convergence.reference = Some(known.scene.clone());
+            convergence.is_one_problem &= known.is_one_problem;
+            convergence.notes.extend(known.notes.iter().map(|note| format!("reference, {note}")));
+            convergence.notes.extend(differs.iter().map(|differs| format!("{DIFFERS}: {differs}")));
+        }
+    };
+    of_levels(scene, levels, &mut completed, each, progress)
 }
 
 /// The edge of a cube, square or interval with the mean content of the cells, m.

@@ -34,6 +34,10 @@ pub struct FitEntry {
 /// The keys that all fits have.
 pub(super) const COMMON: [&str; 3] = ["name", "objective", "springs"];
 
+fn json_text(value: &Value) -> String {
+    serde_json::to_string(value).expect("keys are text")
+}
+
 /// The kind of a fit, by its objective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -99,6 +103,17 @@ impl FitEntry {
     pub fn new(objective: impl Into<String>) -> FitEntry {
         let (name, springs, keys) = Default::default();
         FitEntry { name, objective: objective.into(), springs, keys }
+    }
+
+    /// What is set, as `key = value` with values in JSON, sorted by the keys: what tells one fit from another on disk.
+    pub fn identity(&self) -> Vec<String> {
+        let springs = self.springs.as_ref().map(|names| Value::from(names.clone()));
+        let common = [("objective", Some(Value::from(self.objective.clone()))), ("springs", springs)];
+        let common = common.into_iter().filter_map(|(key, value)| Some((key.to_string(), value?)));
+        let mut set: Vec<String> =
+            common.chain(self.keys.clone()).map(|(key, value)| format!("{key} = {}", json_text(&value))).collect();
+        set.sort();
+        set
     }
 
     /// The same entry with this value of a key, if there is one.

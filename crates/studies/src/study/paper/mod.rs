@@ -8,4 +8,4 @@ mod surface;
 
 pub use index::{Column, Index, file_stem, heading};
 pub use outcome::{Paper, PaperRow, PaperTable, Surface};
-pub use run::{run_paper, write_experiments};
+pub use run::{check_experiments, run_paper, write_experiments};

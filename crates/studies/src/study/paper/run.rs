@@ -26,11 +26,11 @@ const POISSON: f64 = 0.3;
 /// Young's modulus of the elements that are timed, Pa.
 const YOUNG: f64 = 10e3;
 
-/// Writes the shipped experiments into `folder`, and returns the path of their index.
+/// Checks that what is in `folder` are the shipped experiments, or nothing.
 ///
 /// # Errors
-/// A file there has been changed, and is kept; or the folder or a file cannot be written.
-pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
+/// A file there has been changed.
+pub fn check_experiments(folder: &Path) -> Result<()> {
     let differs =
         |(name, text): &&(&str, &str)| std::fs::read(folder.join(name)).is_ok_and(|old| old != text.as_bytes());
     if let Some((name, _)) = EXPERIMENTS.iter().find(differs) {
@@ -38,6 +38,14 @@ pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
         let problem = "differs from the shipped file, which would replace it: run what is there with --index";
         return Err(Error::new(format!("{problem} {}, or move it away", index.display())).in_file(&folder.join(name)));
     }
+    Ok(())
+}
+
+/// Writes the shipped experiments into `folder`, and returns the path of their index.
+///
+/// # Errors
+/// The folder or a file cannot be written.
+pub fn write_experiments(folder: &Path) -> Result<PathBuf> {
     for (name, text) in EXPERIMENTS {
         let path = folder.join(name);
         create_folder(path.parent().unwrap_or(folder))?;

@@ -192,7 +192,8 @@ impl MeshInput {
         let of_disc = self.disc.iter().map(|entry| &entry.element);
         let elements = of_box.chain(of_disc).chain(of_fill).chain(&self.elements);
         let meshes = self.file.iter().chain(self.fill.iter().map(|entry| &entry.surface));
-        meshes.map(|file| folder.join(file)).chain(elements.map(|name| folder.join(name))).collect()
+        let meshes = meshes.flat_map(|file| MeshSource::files(&folder.join(file)));
+        meshes.chain(elements.map(|name| folder.join(name))).collect()
     }
 
     /// What is read or generated, in words.

@@ -2,7 +2,7 @@
 
 use super::entry::SweepEntry;
 use crate::error::{Error, Result};
-use crate::file;
+use crate::file::{self, Sum};
 use crate::study::scene::{Scene, Setting};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -21,7 +21,7 @@ pub struct Sweep {
     keys: Vec<String>,
     studies: Vec<Study>,
     /// The sums of files that studies read, by their paths.
-    sums: Mutex<HashMap<PathBuf, u64>>,
+    sums: Mutex<HashMap<PathBuf, Sum>>,
 }
 
 /// One study: what is set in the scene.
@@ -113,7 +113,7 @@ impl Sweep {
 
     /// A sum of all that a study depends on: the values, the scene and the files that it names. Files are read once.
     pub fn sum(&self, study: &Study) -> u64 {
-        let mut sum = Sum::new();
+        let mut sum = Sum::default();
         sum.write(env!("CARGO_PKG_VERSION").as_bytes());
         sum.write(without_sweep(&self.text).as_bytes());
         for setting in &self.settings {
@@ -126,13 +126,9 @@ impl Sweep {
         let files = self.scene(study).map(|scene| scene.inputs()).unwrap_or_default();
         for path in files.into_iter().skip(1) {
             let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-            let of_file = sums.entry(path).or_insert_with_key(|path| {
-                let mut sum = Sum::new();
-                // A file that cannot be read fails in the study.
-                sum.write(&file::read(path).unwrap_or_default());
-                sum.finish()
-            });
-            sum.write(&of_file.to_le_bytes());
+            // A file that cannot be read fails in the study.
+            let of_file = sums.entry(path).or_insert_with_key(|path| Sum::of_file(path).unwrap_or_default());
+            sum.write(&of_file.finish().to_le_bytes());
         }
         sum.finish()
     }
@@ -164,26 +160,5 @@ fn without_sweep(text: &str) -> String {
             serde_json::to_string(&table).unwrap_or_default()
         }
         Err(_) => text.into(),
-    }
-}
-
-/// FNV-1a, which is the same on every machine.
-struct Sum(u64);
-
-impl Sum {
-    fn new() -> Sum {
-        Sum(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hasher for Sum {
-    fn write(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
-        }
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
     }
 }

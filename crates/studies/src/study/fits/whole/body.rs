@@ -13,7 +13,7 @@ use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network, Support, unheld_bodies};
 use crate::solve::{Equations, Newton, StaticSolver};
 use crate::study::body::Case;
-use crate::study::checkpoint::{Controls, Fingerprint, Saved};
+use crate::study::checkpoint::{Controls, Identity, Saved};
 use crate::study::progress::{Event, Progress};
 use crate::whole::{Snapshot, fit_whole};
 use std::sync::Mutex;
@@ -126,10 +126,10 @@ impl<'a> WholeBody<'a> {
             Some((fits, network)) => self.springs(recipe, fits, network)?,
             None => self.moduli(recipe, held, &wanted)?,
         };
-        let settings = format!("{recipe:?} {:?} {:?}", springs, self.newton);
+        let settings = super::record::identity(recipe, springs, self.newton.as_ref());
         let none = vec![0.0; object.unknowns().count()];
-        let fingerprint = Fingerprint::of(&settings, &self.mesh.points, &object.network(&none), &wanted);
-        let (mut saved, snapshot) = Saved::open(self.controls, name, fingerprint)?;
+        let identity = Identity::of(settings, &self.mesh.points, &object.network(&none), &wanted);
+        let (mut saved, snapshot) = Saved::open(self.controls, name, identity)?;
         if recipe.start == Start::Equal {
             object = self.equal(object, &wanted)?;
         }
