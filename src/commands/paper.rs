@@ -60,7 +60,8 @@ impl Paper {
             || paper.tables.iter().map(report::paper_result_table).collect(),
             || paper.tables.iter().map(|table| report::paper_text(table) + "\n").collect(),
         )?;
-        let written = written?;
+        // The experiments are in a folder of their own.
+        let written: Vec<PathBuf> = written?.into_iter().filter(|path| path.parent() == Some(&folder)).collect();
         terminal.say(&format!("written: {} files in {}", written.len(), folder.display()))?;
         Ok(ExitCode::SUCCESS)
     }

@@ -151,6 +151,10 @@ impl Case {
         for entry in fs::read_dir(folder).unwrap() {
             let entry = entry.unwrap();
             let name = format!("{within}{}", entry.file_name().to_str().expect("names are text"));
+            // The list of the files of a run has sums, also of times.
+            if entry.file_name() == ".springfit.files" {
+                continue;
+            }
             let kind = entry.file_type().unwrap();
             if kind.is_dir() {
                 self.gather(&entry.path(), &format!("{name}/"), outputs);

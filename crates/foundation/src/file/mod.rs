@@ -118,10 +118,10 @@ pub fn write_seekable(path: &Path, content: impl FnOnce(&mut dyn WriteSeek) -> i
 
 /// Writes a new file by `write` and replaces the old one with it. The second argument of `write` is false if the path is a device or a pipe.
 fn replace(path: &Path, write: impl FnOnce(&fs::File, bool) -> io::Result<()>) -> Result<()> {
-    if path.file_name().is_none() || path.is_dir() {
+    if path.file_name().is_none() {
         return Err(unwritable("expected the name of a file to write, found a folder", path));
     }
-    refuse_protected(path)?;
+    check_replaceable(path)?;
     // A file that does not exist yet has no other name.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
@@ -173,6 +173,14 @@ fn probe(path: &Path, name: &Path) -> Result<()> {
     tried.map_err(|e| Error::io("nothing can be written there", e).in_file(name))
 }
 
+/// Checks that what is at this place, if anything, is a file that may be replaced.
+fn check_replaceable(path: &Path) -> Result<()> {
+    match path.is_dir() {
+        true => Err(unwritable("expected the name of a file to write, found a folder", path)),
+        false => refuse_protected(path),
+    }
+}
+
 /// Checks that [`write_whole`] could write this file.
 ///
 /// # Errors
@@ -180,11 +188,11 @@ fn probe(path: &Path, name: &Path) -> Result<()> {
 pub fn check_file(path: &Path) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match path.is_dir() {
-        true => Err(unwritable("expected the name of a file to write, found a folder", path)),
+        true => check_replaceable(path),
         false if !folder.is_dir() => Err(unwritable("cannot be written: its folder does not exist", path)),
         false if path.exists() && !path.is_file() => Ok(()),
         false => {
-            refuse_protected(path)?;
+            check_replaceable(path)?;
             probe(folder, path)
         }
     }

@@ -48,9 +48,13 @@ pub(super) fn unbroken<T>(work: impl FnOnce() -> T) -> T {
 pub(super) struct Begun(PathBuf);
 
 impl Begun {
-    pub fn at(path: &Path) -> Begun {
-        locked(&BEGUN).insert(path.to_path_buf());
-        Begun(path.to_path_buf())
+    /// Makes something, and keeps its path; an interrupt cannot come between.
+    pub fn make<T>(make: impl FnOnce() -> io::Result<T>, path: impl Fn(&T) -> &Path) -> io::Result<(T, Begun)> {
+        let mut begun = locked(&BEGUN);
+        let made = make()?;
+        let path = path(&made).to_path_buf();
+        begun.insert(path.clone());
+        Ok((made, Begun(path)))
     }
 }
 
@@ -73,12 +77,12 @@ impl Partial {
         let folder = folder_of(target);
         sweep(folder);
         loop {
-            let (file, path) = builder(0o666).tempfile_in(folder)?.into_parts();
+            let (made, begun) = Begun::make(|| builder(0o666).tempfile_in(folder), |made| made.path())?;
+            let (file, path) = made.into_parts();
             // On a file system without locks no file is ever swept.
             let _ = file.lock();
             // Another process may have swept the file between its creation and its lock.
             if path.exists() {
-                let begun = Begun::at(&path);
                 return Ok(Partial { file, path, _begun: begun });
             }
         }
@@ -113,11 +117,15 @@ impl PartialFolder {
     pub fn within(parent: &Path) -> io::Result<PartialFolder> {
         sweep(parent);
         loop {
-            let folder = builder(0o777).tempdir_in(parent)?;
-            let Ok(held) = File::create_new(folder.path().join(LOCK)) else { continue };
+            let (folder, begun) = Begun::make(|| builder(0o777).tempdir_in(parent), TempDir::path)?;
+            let held = match File::create_new(folder.path().join(LOCK)) {
+                Ok(held) => held,
+                // Another process has swept it.
+                Err(e) if e.kind() == io::ErrorKind::NotFound => continue,
+                Err(e) => return Err(e),
+            };
             let _ = held.lock();
             if folder.path().join(LOCK).exists() {
-                let begun = Begun::at(folder.path());
                 return Ok(PartialFolder { folder, _held: held, _begun: begun });
             }
         }
@@ -156,11 +164,15 @@ pub(super) fn sweep(folder: &Path) {
         let Some(kind) = entry.file_type().ok().filter(|_| is_partial(Path::new(&entry.file_name()))) else { continue };
         let path = entry.path();
         let held = if kind.is_dir() { path.join(LOCK) } else { path.clone() };
-        if !held.symlink_metadata().is_ok_and(|data| data.is_file()) {
-            continue;
-        }
-        let Ok(file) = File::options().write(true).open(&held) else { continue };
-        if file.try_lock().is_ok() {
+        let is_dead = match held.symlink_metadata() {
+            Ok(data) if data.is_file() => {
+                File::options().write(true).open(&held).is_ok_and(|file| file.try_lock().is_ok())
+            }
+            Ok(_) => false,
+            // The process ended while it removed the folder. One that has made it just now makes another.
+            Err(e) => kind.is_dir() && e.kind() == io::ErrorKind::NotFound,
+        };
+        if is_dead {
             let _ = if kind.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
         }
     }

@@ -34,7 +34,7 @@ impl Lock {
             let mut owner = String::new();
             // A lock of another system may not be readable while it is held.
             _ = (&mut file).take(4096).read_to_string(&mut owner);
-            if !(owner.is_empty() || owner.starts_with(OWNER)) {
+            if !(owner.is_empty() || is_owner(&owner)) {
                 let problem =
                     "expected the lock of a run, found a file of others: move it away, or choose another folder";
                 return Err(Error::new(problem).in_file(&path));
@@ -49,7 +49,7 @@ impl Lock {
             if !is_at(&file, &path) {
                 continue;
             }
-            let begun = Begun::at(&path);
+            let (_, begun) = Begun::make(|| Ok(path.clone()), |path| path).map_err(failed)?;
             let written =
                 file.set_len(0).and_then(|()| rewind(&file)).and_then(|()| file.write_all(own_words().as_bytes()));
             let lock = Lock { path: path.clone(), _file: file, _begun: begun };
@@ -82,6 +82,13 @@ fn options() -> OpenOptions {
 
 fn rewind(mut file: &File) -> io::Result<()> {
     io::Seek::rewind(&mut file)
+}
+
+/// Whether a text is that of a lock.
+fn is_owner(text: &str) -> bool {
+    let number =
+        text.strip_prefix(OWNER).and_then(|rest| rest.strip_suffix(")\n")).and_then(|rest| rest.split_once(" ("));
+    number.is_some_and(|(number, _)| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
 /// Whether the path leads to the open file.

@@ -12,7 +12,7 @@ mod exchange;
 mod lock;
 
 use super::partial::{PartialFolder, folder_of, sweep, unbroken};
-use super::{Sum, check_apart, check_file, check_folder, create_folder, unwritable};
+use super::{Sum, check_apart, check_folder, check_replaceable, create_folder, unwritable};
 use crate::error::{Error, Result};
 use contents::{Contents, expect_own};
 use lock::Lock;
@@ -70,8 +70,10 @@ impl Edition {
         let lock = Lock::take(folder)?;
         finish(folder)?;
         let former = Contents::of_folder(folder)?.unwrap_or_else(|| Contents::known(former));
-        for place in places.iter().filter(|place| place.symlink_metadata().is_ok()) {
-            check_file(place)?;
+        places.iter().try_for_each(|place| check_replaceable(place))?;
+        let next = folder.join(NEXT);
+        if next.symlink_metadata().is_ok() {
+            return Err(foreign(&next));
         }
         names.iter().try_for_each(|name| expect_own(folder, name, &former))?;
         sweep(folder);
@@ -204,10 +206,12 @@ fn finish(folder: &Path) -> Result<()> {
         |path: &PathBuf| path.is_dir() || path.file_name().is_some_and(|name| lock::is_lock(&name.to_string_lossy()));
     match left.iter().find(|path| !is_rest(path)) {
         None => fs::remove_dir_all(&next).map_err(failed),
-        Some(path) => {
-            Err(unwritable("stands in the way, and is not of a run: move it away, or choose another folder", path))
-        }
+        Some(path) => Err(foreign(path)),
     }
+}
+
+fn foreign(path: &Path) -> Error {
+    unwritable("stands in the way, and is not of a run: move it away, or choose another folder", path)
 }
 
 /// Removes a file of the former edition if it is as it was written, and its folder if that is empty then.
