@@ -65,7 +65,7 @@ fn main() -> ExitCode {
         // Rust aborts if an allocation fails that no estimate predicted; this ends like other errors.
         libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
-    let line = CommandLine::parse();
+    let line = CommandLine::try_parse().unwrap_or_else(|error| terminal::printable_error(error).exit());
     let mut terminal = Terminal::new(CommandLine::command, line.verbosity.level());
     line.command.run(&mut terminal).unwrap_or_else(|error| {
         terminal.clear();

@@ -6,6 +6,7 @@ use crate::file::{create_folder, write_whole};
 use crate::mesh::vtk;
 use crate::model::displaced;
 use crate::study::{ModelMotion, Outcome};
+use crate::text::xml;
 use std::path::{Path, PathBuf};
 
 /// Writes the states of a model as `STEM/0000.vtu`, …, the points where they are then, and last the collection `STEM.pvd` that
@@ -29,7 +30,7 @@ pub fn write_series(outcome: &Outcome, model: &ModelMotion, stem: &str, folder: 
         let name = format!("{i:0digits$}.vtu");
         vtk::write(&own.join(&name), &grid)?;
         let time = format!("{:.12e}", record.account.time).parse::<f64>().unwrap_or(record.account.time);
-        sets += &format!("    <DataSet timestep=\"{time}\" file=\"{stem}/{name}\"/>\n");
+        sets += &format!("    <DataSet timestep=\"{time}\" file=\"{}/{name}\"/>\n", xml(stem));
     }
     let text = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  \
