@@ -66,7 +66,7 @@ fn main() -> ExitCode {
         libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
     commands::answer_interrupts();
-    let line = CommandLine::parse();
+    let line = CommandLine::try_parse().unwrap_or_else(|error| terminal::printable_error(error).exit());
     let mut terminal = Terminal::new(CommandLine::command, line.verbosity.level());
     line.command.run(&mut terminal).unwrap_or_else(|error| {
         terminal.clear();

@@ -1,12 +1,13 @@
 //! The output of the program: results on standard output; notes, errors and progress on standard error.
 
 use clap::builder::styling::{AnsiColor, Style};
+use clap::error::{ContextKind, ContextValue};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use springfit::error::{Error, Result};
 use springfit::report;
 use springfit::study::Event;
-use springfit::text::{printable, printable_lines, time_in_words};
+use springfit::text::{cut, printable, printable_lines, time_in_words};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -216,6 +217,29 @@ impl Terminal {
             (_, false) => self.print(&format!("{line}\n")),
         }
     }
+}
+
+/// The error of a command line with the arguments that it quotes made printable, and cut if they are long.
+pub fn printable_error(mut error: clap::Error) -> clap::Error {
+    let shown = |text: &str| cut(&printable(text)).into_owned();
+    let quoted: Vec<(ContextKind, ContextValue)> = error
+        .context()
+        .filter_map(|(kind, value)| match value {
+            ContextValue::String(text) => Some((kind, ContextValue::String(shown(text)))),
+            ContextValue::Strings(texts) => {
+                Some((kind, ContextValue::Strings(texts.iter().map(|text| shown(text)).collect())))
+            }
+            _ => None,
+        })
+        .collect();
+    for (kind, value) in quoted {
+        // A suggestion has the argument once more, between styles.
+        if error.get(kind) != Some(&value) {
+            drop(error.remove(ContextKind::Suggested));
+        }
+        drop(error.insert(kind, value));
+    }
+    error
 }
 
 /// The columns of the terminal or of `COLUMNS`, which goes first.

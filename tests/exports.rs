@@ -253,3 +253,89 @@ fn gravity_has_the_dimension_of_the_network() {
     assert_eq!(error, expected);
     assert!(picture.files(network, None).is_ok());
 }
+
+/// LAMMPS has 32 groups at most, and a line of input a bound; `group` adds to a group that is there.
+#[test]
+fn lammps_holds_any_number_of_points_with_three_groups() {
+    let many = SCENE.replace("[2, 2, 2]", "[75, 75, 1]");
+    let body = many.split("[[fit]]").next().unwrap();
+    let scene = format!("{body}[[fit]]\nobjective = \"offdiag\"\nsprings = [\"edge\"]\n[[fix]]\ngroup = \"zmin\"\n");
+    let network = networks(&scene).into_values().next().unwrap();
+    assert!(network.held.len() > 5000);
+    let input = String::from_utf8(texts("lammps", &network)["in.network"].clone()).unwrap();
+    let lines = |word: &str| input.lines().filter(|line| line.starts_with(word)).collect::<Vec<_>>();
+    let groups: std::collections::BTreeSet<&str> =
+        lines("group ").iter().map(|line| line.split(' ').nth(1).unwrap()).collect();
+    assert_eq!(groups.into_iter().collect::<Vec<_>>(), ["heldx", "heldy", "heldz"]);
+    assert_eq!(lines("fix held").len(), 3);
+    for axis in ["x", "y", "z"] {
+        let own = lines(&format!("group held{axis} id "));
+        let ids: Vec<usize> =
+            own.iter().flat_map(|line| line.split(' ').skip(3)).map(|id| id.parse().unwrap()).collect();
+        assert_eq!(ids, network.held.iter().map(|held| held.point + 1).collect::<Vec<_>>());
+        assert!(own.iter().all(|line| line.len() < 16_000));
+    }
+}
+
+/// Numbers that are infinite in single precision are refused by name, for every program.
+#[test]
+fn numbers_that_a_program_cannot_hold_are_named() {
+    let network = &networks(SCENE)["classical"];
+    let changed = |change: fn(&mut NetworkRecord)| {
+        let mut network = network.clone();
+        change(&mut network);
+        network
+    };
+    let cases: [(NetworkRecord, &str); 9] = [
+        (changed(|n| n.points[3][1] = 1e300), "points[3][1]"),
+        (changed(|n| n.points[3][1] = f64::NAN), "points[3][1]"),
+        (changed(|n| n.masses.as_mut().unwrap()[2] = 1e39), "masses[2]"),
+        (changed(|n| n.springs[5].constant = 1e308), "springs[5].constant"),
+        (changed(|n| n.springs[5].rest = f64::INFINITY), "springs[5].rest"),
+        (changed(|n| n.springs[5].damper = -1e39), "springs[5].damper"),
+        (changed(|n| n.gravity = Some(vec![0.0, 0.0, -1e308])), "gravity[2]"),
+        (changed(|n| n.largest_step = Some(1e200)), "largest_step"),
+        (changed(|n| n.damping.mass = 1e300), "damping.mass"),
+    ];
+    for target in &TARGETS {
+        for (network, key) in &cases {
+            let error = target.files(network, None).err().unwrap();
+            assert_eq!(error.key(), Some(*key), "{}: {error}", target.name);
+            assert!(
+                error.problem().starts_with("expected a number of at most 3.4e38, as single precision holds, found ")
+            );
+        }
+        for wrong in [[0.0, 0.0, 1e308], [1e39, 0.0, 0.0], [0.0, f64::NAN, 0.0], [f64::NEG_INFINITY, 0.0, 0.0]] {
+            let error = target.files(network, Some(&wrong)).err().unwrap();
+            assert_eq!(error.key(), Some("--gravity"), "{}: {error}", target.name);
+        }
+        // What is taken is finite, also where numbers are multiplied.
+        let large = changed(|n| n.gravity = Some(vec![0.0, 0.0, -3e38]));
+        for (name, bytes) in
+            target.files(&large, None).into_iter().flatten().filter_map(|(name, content)| match content {
+                Content::Bytes(bytes)
+                    if !name.ends_with(".npz") && !name.ends_with(".py") && !name.ends_with(".mjs") =>
+                {
+                    Some((name, bytes))
+                }
+                _ => None,
+            })
+        {
+            let text = String::from_utf8(bytes).unwrap();
+            let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            let wrong: Vec<&str> = words.filter(|word| ["inf", "nan", "NaN", "null"].contains(word)).collect();
+            assert!(wrong.is_empty(), "{} {name}", target.name);
+        }
+    }
+}
+
+/// A compliance is the inverse of a constant.
+#[test]
+fn jolt_has_no_edge_without_force() {
+    let mut network = networks(SCENE).remove("classical").unwrap();
+    let count = network.springs.len();
+    (network.springs[0].constant, network.springs[1].constant) = (0.0, 1e-45);
+    let text = String::from_utf8(texts("jolt", &network)["network.json"].clone()).unwrap();
+    let body: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(body["edges"].as_array().unwrap().len(), count - 2);
+}

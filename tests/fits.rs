@@ -11,6 +11,8 @@ use springfit::material::{Material, Moduli};
 use springfit::mesh::BoxMesh;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
+use springfit::study::FitEntry;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Every weight; of the modal ones the default and that of no weight.
@@ -393,7 +395,12 @@ fn gaps_are_checked() {
         let error = Fit { gap, ..spectral }.check_gap().unwrap_err().to_string();
         assert!(error.contains("gap: expected a number from 0 to 1e-8"), "{error}");
     }
-    let error = Fit { gap: 1e-8, ..Fit::new(Objective::Frobenius(Weight::None)) }.check_gap().unwrap_err().to_string();
+    let other = Fit { gap: 1e-8, ..Fit::new(Objective::Frobenius(Weight::None)) };
+    assert_eq!(other.check_gap().unwrap_err(), other.check_proofs().unwrap_err());
+    // Also a gap of none is named in vain.
+    let entry = FitEntry::new("frobenius").with("gap", Some(0.0));
+    assert!(entry.fits(Path::new("")).unwrap_err().to_string().starts_with("gap: belongs to"));
+    let error = other.check_gap().unwrap_err().to_string();
     assert!(error.contains("gap: belongs to objective = \"spectral\""), "{error}");
 }
 

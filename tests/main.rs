@@ -97,6 +97,7 @@ mod sums;
 mod sweeps;
 mod symbols;
 mod symmetry;
+mod texts;
 mod typeset;
 mod voxels;
 mod whole;

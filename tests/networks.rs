@@ -329,3 +329,48 @@ fn arrays_go_through_a_pipe_as_they_go_to_a_file() {
     format.write(&pipe, &file).unwrap();
     assert!(read.join().unwrap() == fs::read(&path).unwrap());
 }
+
+/// `c(x + t) = c(x)` for every t: otherwise a body that is moved would have forces.
+#[test]
+fn a_measure_that_a_translation_changes_is_refused_with_its_spring() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("n.json");
+    let read = |network: &NetworkRecord| {
+        fs::write(&path, serde_json::to_string(network).unwrap()).unwrap();
+        read_network(&path)
+    };
+    let outcome = outcome(TETRAHEDRA);
+    for fit in &outcome.fits {
+        let network = NetworkFile::of(&outcome, fit).record();
+        let spring = network.springs.iter().position(|s| network.measures[s.measure].kind == MeasureKind::Content);
+        let (spring, mut wrong) = (spring.unwrap(), network.clone());
+        let measure = network.springs[spring].measure;
+        let expected = format!(
+            "springs[{spring}].measure: expected gradients of measures[{measure}] that add up to zero, so that a body that is moved has no forces, found a sum of "
+        );
+        for (size, is_refused) in [(1e-3, true), (1e-5, true), (1e-8, false)] {
+            wrong.measures = network.measures.clone();
+            wrong.measures[measure].terms[0].gradients[1][0] += size;
+            match read(&wrong) {
+                Ok(_) => assert!(!is_refused, "{size}"),
+                Err(error) => assert!(is_refused && error.to_string().contains(&expected), "{error}"),
+            }
+        }
+        for (text, words) in [
+            ("x1 - x0 + y2 - y1", None),
+            ("x1 - 0.5*x0", Some(&expected[..])),
+            ("x1*y0", Some(&expected[..])),
+            ("x1 - q", Some("springs[")),
+            ("import os", Some("springs[")),
+        ] {
+            wrong.measures = network.measures.clone();
+            let own = &mut wrong.measures[measure];
+            (own.kind, own.expression) = (MeasureKind::Expression, Some(text.into()));
+            match (read(&wrong), words) {
+                (Ok(_), None) => {}
+                (Err(error), Some(words)) => assert!(error.to_string().contains(words), "{error}"),
+                (found, _) => panic!("{text}: {:?}", found.map(|_| "read")),
+            }
+        }
+    }
+}

@@ -71,11 +71,13 @@ fn a_page_asks_for_nothing() {
 
 #[test]
 fn no_text_of_a_file_is_read_as_html() {
-    let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\u{1b}[31m";
-    let title = format!("title = {evil:?}\n").replace("\\u{1b}", "\\u001b");
+    let evil = "</script><script>alert(1)</script><img src=x onerror=alert(2)>";
+    let title = format!("title = {evil:?}\n");
     let fit = FIT.to_string() + &format!("name = {:?}\n", "<b onclick='alert(3)'>&amp;");
     let load = LOAD.replace("[[load]]\n", &format!("[[load]]\nname = {:?}\n", "</title><svg onload=alert(4)>"));
-    let outcome = outcome(&[&title, PLANE, &fit, &load].concat());
+    let mut outcome = outcome(&[&title, PLANE, &fit, &load].concat());
+    // No file says this; a program may.
+    outcome.scene += "\u{1b}[31m";
     let page = page(&outcome);
     for markup in ["<script>alert", "<img src", "<b onclick", "<svg"] {
         assert!(!page.contains(markup), "{markup}");

@@ -4,6 +4,7 @@
 use crate::arguments::check_mask;
 use crate::ends::Ends;
 use crate::error::{invalid, raised};
+use crate::progress::calling;
 use numpy::ndarray::ArrayD;
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -47,7 +48,8 @@ impl Function {
             return None;
         }
         let called = || {
-            let found = self.call.bind(py).call1(arguments(py)?)?;
+            let arguments = arguments(py)?;
+            let found = calling(|| self.call.bind(py).call1(arguments))?;
             check_mask(&self.key, &found)?;
             let found = py.import("numpy")?.call_method1("asarray", (found,))?;
             let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use springfit::error::{Error, ErrorKind, Result};
 use springfit::study::Event;
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::process;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -23,13 +24,37 @@ static OWNER: OnceLock<u32> = OnceLock::new();
 /// The threads of a process that was forked from it, which has none of the owner's.
 static FORKED: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
+thread_local! {
+    /// Whether this thread calls a function of Python for a work, whose threads wait for the function.
+    static CALLS: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Calls a function of Python on a thread of a work. What the function asks of this module is worked out on threads of its own: those of the
+/// work wait for the function, or for the interpreter's lock to call it as well.
+pub fn calling<T>(call: impl FnOnce() -> T) -> T {
+    let before = CALLS.replace(true);
+    let called = call();
+    CALLS.set(before);
+    called
+}
+
 /// Runs `work` to its end without the interpreter's lock, also in a process that was forked after the library has worked. For work that is
 /// short, and for files, which are not to be left half written.
 pub fn apart<T: Send>(py: Python, work: impl FnOnce() -> T + Send) -> T {
-    py.detach(|| on_own_threads(work))
+    let is_called = CALLS.get();
+    py.detach(|| on_own_threads(is_called, work))
 }
 
-fn on_own_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+/// Of a work that a function of Python has asked for (`is_called`), or of a process.
+fn on_own_threads<T: Send>(is_called: bool, work: impl FnOnce() -> T + Send) -> T {
+    if is_called {
+        // One thread: those that wait are as many as there are processors. Where none can be started, the work has this one alone, which
+        // may wait for itself no longer than other functions take.
+        return match ThreadPoolBuilder::new().num_threads(1).stack_size(STACK).build() {
+            Ok(pool) => pool.install(work),
+            Err(_) => work(),
+        };
+    }
     let own = process::id();
     if *OWNER.get_or_init(|| own) == own {
         return work();
@@ -101,9 +126,9 @@ fn watched<T: Send + 'static>(
     work: impl FnOnce(&mut dyn FnMut(Event)) -> Result<T> + Send + 'static,
 ) -> PyResult<T> {
     let (tell, told) = mpsc::channel();
-    let (own, steps) = (ends.clone(), listener.is_some().then(|| tell.clone()));
+    let (own, steps, is_called) = (ends.clone(), listener.is_some().then(|| tell.clone()), CALLS.get());
     let worker = move || {
-        let outcome = catch_unwind(AssertUnwindSafe(|| on_own_threads(|| work(&mut reporter(&own, steps)))));
+        let outcome = catch_unwind(AssertUnwindSafe(|| on_own_threads(is_called, || work(&mut reporter(&own, steps)))));
         // Nobody waits for it after an interrupt.
         let _ = tell.send(Told::Done(outcome));
     };

@@ -4,6 +4,7 @@ use crate::arguments::{self, found};
 use crate::error::invalid;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use springfit::text::toml as quoted;
 use toml::{Table, Value};
 
 /// The most values inside each other; TOML is read to a similar depth.
@@ -35,17 +36,6 @@ pub fn inline(value: &Value) -> String {
             format!("{{{}}}", entries.join(", "))
         }
     }
-}
-
-/// A basic string of TOML.
-fn quoted(text: &str) -> String {
-    let escaped = text.chars().map(|c| match c {
-        '"' => "\\\"".into(),
-        '\\' => "\\\\".into(),
-        c if c.is_control() => format!("\\U{:08x}", u32::from(c)),
-        c => c.to_string(),
-    });
-    format!("\"{}\"", escaped.collect::<String>())
 }
 
 fn keyed(given: &Bound<PyDict>, name: &str, parent: &str, depth: usize) -> PyResult<Table> {

@@ -270,3 +270,44 @@ def test_ctrl_c_ends_a_function():
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=20)
     assert errors.rstrip().endswith("KeyboardInterrupt") and process.returncode != 0, errors
+
+
+INNER = """
+import sys
+import numpy as np
+import springfit as sf
+
+mesh, material = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[2, 2, 2]), sf.Material(10e3, 0.3)
+net = sf.fit(mesh, material)
+lam, mu = 10e3 * 0.3 / (1.3 * 0.4), 10e3 / 2.6
+inner = {
+    "mesh": lambda: sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1]),
+    "fit": lambda: sf.fit(sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1]), material),
+    "energy": net.energy,
+    "stiffness": lambda: sf.stiffness(mesh, material),
+    "sampled": lambda: sf.sampled(mesh, material, neo_hookean, springs=["edge"], shapes={"count": 3}),
+    "none": lambda: None,
+}[sys.argv[1]]
+
+
+def neo_hookean(f):
+    j = np.linalg.det(f)
+    return mu / 2 * (np.einsum("nij,nij->n", f, f) - 3) - mu * np.log(j) + lam / 2 * np.log(j) ** 2
+
+
+def energy(f):
+    inner()
+    return neo_hookean(f)
+
+
+print(repr(sf.sampled(mesh, material, energy, springs=["edge"], shapes={"count": 5}).constants.sum()))
+"""
+
+
+def test_a_function_may_use_the_module():
+    """On threads of its own: those of the fit wait for the function. In a process of its own, which a deadlock does not keep."""
+    call = lambda what: subprocess.run([sys.executable, "-c", INNER, what], capture_output=True, text=True, timeout=100, check=True).stdout
+    expected = call("none")
+    assert float(expected) > 0
+    for what in ["mesh", "fit", "energy", "stiffness", "sampled"]:
+        assert call(what) == expected, what

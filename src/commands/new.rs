@@ -9,6 +9,7 @@ use springfit::mesh::{Mesh, listed_endings};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{DraftMaterial, DraftSource, draft};
+use springfit::text::{not_a_line, printable};
 use springfit::{check_file, write_whole};
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
@@ -56,9 +57,13 @@ impl New {
         let file = from_folder(&self.mesh, folder.unwrap_or(Path::new("")));
         let elements: Vec<String> =
             self.options.elements().iter().map(|name| own_file(name, folder.unwrap_or(Path::new("")))).collect();
-        let title = self.mesh.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let title = self.mesh.file_stem().unwrap_or_default().to_string_lossy();
+        let title = printable(&title);
         let unit = self.options.unit();
         let file = file.to_string_lossy();
+        if let Some(problem) = not_a_line(&file, false) {
+            return Err(Error::new(format!("cannot be named in a scene: {problem}")).in_file(&self.mesh));
+        }
         let fill = self.options.filling(&self.mesh);
         let numbers = fill.as_ref().map(|fill| fill.cell.to_string()).unwrap_or_default();
         let here = folder.unwrap_or(Path::new(""));

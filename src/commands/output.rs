@@ -98,9 +98,12 @@ impl OutputOptions {
 
 /// The command as it was typed, for files that say where they come from.
 pub fn command() -> String {
-    let words = std::env::args().skip(1).map(|word| match word.chars().any(|c| c.is_whitespace() || c == '"') {
-        true => format!("{word:?}"),
-        false => word,
+    let words = std::env::args_os().skip(1).map(|word| {
+        let word = word.to_string_lossy();
+        match word.chars().any(|c| c.is_whitespace() || c.is_control() || c == '"') {
+            true => format!("{word:?}"),
+            false => word.into_owned(),
+        }
     });
     std::iter::once("springfit".to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

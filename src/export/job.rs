@@ -1,5 +1,6 @@
 //! A network on its way to another program, checked against what that program holds.
 
+use super::extent::check_parts;
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{NetworkRecord, Parts};
 use std::collections::HashSet;
@@ -76,6 +77,7 @@ impl<'a> Job<'a> {
         }
         let step = network.largest_step.ok_or_else(|| Error::expected("largest_step", "a step in s", "none"))?;
         let parts = Parts::of(network)?;
+        check_parts(&parts)?;
         if let (Some(part), false) = (parts.contents.first(), holds.volumes && d == 3) {
             let found = format!("a spring on the content of {}", named(network, &part.points));
             let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
@@ -170,7 +172,8 @@ impl<'a> Job<'a> {
             let (volume, _) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
             (&part.points[..], part.rest / volume)
         });
-        let Some((points, share)) = lengths.chain(contents).find(|(_, share)| (share - 1.0).abs() > BALANCED) else {
+        let Some((points, share)) = lengths.chain(contents).find(|(_, share)| !((share - 1.0).abs() <= BALANCED))
+        else {
             return Ok(());
         };
         let expected = format!("springs that do not pull at rest, which {program} holds");
@@ -201,7 +204,7 @@ impl<'a> Job<'a> {
             }
         }
         let largest = sums.values().map(|sum| sum[1]).fold(0.0, f64::max);
-        match sums.iter().find(|(_, sum)| sum[0].abs() > BALANCED * largest) {
+        match sums.iter().find(|(_, sum)| !(sum[0].abs() <= BALANCED * largest)) {
             None => Ok(()),
             Some((edge, _)) => {
                 let expected =

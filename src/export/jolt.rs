@@ -34,6 +34,11 @@ struct SoftBody {
     surface: Vec<[usize; 3]>,
 }
 
+/// Whether the inverse of the constant is a number of single precision. A spring that is softer has no force.
+fn has_compliance(constant: f64) -> bool {
+    1.0 / constant <= f64::from(f32::MAX)
+}
+
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "Jolt", &HOLDS)?;
     let body = SoftBody {
@@ -41,7 +46,13 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
         masses: job.masses.to_vec(),
         held: job.held_along(0),
         gravity: job.gravity,
-        edges: job.parts.lengths.iter().map(|s| (s.points[0], s.points[1], s.constant, s.rest)).collect(),
+        edges: job
+            .parts
+            .lengths
+            .iter()
+            .filter(|s| has_compliance(s.constant))
+            .map(|s| (s.points[0], s.points[1], s.constant, s.rest))
+            .collect(),
         volumes: job.parts.contents.iter().map(|s| (s.points.to_vec(), s.constant, s.rest)).collect(),
         surface: network.surface.clone(),
     };

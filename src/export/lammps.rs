@@ -71,11 +71,11 @@ fn input(job: &Job) -> String {
         let points: Vec<String> = job.held_along(k).iter().map(|p| (p + 1).to_string()).collect();
         if !points.is_empty() {
             let zero = ["0 NULL NULL", "NULL 0 NULL", "NULL NULL 0"][k];
-            // A line of input may not be too long.
-            for (i, some) in points.chunks(500).enumerate() {
-                writeln!(held, "group held{axis}{i} id {}", some.join(" ")).expect("a String grows");
-                writeln!(held, "fix held{axis}{i} held{axis}{i} setforce {zero}").expect("a String grows");
+            // A line of input may not be too long; each adds to the group, of which there may be 32.
+            for some in points.chunks(500) {
+                writeln!(held, "group held{axis} id {}", some.join(" ")).expect("a String grows");
             }
+            writeln!(held, "fix held{axis} held{axis} setforce {zero}").expect("a String grows");
         }
     }
     let (boundary, plane) = if d == 2 { ("s s p", "fix plane all enforce2d\n") } else { ("s s s", "") };

@@ -1,5 +1,6 @@
 //! Arrays of NumPy.
 
+use super::extent::check_parts;
 use super::job::Job;
 use super::target::{Content, NamedFile, Target, content_dampers};
 use crate::error::Result;
@@ -19,7 +20,9 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     let mut network = network.clone();
     network.gravity = gravity.map(<[f64]>::to_vec).or(network.gravity);
     let mut bytes = Cursor::new(Vec::new());
-    network_npz(&network, &Parts::of(&network)?, &mut bytes).expect("a Vec grows");
+    let parts = Parts::of(&network)?;
+    check_parts(&parts)?;
+    network_npz(&network, &parts, &mut bytes).expect("a Vec grows");
     Ok(vec![("network.npz", Content::Bytes(bytes.into_inner()))])
 }
 

@@ -1,5 +1,6 @@
 //! What an export is: a row for each program, and its files.
 
+use super::extent::check_numbers;
 use crate::error::{Error, Result};
 use crate::file::write_whole;
 use crate::mesh::vtk::{self, Grid};
@@ -58,12 +59,13 @@ impl Target {
     /// last axis.
     ///
     /// # Errors
-    /// The gravity has another dimension; or the program does not hold the network: the error says what it holds and which fit has it.
+    /// The gravity has another dimension; a number is not finite in single precision; or the program does not hold the network: the error says what it holds and which fit has it.
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
         if let Some(asked) = gravity.filter(|asked| asked.len() != network.dimension) {
             let expected = format!("{} numbers in m/s²", network.dimension);
             return Err(Error::expected("--gravity", expected, asked.len()));
         }
+        check_numbers(network, gravity)?;
         (self.write)(network, gravity)
     }
 

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::fit::{ClosedFit, ClosedForm, ExactForm, Modulus};
 use crate::material::Plane;
 use crate::symbolic::{Fraction, Polynomial};
+use crate::text::{comment, latex};
 use num_rational::BigRational;
 use std::fmt::Write;
 
@@ -63,7 +64,8 @@ impl Derivation<'_> {
 
     /// LaTeX, for a document that loads amsmath.
     pub fn latex(&self) -> String {
-        let mut text = format!("% {}: {}; {}\n", self.element.name, self.element.title, self.meaning());
+        let about = format!("{}: {}; {}", self.element.name, self.element.title, self.meaning());
+        let mut text = comment("% ", &about) + "\n";
         if self.matrix {
             text += "\\begin{align*}\n";
             self.each_entry(|i, j, entry| {
@@ -78,7 +80,7 @@ impl Derivation<'_> {
         for fit in self.fits.iter().flatten() {
             writeln!(text, "% {}\n\\begin{{align*}}", objective(fit)).expect("a String grows");
             for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
-                let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
+                let name = format!("k_{{\\text{{{} {}}}}}", latex(&class.group), nodes(&class.springs[0]));
                 writeln!(text, "  {name} &= {} \\\\", self.constant_latex(constants)).expect("a String grows");
             }
             text += "\\end{align*}\n";
@@ -117,7 +119,7 @@ impl Derivation<'_> {
             "% exact: springs of rest length zero between all nodes, and springs on the content\n\\begin{align*}\n";
         for (class, constant) in &exact.pairs {
             let constants = [zero.clone(), constant.clone()];
-            let name = format!("k_{{\\text{{{} {}}}}}", class.group, nodes(&class.springs[0]));
+            let name = format!("k_{{\\text{{{} {}}}}}", latex(&class.group), nodes(&class.springs[0]));
             writeln!(text, "  {name} &= {} \\\\", self.constant_latex(&constants)).expect("a String grows");
         }
         let content = exact.content.latex(&self.names(Notation::Latex));

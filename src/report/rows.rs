@@ -1,14 +1,15 @@
 //! Tables as CSV.
 
-use crate::text::printable_lines;
+use crate::text;
 
-/// A header and rows as CSV text: cells with commas, quotes or line ends are quoted.
+/// A header and rows as CSV text: cells with commas, quotes or line ends are quoted, and no text is a formula of a spreadsheet.
 pub(super) fn csv<H: AsRef<str>>(header: &[H], rows: &[Vec<String>]) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    let header = header.iter().map(|cell| printable_lines(cell.as_ref()).into_owned());
+    let cell = |cell: &str| text::csv(&text::printable_lines(cell)).into_owned();
+    let header = header.iter().map(|heading| cell(heading.as_ref()));
     writer.write_record(header).expect("memory takes a record");
     for row in rows {
-        writer.write_record(row.iter().map(|cell| printable_lines(cell).into_owned())).expect("memory takes a record");
+        writer.write_record(row.iter().map(|text| cell(text))).expect("memory takes a record");
     }
     let text = writer.into_inner().expect("memory takes all records");
     String::from_utf8(text).expect("cells are text")

@@ -6,6 +6,7 @@ use crate::file::{Edition, write_whole};
 use crate::mesh::vtk;
 use crate::model::displaced;
 use crate::study::{ModelMotion, Outcome};
+use crate::text::xml;
 
 /// Writes the states of a model as `STEM/0000.vtu`, …, the points where they are then, and last the collection `STEM.pvd` that
 /// names them with their times.
@@ -26,7 +27,7 @@ pub fn write_series(outcome: &Outcome, model: &ModelMotion, stem: &str, edition:
         let name = format!("{stem}/{i:0digits$}.vtu");
         edition.write(&name, |path| vtk::write(path, &grid))?;
         let time = format!("{:.12e}", record.account.time).parse::<f64>().unwrap_or(record.account.time);
-        sets += &format!("    <DataSet timestep=\"{time}\" file=\"{name}\"/>\n");
+        sets += &format!("    <DataSet timestep=\"{time}\" file=\"{}\"/>\n", xml(&name));
     }
     let text = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  \

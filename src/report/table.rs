@@ -229,7 +229,8 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
 fn fibres(outcome: &Outcome) -> Option<String> {
     let (law, share) = (outcome.law.as_ref()?, 100.0 * outcome.fibres?);
     Some(format!(
-        "{law}: with its fibres the elasticity tensor at rest differs by {share:.1} % from that of E and nu. Errors of matrices, the networks as          materials and fits of linear springs are for E and nu, without fibres"
+        "{law}: with its fibres the elasticity tensor at rest differs by {share:.1} % from that of E and nu. Errors of matrices, the networks \
+         as materials and fits of linear springs are for E and nu, without fibres"
     ))
 }
 

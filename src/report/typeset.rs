@@ -1,7 +1,7 @@
 //! Tables of a report as LaTeX and as Markdown.
 
 use super::result_table::ResultTable;
-use crate::text::printable;
+use crate::text;
 use clap::ValueEnum;
 use std::fmt::Write;
 
@@ -35,7 +35,7 @@ fn heading(title: &str, unit: &str) -> String {
 
 fn markdown(table: &ResultTable) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-    let cell = |text: &str| printable(text).replace('\\', "\\\\").replace('|', "\\|").replace('<', "&lt;");
+    let cell = text::markdown;
     let mut text = format!("**{}**\n\n", cell(&table.title));
     text += &line(table.columns.iter().map(|c| cell(&heading(&c.title, &c.unit))).collect());
     text += &line(table.columns.iter().map(|c| if c.numbers { "---:" } else { "---" }.to_string()).collect());
@@ -73,31 +73,9 @@ fn number(text: &str) -> String {
     text.split_whitespace().map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// Words without the characters that LaTeX reads as commands, and with those beyond ASCII that it may not know as commands.
+/// A text with the notation of formulas that reports use.
 fn escaped(text: &str) -> String {
-    let mut safe = String::new();
-    for c in printable(text).replace(">=", "≥").replace("<=", "≤").replace("|R-K|/|R|", "‖").chars() {
-        match c {
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => safe.extend(['\\', c]),
-            '\\' => safe.push_str("\\textbackslash{}"),
-            '~' => safe.push_str("\\textasciitilde{}"),
-            '^' => safe.push_str("\\textasciicircum{}"),
-            '<' | '>' | '|' => safe.extend(['$', c, '$']),
-            '−' => safe.push_str("$-$"),
-            '–' => safe.push_str("--"),
-            'ν' => safe.push_str("$\\nu$"),
-            'ρ' => safe.push_str("$\\rho$"),
-            '×' => safe.push_str("$\\times$"),
-            '†' => safe.push_str("$\\dagger$"),
-            '²' => safe.push_str("$^2$"),
-            '³' => safe.push_str("$^3$"),
-            '…' => safe.push_str("\\dots{}"),
-            'µ' => safe.push_str("\\textmu{}"),
-            '‖' => safe.push_str("$\\|R-K\\|/\\|R\\|$"),
-            '≤' => safe.push_str("$\\le$"),
-            '≥' => safe.push_str("$\\ge$"),
-            _ => safe.push(c),
-        }
-    }
-    safe
+    let parts = text.replace(">=", "≥").replace("<=", "≤");
+    let parts: Vec<String> = parts.split("|R-K|/|R|").map(text::latex).collect();
+    parts.join("$\\|R-K\\|/\\|R\\|$")
 }

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 const LAYERS: [&str; 33] = [
     "shipped",
     "multigrid",
-    "page",
     "text",
+    "page",
     "error",
     "bound",
     "range",

@@ -1,7 +1,7 @@
 //! The error type of springfit: what kind of fault an input has, where it is, what was expected there and what was
 //! found.
 
-use crate::text::printable;
+use crate::text::{cut, cut_path, printable};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -35,6 +35,9 @@ pub enum ErrorKind {
 /// an argument, or a part of a mesh (`$Nodes`, `node 4`). The wording of the problem may change between versions; programs
 /// use [`kind`](Error::kind), [`file`](Error::file), [`line`](Error::line) and [`key`](Error::key).
 ///
+/// Names, values and expressions that are quoted are on one line, without characters that a terminal interprets; long ones are cut, and
+/// their length is told.
+///
 /// An optimum that the solver does not reach and a network that is not stable are not errors but a status of the result.
 ///
 /// Two errors are equal if their kind, place and problem are equal; the source is not compared.
@@ -51,7 +54,7 @@ pub struct Error {
 impl Error {
     /// A fault without a key, in words; [`ErrorKind::Invalid`] unless [`of_kind`](Error::of_kind) changes it.
     pub fn new(problem: impl Into<String>) -> Self {
-        let problem = line(problem.into());
+        let problem = cut(&line(problem.into())).into_owned();
         Error { kind: ErrorKind::Invalid, file: None, line: None, key: None, problem, source: None }
     }
 
@@ -85,7 +88,7 @@ impl Error {
 
     /// The same fault with more words after the problem.
     pub fn followed_by(mut self, words: impl fmt::Display) -> Self {
-        self.problem = line(format!("{}{words}", self.problem));
+        self.problem = cut(&line(format!("{}{words}", self.problem))).into_owned();
         self
     }
 
@@ -168,13 +171,13 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let file = self.file.as_ref().map(|file| file.display().to_string());
         match (file.as_deref().map(printable), self.line) {
-            (Some(file), Some(line)) => write!(f, "{file}:{line}: ")?,
-            (Some(file), None) => write!(f, "{file}: ")?,
+            (Some(file), Some(line)) => write!(f, "{}:{line}: ", cut_path(&file))?,
+            (Some(file), None) => write!(f, "{}: ", cut_path(&file))?,
             (None, Some(line)) => write!(f, "line {line}: ")?,
             (None, None) => {}
         }
         if let Some(key) = &self.key {
-            write!(f, "{key}: ")?;
+            write!(f, "{}: ", cut(key))?;
         }
         f.write_str(&self.problem)
     }

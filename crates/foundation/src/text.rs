@@ -1,7 +1,11 @@
 //! Texts from outside the program, made safe to print, and numbers as text.
 
+mod grammar;
+mod length;
 mod numerals;
 
+pub use grammar::{comment, csv, latex, markdown, of_csv, toml, xml};
+pub use length::{cut, cut_path};
 pub use numerals::{push_exponential, push_list, push_number, push_whole};
 
 use std::borrow::Cow;
@@ -16,6 +20,57 @@ pub fn printable(text: &str) -> Cow<'_, str> {
 /// The text without characters that a terminal interprets; line ends are kept.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     replaced(text, |c| c != '\n' && acts_on_terminal(c))
+}
+
+/// Keys of files whose texts are expressions or quantities, which may have several lines, as may what is inside a table of such a name.
+/// All other texts are names and titles.
+const EXPRESSIONS: [&str; 24] = [
+    // Of elements and materials.
+    "shape",
+    "measure",
+    "energy",
+    "let",
+    "at",
+    "points",
+    "weights",
+    // Of scenes.
+    "where",
+    "young",
+    "poisson",
+    "density",
+    "thickness",
+    "area",
+    "parameters",
+    "stiffness",
+    "axes",
+    "fibre",
+    "traction",
+    "body",
+    "force",
+    "displacement",
+    // Of networks, beside these.
+    "expression",
+    "law",
+    "over",
+];
+
+/// Whether the texts of a key of a file are expressions: those may have line ends and tabs.
+pub fn is_expression(key: &str) -> bool {
+    EXPRESSIONS.contains(&key)
+}
+
+/// What keeps a text from being one printable line, in words: its first character that ends a line or acts on a terminal. Line ends and
+/// tabs are allowed in expressions.
+///
+/// Every text of a file of elements, materials, scenes and networks is checked by this function when it is read.
+pub fn not_a_line(text: &str, is_expression: bool) -> Option<String> {
+    let is_wrong = |c: char| acts_on_terminal(c) && !(is_expression && matches!(c, '\n' | '\r' | '\t'));
+    let (place, wrong) = text.chars().enumerate().find(|(_, c)| is_wrong(*c))?;
+    let what = if matches!(wrong, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}') { "a line end, " } else { "" };
+    Some(format!(
+        "expected one line of printable characters, found {what}U+{:04X} after {place} characters of \"{text}\"",
+        u32::from(wrong)
+    ))
 }
 
 /// A time for people: `0.20 s`, `45 s`, `12 min` or `3 h`.

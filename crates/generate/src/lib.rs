@@ -8,5 +8,5 @@ pub mod generate;
 
 // The layers below, by the same names as everywhere.
 use springfit_foundation::named::unknown;
-use springfit_foundation::{error, scalar, symbolic};
+use springfit_foundation::{error, scalar, symbolic, text};
 use springfit_kernels::{element, fit, material, springs, stiffness};

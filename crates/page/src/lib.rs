@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 use base64::prelude::{BASE64_STANDARD, Engine};
+use springfit_foundation::text::xml;
 use std::io::{self, Write};
 
 const TEMPLATE: &str = include_str!("../assets/page.html");
@@ -40,7 +41,7 @@ pub fn write(title: &str, record: &str, to: &mut dyn Write) -> io::Result<()> {
         let (place, after) = after.split_once("}}").expect("the template closes its places");
         to.write_all(before.as_bytes())?;
         match place {
-            "title" => to.write_all(escaped(title).as_bytes())?,
+            "title" => to.write_all(xml(title).as_bytes())?,
             "style" => to.write_all(STYLE.as_bytes())?,
             "record" => write_json(record, to)?,
             "library" => to.write_all(BASE64_STANDARD.encode(LIBRARY).as_bytes())?,
@@ -50,22 +51,6 @@ pub fn write(title: &str, record: &str, to: &mut dyn Write) -> io::Result<()> {
         rest = after;
     }
     to.write_all(rest.as_bytes())
-}
-
-/// Text for an element or an attribute of HTML.
-fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            _ => safe.push(c),
-        }
-    }
-    safe
 }
 
 /// JSON within a script: `<` ends the element or begins a comment, and is in strings alone, where it may be written as its number.

@@ -4,7 +4,7 @@ use super::axis::{Axis, log_marks, number};
 use super::palette::{COLORS, DASHES, REFERENCE};
 use super::sheet::{Columns, LETTERS, width};
 use crate::error::{Error, Result};
-use crate::text::printable;
+use crate::text::{printable, xml};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
@@ -314,7 +314,7 @@ fn titled(svg: &str, title: &str, millimetres: u32, (width, height): (u32, u32))
     let begin = svg.find("<svg").unwrap_or(0);
     let rest = svg[begin..].split_once('>').map_or("", |(_, rest)| rest);
     let tall = f64::from(millimetres) * f64::from(height) / f64::from(width);
-    let title = printable(title).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    let title = xml(title);
     format!(
         "<svg width=\"{millimetres}mm\" height=\"{tall:.1}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\" \
          xmlns=\"http://www.w3.org/2000/svg\">\n<title>{title}</title>{rest}"

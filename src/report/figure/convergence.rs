@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::chart::{Chart, Series, Shape};
 use crate::error::{Error, Result};
+use crate::text::of_csv;
 use std::path::Path;
 
 /// The file of a convergence study.
@@ -36,9 +37,10 @@ pub fn convergence_charts(csv: &str) -> Result<Vec<Chart>> {
     let mut curves: Vec<Curve> = Vec::new();
     for (i, row) in csv::Reader::from_reader(csv.as_bytes()).deserialize().enumerate() {
         let row: Row = row.map_err(|e| Error::new(words(&e)).on_line(i + 2))?;
-        let known = curves.iter().position(|curve| curve.load == row.load && curve.model == row.model);
+        let (load, model) = (of_csv(&row.load), of_csv(&row.model));
+        let known = curves.iter().position(|curve| curve.load == load && curve.model == model);
         let place = known.unwrap_or_else(|| {
-            curves.push(Curve { load: row.load.clone(), model: row.model.clone(), points: Vec::new(), rate: None });
+            curves.push(Curve { load: load.into(), model: model.into(), points: Vec::new(), rate: None });
             curves.len() - 1
         });
         let error = row.of_truth_percent.map(f64::abs).filter(|error| *error > 0.0 && row.h_m > 0.0);

@@ -14,6 +14,7 @@ use crate::report::fit_record::FitRecord;
 use crate::report::load_record::LoadRecord;
 use crate::report::table::notes;
 use crate::study::{BodyLoad, DampingRecipe, FitOutcome, MotionOutcome, Outcome};
+use crate::text::printable;
 use std::collections::BTreeMap;
 
 /// A network on the points of its mesh, and the study that it comes from, if there is one.
@@ -98,6 +99,8 @@ impl<'a> NetworkFile<'a> {
 
     fn provenance(&self) -> ProvenanceRecord {
         let outcome = self.study.map(|(outcome, _)| outcome);
+        // Paths, and what was typed, need not be printable lines; what is read again is.
+        let line = |text: &str| printable(text).into_owned();
         let material = outcome.and_then(|outcome| {
             let material = outcome.material.uniform()?;
             Some(MaterialDataRecord {
@@ -121,10 +124,10 @@ impl<'a> NetworkFile<'a> {
         });
         ProvenanceRecord {
             program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
-            command: outcome.and_then(|outcome| outcome.command.clone()),
-            scene: outcome.map(|outcome| outcome.scene.clone()).filter(|scene| !scene.is_empty()),
-            settings: outcome.map_or(Vec::new(), |outcome| outcome.settings.clone()),
-            mesh: outcome.map(|outcome| outcome.source.clone()).filter(|source| !source.is_empty()),
+            command: outcome.and_then(|outcome| outcome.command.as_deref().map(line)),
+            scene: outcome.map(|outcome| line(&outcome.scene)).filter(|scene| !scene.is_empty()),
+            settings: outcome.map_or(Vec::new(), |outcome| outcome.settings.iter().map(|text| line(text)).collect()),
+            mesh: outcome.map(|outcome| line(&outcome.source)).filter(|source| !source.is_empty()),
             mesh_checksum: format!("{:08x}", self.mesh.checksum()),
             material,
             fit,

@@ -3,6 +3,7 @@
 //! A structure that is described by serde is compiled once for each kind of reader. There is one kind here, whether the tree comes from a
 //! text or from a table, and it keeps the key and the place of a fault by itself.
 
+use crate::text::{is_expression, not_a_line};
 use serde::de::value::StringDeserializer;
 use serde::de::{
     DeserializeOwned, DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer, MapAccess, SeqAccess,
@@ -92,12 +93,34 @@ impl Display for Way<'_> {
 /// Reads a parsed text into a structure.
 pub(super) fn structure_of_text<T: DeserializeOwned>(root: DeTable<'_>, place: usize) -> Result<T, Fault> {
     let node = Node { content: entries(root), place: Some(place) };
+    check_texts(&node, &Way::Root, false)?;
     T::deserialize(At { node, way: &Way::Root })
 }
 
 /// Reads a table into a structure.
 pub(super) fn structure_of_table<T: DeserializeOwned>(table: toml::Table) -> Result<T, Fault> {
-    T::deserialize(At { node: Node::from(Value::Table(table)), way: &Way::Root })
+    let node = Node::from(Value::Table(table));
+    check_texts(&node, &Way::Root, false)?;
+    T::deserialize(At { node, way: &Way::Root })
+}
+
+/// Checks that keys and texts are printable lines, but for the line ends of expressions.
+fn check_texts(node: &Node, way: &Way, in_expression: bool) -> Result<(), Fault> {
+    let wrong = |problem| Fault::custom(problem).at(way, node.place);
+    match &node.content {
+        Content::Text(text) => not_a_line(text, in_expression).map_or(Ok(()), |problem| Err(wrong(problem))),
+        Content::List(items) => {
+            let mut items = items.iter().enumerate();
+            items.try_for_each(|(i, item)| check_texts(item, &Way::Item(way, i), in_expression))
+        }
+        Content::Table(entries) => entries.iter().try_for_each(|Entry { key, place, node }| {
+            if let Some(problem) = not_a_line(key, false) {
+                return Err(Fault::custom(problem).at(way, *place));
+            }
+            check_texts(node, &Way::Key(way, key), in_expression || is_expression(key))
+        }),
+        Content::Whole(_) | Content::Number(_) | Content::TooLarge | Content::Truth(_) => Ok(()),
+    }
 }
 
 fn entries(table: DeTable<'_>) -> Content {

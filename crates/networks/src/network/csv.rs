@@ -4,7 +4,7 @@ use crate::element::SpringKind;
 use crate::mesh::Mesh;
 use crate::model::{LengthSpring, MeasureSpring, Network, Support};
 use crate::springs::Law;
-use crate::text::{push_exponential, push_list};
+use crate::text::{csv, push_exponential, push_list};
 use std::io::{self, Write};
 
 /// One spring per line: `kind,points,constant,rest,unit`. Points count from 0 among those of the mesh, which has no points without a cell.
@@ -106,7 +106,7 @@ impl<W: Write> SpringTable<W> {
         text.extend_from_slice(row.kind.properties().unit.as_bytes());
         if self.lawful {
             text.push(b',');
-            push_field(text, row.law.map_or("", |(law, _)| &law.text));
+            push_field(text, &csv(row.law.map_or("", |(law, _)| &law.text)));
             text.push(b',');
             let mut joined = Vec::new();
             for (name, value) in row.law.iter().flat_map(|(law, values)| law.parameters.iter().zip(values.iter())) {
@@ -117,7 +117,7 @@ impl<W: Write> SpringTable<W> {
                 joined.push(b'=');
                 push_exponential(&mut joined, *value);
             }
-            push_field(text, &String::from_utf8_lossy(&joined));
+            push_field(text, &csv(&String::from_utf8_lossy(&joined)));
         }
         if self.numbered {
             text.push(b',');

@@ -1,7 +1,9 @@
 //! Networks as files: one record for JSON, tables and arrays, and its reader.
 
+mod balance;
 mod csv;
 mod json;
+mod lines;
 mod lists;
 mod measures;
 mod npz;

@@ -1,8 +1,9 @@
 //! Reads a network from its JSON file and checks it.
 
+use super::balance::Balance;
+use super::lines::{check_texts, words};
 use super::record::{FORMAT, MeasureKind, NETWORK_VERSION, NetworkRecord};
 use crate::error::{Error, ErrorKind, Result};
-use crate::text::printable;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -44,15 +45,9 @@ fn parse(text: &[u8]) -> Result<NetworkRecord> {
         error.on_line(e.inner().line().max(1))
     })?;
     json.end().map_err(|e| syntax(&e, text))?;
+    check_texts(text)?;
     check(&network)?;
     Ok(network)
-}
-
-/// The message without the place, which serde puts at its end.
-fn words(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    printable(text.strip_suffix(&place).unwrap_or(&text)).into_owned()
 }
 
 fn syntax(error: &serde_json::Error, text: &[u8]) -> Error {
@@ -124,6 +119,7 @@ fn check(network: &NetworkRecord) -> Result<()> {
             length(format!("measures[{m}].terms.gradients"), size, term.gradients.len())?;
         }
     }
+    let mut balance = Balance::of(network);
     for (s, spring) in network.springs.iter().enumerate() {
         let key = |name: &str| format!("springs[{s}].{name}");
         finite(key("constant"), spring.constant)?;
@@ -138,6 +134,7 @@ fn check(network: &NetworkRecord) -> Result<()> {
         let nodes = measure.cells.iter().flat_map(|cell| &cell.nodes);
         let count = spring.points.len();
         nodes.copied().try_for_each(|a| place(key("points"), "points of the spring", a, count))?;
+        balance.check(spring).map_err(|e| e.under(format!("springs[{s}]")))?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use super::extent::extent;
 use crate::mesh::{CellBlock, FillBoundary, FillLayers, Filled, Group, ListedSides, Mesh};
 use crate::quantity::Quantity;
+use crate::text::{comment, not_a_line, toml as quoted};
 use std::fmt::Write;
 
 /// Groups that are listed at most.
@@ -68,12 +69,13 @@ pub fn draft(
     let mut line = |words: &str| writeln!(text, "{words}").expect("a String grows");
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
     let sizes: Vec<String> = extent(mesh).iter().map(|x| rounded(*x, 3)).collect();
-    line(&format!("# {} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x ")));
+    let size = format!("{} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x "));
+    line(&comment("# ", &size));
     let filled = || mesh.quality.filled.iter();
     filled()
         .flat_map(Filled::lines)
         .chain(filled().filter_map(Filled::far_off))
-        .for_each(|words| line(&format!("# {words}")));
+        .for_each(|words| line(&comment("# ", &words)));
     if let Some(steps) = filled().find_map(Filled::steps) {
         line(&format!("# A traction on the surface is too large where it is not along the axes: {steps}."));
     }
@@ -220,7 +222,9 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
     let pieces = mesh.pieces();
     let held_by = |group: &&String| holds(mesh, &pieces, &mesh.groups[*group].points);
     let is_likely = |group: &&String| HELD.iter().any(|word| group.to_lowercase().contains(word));
-    let able: Vec<&String> = mesh.groups.keys().filter(held_by).collect();
+    // No scene can name another.
+    let is_name = |group: &&String| not_a_line(group, false).is_none();
+    let able: Vec<&String> = mesh.groups.keys().filter(is_name).filter(held_by).collect();
     // A group such as the whole surface leaves little to move.
     let is_small =
         |group: &&&String| (mesh.groups[**group].points.len() as f64) < MOST_HELD * mesh.point_count() as f64;
@@ -245,7 +249,11 @@ fn conditions(mesh: &Mesh, longest: f64, material: &DraftMaterial) -> Vec<String
         let ListedSides { sides, lost } = ListedSides::of(mesh, group);
         !sides.is_empty() && lost.is_empty()
     };
-    let loaded = mesh.groups.iter().find(|(_, group)| group.cells.is_empty() && is_free(group) && has_sides(group));
+    let loaded = mesh
+        .groups
+        .iter()
+        .filter(|(name, _)| is_name(name))
+        .find(|(_, group)| group.cells.is_empty() && is_free(group) && has_sides(group));
     lines.push("[[load]]\nname     = \"pull\"".into());
     lines.push(match loaded {
         Some((name, _)) => {
@@ -321,9 +329,4 @@ fn rounded(value: f64, digits: usize) -> String {
         0.0 | 1e-4..1e6 => format!("{short}"),
         _ => format!("{short:e}"),
     }
-}
-
-/// As a text of TOML, whose escapes are those of JSON.
-fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string()
 }

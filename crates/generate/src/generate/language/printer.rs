@@ -3,6 +3,7 @@
 use super::syntax::{Arguments, Syntax};
 use crate::generate::cell::in_single;
 use crate::generate::code::{Array, Atom, Function, Index, Node, Result, Role, Statement, Uses};
+use crate::text::comment;
 use std::collections::BTreeSet;
 
 /// The width of the lines of tables.
@@ -33,7 +34,9 @@ impl<'a> Printer<'a> {
     /// The whole file.
     pub fn file(&self, heading: &[String], functions: &[Function]) -> String {
         let [first, last] = self.syntax.file(self.prefix);
-        let mut lines: Vec<String> = self.comment(heading).chain([String::new()]).chain(first).collect();
+        let encoding = self.syntax.encoding().map(String::from);
+        let heading = encoding.into_iter().chain(self.comment(heading));
+        let mut lines: Vec<String> = heading.chain([String::new()]).chain(first).collect();
         let mut known = BTreeSet::new();
         for array in functions.iter().flat_map(|function| &function.arrays) {
             let (entries, is_integer): (Vec<String>, bool) = match &array.role {
@@ -61,7 +64,7 @@ impl<'a> Printer<'a> {
     }
 
     fn comment<'b>(&'b self, lines: &'b [String]) -> impl Iterator<Item = String> + 'b {
-        lines.iter().map(|line| format!("{}{line}", self.syntax.comment()))
+        lines.iter().map(|line| comment(self.syntax.comment(), line))
     }
 
     fn name(&self, array: &Array) -> String {

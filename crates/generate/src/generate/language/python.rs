@@ -13,6 +13,11 @@ impl Syntax for Python {
         "# "
     }
 
+    /// Otherwise `coding: utf-7` in a title would be one.
+    fn encoding(&self) -> Option<&'static str> {
+        Some("# -*- coding: utf-8 -*-")
+    }
+
     fn file(&self, _: &str) -> [Vec<String>; 2] {
         let mut first: Vec<String> = [
             "import math",

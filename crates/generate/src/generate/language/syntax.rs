@@ -11,6 +11,11 @@ pub trait Syntax: Debug + Sync {
         "// "
     }
 
+    /// The first line, of a language in which a comment at the top can change how the file is read.
+    fn encoding(&self) -> Option<&'static str> {
+        None
+    }
+
     /// What one level of a block is indented by.
     fn indent(&self) -> &'static str {
         "    "

@@ -2,9 +2,9 @@
 
 use super::cells::{is_known, shape};
 use super::storage::base64;
-use super::xml_tag::escaped;
 use crate::error::{Error, Result};
 use crate::file::write_with;
+use crate::text::xml;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -157,7 +157,7 @@ impl Text<'_> {
         mut values: impl ExactSizeIterator<Item = [u8; SIZE]>,
     ) -> io::Result<()> {
         let size = values.len() * SIZE;
-        let name = escaped(name);
+        let name = xml(name);
         // meshio makes a matrix of an array whose attribute says that it has one component.
         let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
         self.line(&format!("<DataArray type=\"{scalar}\" Name=\"{name}\"{components} format=\"binary\">"))?;

@@ -132,22 +132,3 @@ fn character(entity: &str) -> Option<char> {
         }
     }
 }
-
-/// A text as the value of an attribute. XML cannot represent most control characters: they become U+FFFD.
-pub(super) fn escaped(text: &str) -> String {
-    let mut value = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '<' => value.push_str("&lt;"),
-            '>' => value.push_str("&gt;"),
-            '&' => value.push_str("&amp;"),
-            '"' => value.push_str("&quot;"),
-            '\t' => value.push_str("&#9;"),
-            '\n' => value.push_str("&#10;"),
-            '\r' => value.push_str("&#13;"),
-            control if control.is_control() => value.push('\u{fffd}'),
-            other => value.push(other),
-        }
-    }
-    value
-}

@@ -25,6 +25,7 @@ use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
 use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
+use crate::text::printable;
 use std::path::{Path, PathBuf};
 
 /// A mesh, a material, fits, supports and loads, checked as far as possible without reading the mesh.
@@ -136,7 +137,7 @@ impl Scene {
         if let Some(sweep) = &entry.sweep {
             sweep.check().map_err(|e| e.under("sweep"))?;
         }
-        let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let stem = path.file_stem().map(|s| printable(&s.to_string_lossy()).into_owned()).unwrap_or_default();
         Ok(Scene {
             source,
             title: entry.title.unwrap_or(stem),

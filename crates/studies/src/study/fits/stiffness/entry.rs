@@ -23,7 +23,7 @@ pub struct StiffnessEntry {
     pub sparsity: Option<f64>,
     #[schemars(extend("enum" = Rest::NAMES))]
     pub rest: Option<String>,
-    pub gap: f64,
+    pub gap: Option<f64>,
 }
 
 impl StiffnessEntry {
@@ -42,7 +42,11 @@ impl StiffnessEntry {
         let solver = Solver::named(self.solver.as_deref().unwrap_or("native"), self.iterations, topology)?;
         let rest = self.rest.as_deref().map_or(Ok(Rest::Mesh), Rest::named).map_err(|e| e.at_key("rest"))?;
         rest.check(objective, solver)?;
-        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver, rest, gap: self.gap };
+        let gap = self.gap.unwrap_or(0.0);
+        let fit = Fit { objective, tied: self.tied, nonnegative: self.nonnegative, solver, rest, gap };
+        if self.gap.is_some() {
+            fit.check_proofs()?;
+        }
         fit.check_gap()?;
         Ok(fit)
     }

@@ -1,0 +1,90 @@
+//! Tables in LaTeX, Markdown and CSV, and scenes of `springfit new`.
+
+use super::hostile::{every, others};
+use super::readers::{of_markdown, parts, printed};
+use springfit::element::Element;
+use springfit::mesh::{BoxMesh, Group};
+use springfit::report::{CellRecord, ColumnRecord, Markup, ResultTable};
+use springfit::study::{DraftMaterial, DraftSource, draft};
+use springfit::text::{csv, not_a_line, of_csv, printable};
+use std::sync::Arc;
+
+fn table(text: &str) -> ResultTable {
+    let cell = |text: &str| CellRecord { text: text.into(), value: None };
+    let column = |numbers| ColumnRecord { title: text.into(), unit: String::new(), numbers };
+    ResultTable {
+        name: text.into(),
+        title: text.into(),
+        columns: vec![column(false), column(true), column(false)],
+        rows: vec![vec![cell(text), cell("1.5"), cell("end")], vec![cell(text), cell("-"), cell(text)]],
+    }
+}
+
+#[test]
+fn a_cell_of_a_table_is_one_cell_with_its_text() {
+    for text in every() {
+        let shown = printable(&text);
+        let latex = Markup::Latex.table(&table(&text));
+        let rows: Vec<&str> = latex.lines().filter_map(|line| line.strip_suffix(" \\\\")).collect();
+        assert_eq!(rows.len(), 3, "{latex}");
+        for row in rows {
+            let cells = parts(row, '&');
+            assert_eq!(cells.len(), 3, "{row}");
+            // Leading blanks of a line and those beside `&` have no meaning.
+            let first = printed(cells[0].trim_start()).unwrap_or_else(|| panic!("{row}"));
+            let expected = shown.trim_start().replace("|R-K|", "");
+            assert_eq!(first.trim_end(), expected.trim_end(), "{row}");
+        }
+        let markdown = Markup::Markdown.table(&table(&text));
+        assert_eq!(markdown.lines().count(), 6, "{markdown}");
+        for line in markdown.lines().skip(2).filter(|line| !line.contains("---:")) {
+            let cells = parts(line, '|');
+            assert_eq!(cells.len(), 5, "{line}");
+            assert_eq!(of_markdown(&cells[1]).as_deref(), Some(&*format!(" {shown} ")), "{line}");
+        }
+    }
+}
+
+/// OWASP, CSV injection: a cell that begins with = + - @ is a formula. Numbers stay numbers, and what is read again is the text.
+#[test]
+fn no_text_is_a_formula_of_a_spreadsheet() {
+    for text in every() {
+        let cell = csv(&text);
+        assert_eq!(of_csv(&cell), text);
+        let is_number = text.trim().parse::<f64>().is_ok();
+        assert!(is_number || !cell.trim_start_matches(' ').starts_with(['=', '+', '-', '@', '\t', '\r']), "{cell}");
+        assert!(!is_number || cell == text);
+    }
+    for number in ["-1.5", "+3", "-1e-3", "-", "-0.1 2 -3", "1", "", "inf"] {
+        assert_eq!(csv(number), number);
+    }
+}
+
+#[test]
+fn a_first_scene_has_each_text_in_its_place() {
+    let element = Arc::new(Element::load("tet4").unwrap());
+    let plain = BoxMesh { element, size: vec![1.0; 3], cells: vec![4, 1, 1], origin: vec![0.0; 3] }.build().unwrap();
+    for text in every() {
+        let mut mesh = plain.clone();
+        let held = mesh.groups["xmin"].clone();
+        mesh.groups.clear();
+        mesh.groups.insert(text.clone(), Group { ..held });
+        let material = DraftMaterial::default();
+        let scene = draft(&mesh, DraftSource::File(&text), &text, std::slice::from_ref(&text), &text, &material);
+        let read: toml::Table = scene.parse().unwrap_or_else(|e| panic!("{e}: {scene}"));
+        let is_unit = text.parse::<f64>().is_ok();
+        assert_eq!(read["title"].as_str(), Some(&text[..]));
+        assert_eq!(read["mesh"]["file"].as_str(), Some(&text[..]));
+        assert_eq!(read["mesh"]["elements"][0].as_str(), Some(&text[..]));
+        assert!(is_unit || read["mesh"]["scale"].as_str() == Some(&text[..]));
+        let keys: Vec<&str> = read.keys().map(String::as_str).collect();
+        assert!(
+            keys.iter().all(|key| ["title", "mesh", "material", "fit", "fix", "load", "output"].contains(key)),
+            "{keys:?}"
+        );
+        // A group that no scene can name is not named.
+        let group = read["fix"][0].get("group").and_then(toml::Value::as_str);
+        assert!(group == Some(&text[..]) || not_a_line(&text, false).is_some() && group.is_none(), "{scene}");
+    }
+    assert!(others().iter().all(|text| not_a_line(text, false).is_some()));
+}
