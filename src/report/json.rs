@@ -75,7 +75,7 @@ pub struct Report {
     /// What a reader must know before trusting a figure, one sentence each.
     pub notes: Vec<String>,
     /// In `report.json`, the names of the files that the run has written into its folder, with that of the report; those that a motion's
-    /// `.pvd` lists are not named. The next run in the folder removes them.
+    /// `.pvd` lists are not named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
 }
