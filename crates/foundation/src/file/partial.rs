@@ -8,6 +8,8 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
 use tempfile::{Builder, TempDir, TempPath};
 
 /// Begins the names of files that are not results. The leading dot hides them in listings.
@@ -16,6 +18,10 @@ pub(super) const PREFIX: &str = ".springfit.";
 const SUFFIX: &str = ".partial";
 /// The file in a folder that the process which writes there holds locked.
 pub(super) const LOCK: &str = ".springfit.lock";
+
+/// How often a folder is removed in which something is being written, and the time between.
+const TRIALS: usize = 20;
+const MOMENT: Duration = Duration::from_millis(5);
 
 /// What this process has begun, and has to remove if it is interrupted.
 static BEGUN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -30,8 +36,15 @@ fn locked<T>(mutex: &'static Mutex<T>) -> MutexGuard<'static, T> {
 /// come there first. Nothing can be written afterwards.
 pub fn abandon() {
     let (placing, begun) = (locked(&PLACING), locked(&BEGUN));
+    // What is written at this moment may come into a folder while that is removed; nothing comes after it.
     for path in begun.iter() {
-        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+        for _ in 0..TRIALS {
+            let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+            if path.symlink_metadata().is_err() {
+                break;
+            }
+            thread::sleep(MOMENT);
+        }
     }
     // Never released: a thread that still writes must not begin another file.
     std::mem::forget((placing, begun));
