@@ -7,7 +7,7 @@
 //! | [`error`] | the one error type, with kind, file, line and key |
 //! | [`mod@file`] | reading with named errors, writing a file whole or not at all, TOML |
 //! | [`range`], [`bound`], [`memory`] | the limits of quantities, of counts, and of memory |
-//! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print |
+//! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print, and to write in each grammar |
 //! | [`scalar`] | the numbers that kernels compute with: `f64`, SIMD lanes, `f32`, double-double, rationals |
 //! | [`symbolic`] | expressions: parsed, differentiated, evaluated, expanded; exact rational functions |
 
