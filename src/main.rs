@@ -65,6 +65,7 @@ fn main() -> ExitCode {
         // Rust aborts if an allocation fails that no estimate predicted; this ends like other errors.
         libc::signal(libc::SIGABRT, aborted as extern "C" fn(libc::c_int) as libc::sighandler_t);
     }
+    say_why_no_thread_starts();
     commands::answer_interrupts();
     let line = CommandLine::try_parse().unwrap_or_else(|error| terminal::printable_error(error).exit());
     let mut terminal = Terminal::new(CommandLine::command, line.verbosity.level());
@@ -73,6 +74,19 @@ fn main() -> ExitCode {
         tell(&format!("error: {error}"));
         ExitCode::from(2)
     })
+}
+
+/// The threads of the program start with its first parallel work. Where none can, it ends as an error does.
+fn say_why_no_thread_starts() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let words = panic.payload().downcast_ref::<String>().map_or("", String::as_str);
+        if !words.contains("global thread pool has not been initialized") {
+            return usual(panic);
+        }
+        tell("error: expected memory for the threads of this program, found none: allow more memory or more processes");
+        std::process::exit(2);
+    }));
 }
 
 /// Ends the program as an error does. Nothing here allocates memory.

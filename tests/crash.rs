@@ -9,6 +9,7 @@ use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -87,7 +88,7 @@ impl Case {
 
     /// A shell's script that runs the program as `"$@"`, in its turn run by `launcher`.
     fn within(&self, launcher: &[&str], script: &str) -> Command {
-        let words = [launcher, &["sh", "-c", script, "sh", env!("CARGO_BIN_EXE_springfit")]].concat();
+        let words = [heeding(), launcher, &["sh", "-c", script, "sh", env!("CARGO_BIN_EXE_springfit")]].concat();
         let mut command = Command::new(words[0]);
         command.args(&words[1..]).args(&self.arguments).current_dir(self.folder.path());
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -170,6 +171,14 @@ impl Case {
             }
         }
     }
+}
+
+/// Lets a program heed interrupts, which it does not if the tests were started in the background of a script.
+fn heeding() -> &'static [&'static str] {
+    const WAY: [&str; 2] = ["env", "--default-signal=INT"];
+    static IS_KNOWN: OnceLock<bool> = OnceLock::new();
+    let is_known = || Command::new(WAY[0]).args([WAY[1], "true"]).output().is_ok_and(|output| output.status.success());
+    if *IS_KNOWN.get_or_init(is_known) { &WAY } else { &[] }
 }
 
 /// Those that are results, by their paths.

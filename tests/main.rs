@@ -38,6 +38,7 @@ mod functions;
 mod generate;
 mod golden;
 mod golden_files;
+mod hostile_cases;
 mod integrals;
 mod large;
 mod law_fields;

@@ -89,7 +89,7 @@ fn single_precision_has_the_digits_that_it_can_have() {
     assert!(worst > 1e-9, "these numbers are not of single precision");
 }
 
-/// A cell that is flat, turned inside out or not a number, and moduli out of range, end with the status and leave the
+/// A cell that is flat, turned inside out, with two nodes at one place or not a number, and moduli out of range, end with the status and leave the
 /// results alone.
 #[test]
 fn wrong_cells_and_moduli_have_a_status() {
@@ -104,9 +104,10 @@ fn wrong_cells_and_moduli_have_a_status() {
         let flat = with(&|x| x.chunks_exact_mut(d).for_each(|x| x[d - 1] = 0.0));
         let point = with(&|x| x.fill(0.0));
         let inside_out = with(&|x| x.chunks_exact_mut(d).for_each(|x| x[0] = -x[0]));
+        let together = with(&|x| x.copy_within(..d, d));
         let unknown = with(&|x| x[d] = f64::NAN);
         let far = with(&|x| x[d] = f64::INFINITY);
-        let all = [(flat, 1), (point, 1), (inside_out, 1), (unknown, 1), (far, 1)];
+        let all = [(flat, 1), (point, 1), (inside_out, 1), (together, 1), (unknown, 1), (far, 1)];
         let wrong: Vec<_> = all.into_iter().map(|(x, status)| (good.with(x, good.moduli), status)).collect();
         let moduli = [[1.0, -1.0], [f64::NAN, 1.0], [-3.0, 1.0], [1.0, f64::NAN]];
         let wrong: Vec<_> = wrong.into_iter().chain(moduli.map(|m| (good.with(good.x.clone(), m), 3))).collect();

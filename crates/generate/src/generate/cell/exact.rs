@@ -4,7 +4,7 @@
 //! Theory: page *Exact networks and patches* of the book.
 
 use super::tolerance::PRODUCT;
-use super::{Cell, Index, Room, Value, dot};
+use super::{Cell, Index, Room, Status, Value, dot};
 use crate::fit::VolumeSprings;
 use crate::scalar::Scalar;
 
@@ -57,7 +57,14 @@ pub fn exact(cell: &Cell, volume: VolumeSprings, lambda: &Value, mu: &Value) -> 
         rests.set(body, m - 1, &found[1]);
     }
     let (rounding, zero) = (body.number(PRODUCT), body.number(0.0));
+    // Nodes of a simplex with a volume are apart. Those of other cells may coincide where no point of the quadrature tells.
+    let may_coincide = n > d + 1;
+    body.fail_with(Status::Shape);
     cell.each_length(|s, i, j| {
+        if may_coincide {
+            let edge = cell.edge(i, j);
+            body.guard(&dot(&edge, &edge), &zero);
+        }
         let constant = constants.get(body, s);
         let least = &(&own.get(body, i) * &own.get(body, j)) * &rounding;
         let kept = constant.clone().squared().select(&least, &constant, &zero);

@@ -1,0 +1,106 @@
+//! Small inputs that were once answered wrongly: each stands for a kind, which a test of its subject proves.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+const TRI3: &str = include_str!("../elements/tri3.toml");
+const SQUARE: &str = "mesh = { box = { element = \"quad4\", size = [1, 1], cells = [1, 1] } }\n\
+                      material = { young = 1e4, poisson = 0.3, thickness = 1 }\nfit = [{ objective = \"exact\" }]\n";
+
+fn springfit(folder: &Path, arguments: &str) -> (Output, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
+    let output = command.args(arguments.split(' ')).current_dir(folder).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output, said)
+}
+
+/// Text of an element that would leave the comment of generated code, in each of its places.
+#[test]
+fn code_in_texts_of_an_element_is_refused_when_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let title = "title       = \"Linear triangle\"";
+    let group = "group = \"edge\"";
+    assert!(TRI3.contains(title) && TRI3.contains(group));
+    for (from, key, text) in [
+        (title, "title", r#"title = "triangle\n#include \"/etc/hostname\"\n//""#),
+        (title, "title", r#"title = "triangle\nimport os; os.system(\"echo INJECTED\")  #""#),
+        (group, "springs[0].group", r#"group = "edge\nimport os; os.system(\"echo INJECTED\")\n#""#),
+    ] {
+        fs::write(folder.path().join("e.toml"), TRI3.replace(from, text)).unwrap();
+        for command in ["generate e.toml --language python", "generate e.toml", "check e.toml"] {
+            let (output, said) = springfit(folder.path(), command);
+            assert_eq!(output.status.code(), Some(2), "{command}: {said}");
+            assert!(said.contains("e.toml:") && said.contains(key), "{command}: {said}");
+            assert!(output.stdout.is_empty(), "{command}");
+        }
+    }
+}
+
+/// A report of another program names files that are not of a run.
+#[test]
+fn a_foreign_report_removes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("main.c", "int main;");
+    write("Makefile", "all:");
+    write("report.json", "{\"tool\":\"lint\",\"files\":[\"main.c\",\"Makefile\"]}");
+    write("s.toml", SQUARE);
+    let (output, said) = springfit(folder.path(), "run s.toml --out .");
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("report.json: would be replaced, and is not of a former run"), "{said}");
+    let (output, said) = springfit(folder.path(), "run s.toml --out . --set output.report=false");
+    assert!(output.status.success(), "{said}");
+    assert_eq!(fs::read_to_string(folder.path().join("main.c")).unwrap(), "int main;");
+    assert_eq!(fs::read_to_string(folder.path().join("Makefile")).unwrap(), "all:");
+}
+
+/// A file without a line end, and others, that are named as records.
+#[test]
+fn a_sweep_keeps_what_is_not_of_a_sweep() {
+    for text in ["my only notes", "{\"settings\": {\"mine\": 1}}", "{}\n", "{\"settings\":{}}\nand more"] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("o")).unwrap();
+        fs::write(folder.path().join("o/studies.jsonl"), text).unwrap();
+        fs::write(folder.path().join("s.toml"), format!("{SQUARE}sweep.over = {{ material.poisson = [0.1, 0.2] }}\n"))
+            .unwrap();
+        for command in ["sweep s.toml --out o", "sweep s.toml --out o --resume"] {
+            let (output, said) = springfit(folder.path(), command);
+            assert_eq!(output.status.code(), Some(2), "{command}: {said}");
+            assert_eq!(fs::read_to_string(folder.path().join("o/studies.jsonl")).unwrap(), text, "{command}");
+        }
+    }
+}
+
+/// No note has the blanks of the source.
+#[test]
+fn notes_have_one_blank_between_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "mesh = { box = { element = \"hex8\", size = [0.02, 0.01, 0.01], cells = [2, 1, 1] } }\n\
+                 material = { young = 10e3, poisson = 0.3, law = \"fibre\" }\nfit = [{ objective = \"offdiag\" }]\n\
+                 fix = [{ group = \"xmin\" }]\nload = [{ group = \"xmax\", traction = [100, 0, 0] }]\n";
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let (output, said) = springfit(folder.path(), "run s.toml");
+    assert!(output.status.success() && said.contains("the networks as materials"), "{said}");
+    assert!(said.lines().all(|line| !line.contains("  ")), "{said}");
+}
+
+/// Where no thread can start, words say so.
+#[test]
+#[cfg(target_os = "linux")]
+fn too_little_memory_ends_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), SQUARE).unwrap();
+    for megabytes in (40..80).step_by(2) {
+        let script = format!("ulimit -v {}; \"$0\" run s.toml --out o", 1000 * megabytes);
+        let output = Command::new("sh")
+            .args(["-c", &script, env!("CARGO_BIN_EXE_springfit")])
+            .current_dir(folder.path())
+            .output();
+        let output = output.unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        // The loader of the system ends with 127.
+        assert!(matches!(output.status.code(), Some(0 | 2 | 127)), "{megabytes} MB: {:?}, {said}", output.status);
+        assert!(!said.contains("panicked"), "{megabytes} MB: {said}");
+    }
+}
