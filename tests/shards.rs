@@ -98,7 +98,7 @@ fn wrong_sets_of_shards_are_refused() {
         (&["1.shard", "2.shard", "3.shard", "1.shard"], "is shard 1 of 3, as is 1.shard"),
         (&["1.shard", "offdiag.shard", "3.shard"], "another fit or material"),
         (&["1.shard", "quarter.shard", "3.shard"], "one of 4 shards"),
-        (&["1.shard", "short.shard", "3.shard"], "short.shard: expected a shard of version 2"),
+        (&["1.shard", "short.shard", "3.shard"], "short.shard: expected a shard of version 3"),
         (&["empty.shard"], "empty.shard: expected a shard"),
         (&["other.shard"], "other.shard: expected a shard"),
         (&["1.shard", "damaged.shard", "3.shard"], "its checksum is not that of its contents"),

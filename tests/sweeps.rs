@@ -329,6 +329,10 @@ fn what_would_mix_or_lose_studies_is_refused() {
     );
     assert_eq!(read(folder, "o/studies.jsonl"), lines);
     fs::write(folder.join("o/studies.jsonl"), "no study\n").unwrap();
+    assert!(
+        refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl: expected a file of a sweep, or none")
+    );
+    fs::write(folder.join("o/studies.jsonl"), "{\"settings\":{}}\n").unwrap();
     assert!(refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of a sweep"));
     for (arguments, words) in [
         ("sweep s.toml --shard 0/2", "--shard"),

@@ -19,7 +19,6 @@ use springfit::solve::System;
 use springfit::springs::Measure;
 use springfit::study::{FitOutcome, Outcome, matrix_errors};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 

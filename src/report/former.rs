@@ -1,7 +1,7 @@
 //! The files of a run by a program that left no list of them.
 
 use super::figure::RunFolder;
-use super::outputs::{REPORT, Stems};
+use super::names::{REPORT, Stems};
 use std::path::Path;
 
 /// The names of the files that the report in `folder` lists and that a run of its fits can have written. None without a report.

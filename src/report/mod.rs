@@ -22,6 +22,7 @@ mod material_record;
 mod materials;
 mod motion;
 mod motion_record;
+mod names;
 mod network;
 mod number;
 mod outline;
@@ -92,7 +93,7 @@ use crate::file::{Edition, write_whole, write_with};
 use crate::mesh::vtk;
 use crate::study::{Outcome, Output};
 use crate::text::printable_lines;
-use outputs::{PAGE, POINTS, REPORT, Stems};
+use names::{PAGE, POINTS, REPORT, Stems};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -135,7 +136,7 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, mut edition: Edition) -
     }
     let reports = output.report != Some(false);
     let later = [(reports, REPORT), (output.has_page(), PAGE)];
-    let later = later.into_iter().filter_map(|(is_written, name)| is_written.then(|| name.to_string()));
+    let later = later.into_iter().filter(|(is_written, _)| *is_written).map(|(_, name)| name.to_string());
     // The pictures of a motion are named by its collection.
     let files = edition.names().iter().filter(|name| !name.contains('/')).cloned().chain(later).collect();
     if reports {

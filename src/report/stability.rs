@@ -244,7 +244,7 @@ pub fn write_stability(outcome: &StabilityOutcome, edition: Edition) -> Result<V
         }
     }
     let mut files = vec![(STABILITY_FILES[0].to_string(), table(outcome))];
-    for (subject, stem) in subjects.iter().zip(super::outputs::file_stems(subjects.iter().copied())) {
+    for (subject, stem) in subjects.iter().zip(super::names::file_stems(subjects.iter().copied())) {
         let rows: Vec<&StabilityRow> = outcome.rows.iter().filter(|row| row.subject == *subject).collect();
         files.push((format!("{stem}.svg"), map(subject, &rows)));
     }

@@ -88,7 +88,7 @@ impl RunFolder {
     pub fn network(&self, fit: Option<&str>) -> Result<NetworkRecord> {
         let report = self.report()?;
         let place = RunFolder::place(&report, fit)?;
-        let stems = crate::report::outputs::file_stems(report.fits.iter().map(|fit| fit.name.as_str()));
+        let stems = crate::report::names::file_stems(report.fits.iter().map(|fit| fit.name.as_str()));
         let advice = "a run writes it unless [output] json of the scene is false";
         read_network(&self.own_file(&report, &format!("{}.json", stems[place]), "the network", advice)?)
     }

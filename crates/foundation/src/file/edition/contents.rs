@@ -1,13 +1,13 @@
 //! The list of the files of an edition.
 
-use super::{Sum, is_name, unwritable};
 use crate::error::{Error, Result};
-use crate::file::{read, write_whole};
+use crate::file::partial::PREFIX;
+use crate::file::{Sum, read, unwritable, write_whole};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Component, Path};
 
 /// The name of the list in the folder.
 const LIST: &str = ".springfit.files";
@@ -137,4 +137,11 @@ pub(super) fn expect_own(folder: &Path, name: &str, former: &Contents) -> Result
 
 pub(super) fn is_contents(name: &str) -> bool {
     name == LIST
+}
+
+/// Whether a name leads to a file of an edition: into the folder, and not to a file that only editions have.
+fn is_name(name: &str) -> bool {
+    let is_plain =
+        |part: Component| matches!(part, Component::Normal(part) if !part.to_string_lossy().starts_with(PREFIX));
+    !name.is_empty() && Path::new(name).components().all(is_plain)
 }

@@ -12,14 +12,14 @@ mod exchange;
 mod lock;
 
 use super::partial::{PartialFolder, folder_of, sweep, unbroken};
-use super::{Sum, check_apart, check_folder, check_replaceable, create_folder, unwritable};
+use super::{check_apart, check_folder, check_replaceable, create_folder, unwritable};
 use crate::error::{Error, Result};
 use contents::{Contents, expect_own};
 use lock::Lock;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// The folder of a complete edition whose files take their places.
 const NEXT: &str = ".springfit.next";
@@ -232,12 +232,6 @@ fn remove_own(folder: &Path, name: &str, former: Option<&Contents>) -> io::Resul
         above = place.parent();
     }
     Ok(())
-}
-
-/// Whether a name leads to a file of an edition: into the folder, and not to a file that only editions have.
-fn is_name(name: &str) -> bool {
-    let is_plain = |part: Component| matches!(part, Component::Normal(part) if !part.to_string_lossy().starts_with(super::partial::PREFIX));
-    !name.is_empty() && Path::new(name).components().all(is_plain)
 }
 
 /// Whether the folder has nothing of others, and no process such as this one works in it.

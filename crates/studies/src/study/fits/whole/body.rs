@@ -126,7 +126,7 @@ impl<'a> WholeBody<'a> {
             Some((fits, network)) => self.springs(recipe, fits, network)?,
             None => self.moduli(recipe, held, &wanted)?,
         };
-        let settings = super::record::identity(recipe, springs, self.newton.as_ref());
+        let settings = super::identity::identity(recipe, springs, self.newton.as_ref());
         let none = vec![0.0; object.unknowns().count()];
         let identity = Identity::of(settings, &self.mesh.points, &object.network(&none), &wanted);
         let (mut saved, snapshot) = Saved::open(self.controls, name, identity)?;

@@ -12,6 +12,7 @@ mod fitting;
 mod found_moduli;
 mod frequencies;
 mod held_out;
+mod identity;
 mod moduli;
 mod notes;
 mod objects;

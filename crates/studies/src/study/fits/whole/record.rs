@@ -4,14 +4,11 @@ use super::moduli::FoundModulus;
 use super::outcome::{
     FittedLoad, FittedMasses, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome, WorseLoad,
 };
-use super::recipe::{DISCREPANCY, LEAVE_ONE_OUT, Start, ValidationRecipe, WholeRecipe};
-use crate::solve::Newton;
+use super::recipe::{Start, WholeRecipe};
 use crate::study::fits::sampled::SampledRecord;
-use crate::whole::{MassStage, Stage, Weighing};
+use crate::whole::{MassStage, Stage};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
 
 /// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -332,39 +329,6 @@ impl WholeRecord {
             other_supports: recipe.other_supports.clone(),
         }
     }
-}
-
-/// All settings on which the steps of a fit depend, by their keys: what tells the state of one fit from that of another.
-pub(super) fn identity(
-    recipe: &WholeRecipe,
-    springs: Option<&[String]>,
-    newton: Option<&Newton>,
-) -> BTreeMap<String, Value> {
-    let mut settings: BTreeMap<String, Value> = match serde_json::to_value(WholeRecord::of(recipe)) {
-        Ok(Value::Object(record)) => record.into_iter().collect(),
-        _ => BTreeMap::new(),
-    };
-    let whole = &recipe.settings;
-    let validated = match &recipe.validation {
-        ValidationRecipe::Loads(loads) => json!({ "names": loads.names, "made": loads.made }),
-        ValidationRecipe::LeaveOneOut => LEAVE_ONE_OUT.into(),
-        ValidationRecipe::Discrepancy => DISCREPANCY.into(),
-        ValidationRecipe::None => Value::Null,
-    };
-    let newton = newton
-        .map(|newton| json!({ "steps": newton.steps, "iterations": newton.iterations, "tolerance": newton.tolerance }));
-    let more = [
-        ("springs", json!(springs)),
-        ("loads", json!({ "names": recipe.loads.names, "made": recipe.loads.made })),
-        ("validate", validated),
-        ("regularization", json!(whole.regularizations)),
-        ("iterations", json!(whole.iterations)),
-        ("range", json!(whole.range)),
-        ("by_error", json!(whole.weighing == Weighing::ByError)),
-        ("newton", json!(newton)),
-    ];
-    settings.extend(more.map(|(key, value)| (key.to_string(), value)));
-    settings
 }
 
 impl WholeOutcomeRecord {
