@@ -28,12 +28,17 @@ fn code_in_texts_of_an_element_is_refused_when_it_is_read() {
         (group, "springs[0].group", r#"group = "edge\nimport os; os.system(\"echo INJECTED\")\n#""#),
     ] {
         fs::write(folder.path().join("e.toml"), TRI3.replace(from, text)).unwrap();
-        for command in ["generate e.toml --language python", "generate e.toml", "check e.toml"] {
+        for command in ["generate e.toml --language python", "generate e.toml"] {
             let (output, said) = springfit(folder.path(), command);
             assert_eq!(output.status.code(), Some(2), "{command}: {said}");
             assert!(said.contains("e.toml:") && said.contains(key), "{command}: {said}");
             assert!(output.stdout.is_empty(), "{command}");
         }
+        // The check is there to find faults, and prints them.
+        let (output, _) = springfit(folder.path(), "check e.toml");
+        let found = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{found}");
+        assert!(found.contains("e.toml:") && found.contains(key), "{found}");
     }
 }
 

@@ -122,8 +122,14 @@ impl Contents {
     }
 }
 
-/// Checks that there is no file of this name in the folder, or one as the former edition had it.
+/// Checks that there is no file of this name in the folder, or one as the former edition had it, and that only folders lead to it.
 pub(super) fn expect_own(folder: &Path, name: &str, former: &Contents) -> Result<()> {
+    let above = Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty());
+    for place in above.map(|above| folder.join(above)) {
+        if place.symlink_metadata().is_ok_and(|data| !data.is_dir()) {
+            return Err(unwritable("the folder cannot be created: a file stands in the way", &place));
+        }
+    }
     let path = folder.join(name);
     if path.symlink_metadata().is_err() || former.is_own(folder, name) {
         return Ok(());

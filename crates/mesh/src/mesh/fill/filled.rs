@@ -80,8 +80,15 @@ impl Filled {
     pub fn far_off(&self) -> Option<String> {
         let excess = self.excess().filter(|excess| excess.abs() > FAR)?;
         let more = if excess > 0.0 { "more" } else { "less" };
+        // What is left out may be a part that smaller cells would not fill either.
+        let why = match self.loose {
+            0 => "smaller cells come nearer".into(),
+            loose => {
+                format!("{} that hung on others by an edge or a corner alone were left out", counted(loose, "cell"))
+            }
+        };
         Some(format!(
-            "the cells that fill the surface have {:.0} % {more} volume than it encloses; smaller cells come nearer",
+            "the cells that fill the surface have {:.0} % {more} volume than it encloses; {why}",
             excess.abs()
         ))
     }
