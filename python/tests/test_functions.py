@@ -300,7 +300,7 @@ def energy(f):
     return neo_hookean(f)
 
 
-print(repr(sf.sampled(mesh, material, energy, springs=["edge"], shapes={"count": 5}).constants.sum()))
+print(repr(float(sf.sampled(mesh, material, energy, springs=["edge"], shapes={"count": 5}).constants.sum())))
 """
 
 

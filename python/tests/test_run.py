@@ -58,7 +58,8 @@ def test_figures_equal_those_of_the_command(tmp_path, scenes):
     [
         ({"material": {"young": 1e4}}, "poisson"),
         ({"fit": []}, "fit"),
-        ({"fit": [{"objective": "frobenius", "name": 'a"\\\n'}, {"objective": "x"}]}, "fit[1].objective"),
+        ({"fit": [{"objective": "frobenius", "name": 'a"\\'}, {"objective": "x"}]}, "fit[1].objective"),
+        ({"fit": [{"objective": "frobenius", "name": 'a"\\\n'}]}, "fit[0].name"),
         ({"fix": [{"group": "left"}]}, "fix[0].group"),
         ({"mesh": {"file": "nowhere.msh"}}, None),
         ({"material": {"young": float("nan"), "poisson": 0.3}}, "material.young"),
