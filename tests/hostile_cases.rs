@@ -96,16 +96,22 @@ fn notes_have_one_blank_between_words() {
 fn too_little_memory_ends_in_words() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), SQUARE).unwrap();
-    for megabytes in (40..80).step_by(2) {
-        let script = format!("ulimit -v {}; \"$0\" run s.toml --out o", 1000 * megabytes);
-        let output = Command::new("sh")
-            .args(["-c", &script, env!("CARGO_BIN_EXE_springfit")])
-            .current_dir(folder.path())
-            .output();
-        let output = output.unwrap();
+    let mut tried = 0;
+    for megabytes in 40..80 {
+        let within = |arguments: &str| {
+            let script = format!("ulimit -v {}; exec \"$0\" {arguments}", 1000 * megabytes);
+            let mut shell = Command::new("sh");
+            shell.args(["-c", &script, env!("CARGO_BIN_EXE_springfit")]).current_dir(folder.path()).output().unwrap()
+        };
+        // The loader of the system comes first, and may not have room for the program.
+        if !within("--version").status.success() {
+            continue;
+        }
+        tried += 1;
+        let output = within("run s.toml --out o");
         let said = String::from_utf8_lossy(&output.stderr);
-        // The loader of the system ends with 127.
-        assert!(matches!(output.status.code(), Some(0 | 2 | 127)), "{megabytes} MB: {:?}, {said}", output.status);
+        assert!(matches!(output.status.code(), Some(0 | 2)), "{megabytes} MB: {:?}, {said}", output.status);
         assert!(!said.contains("panicked"), "{megabytes} MB: {said}");
     }
+    assert!(tried > 10, "{tried}");
 }
