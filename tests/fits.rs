@@ -397,7 +397,7 @@ fn gaps_are_checked() {
     }
     let other = Fit { gap: 1e-8, ..Fit::new(Objective::Frobenius(Weight::None)) };
     assert_eq!(other.check_gap().unwrap_err(), other.check_proofs().unwrap_err());
-    // Also a gap of none is named in vain.
+    // The key is refused with its default value, too.
     let entry = FitEntry::new("frobenius").with("gap", Some(0.0));
     assert!(entry.fits(Path::new("")).unwrap_err().to_string().starts_with("gap: belongs to"));
     let error = other.check_gap().unwrap_err().to_string();

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
-use springfit::export::target_named;
+use springfit::export::{target_named, write_files};
 use springfit::fit::{CellFits, Spread};
 use springfit::mesh::Mesh;
 use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
@@ -232,12 +232,7 @@ impl Network {
             })?;
             Ok((files, target.left_out(&network)))
         })?;
-        let written = apart(py, || {
-            let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
-            let mut edition = report::open_outputs(&folder, &names, &[])?;
-            files.iter().try_for_each(|(name, content)| edition.write(name, |path| content.write(path)))?;
-            edition.publish()
-        });
+        let written = apart(py, || write_files(&files, &folder, &[]));
         Ok((written.map_err(|error| raised(py, error))?, left_out, target.command))
     }
 

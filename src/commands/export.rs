@@ -5,8 +5,8 @@ use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::export::{target_list, target_named};
-use springfit::report::{NetworkFile, NetworkRecord, open_outputs, read_network};
+use springfit::export::{target_list, target_named, write_files};
+use springfit::report::{NetworkFile, NetworkRecord, read_network};
 use springfit::study::{Controls, run_with};
 use springfit::unknown;
 use std::path::PathBuf;
@@ -53,10 +53,7 @@ impl Export {
         let (network, has_loads) = if is_network { (self.read()?, false) } else { self.fitted(terminal, &mut inputs)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
-        let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
-        let mut edition = open_outputs(&folder, &names, &inputs)?;
-        files.iter().try_for_each(|(name, content)| edition.write(name, |path| content.write(path)))?;
-        let written = edition.publish()?;
+        let written = write_files(&files, &folder, &inputs)?;
         terminal.print(&summary(&network))?;
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");

@@ -43,7 +43,7 @@ impl OutputOptions {
     /// Prints what [`OutputOptions::text`] has made.
     ///
     /// # Errors
-    /// As there.
+    /// Standard output cannot be written.
     pub fn print_text(&self, terminal: &mut Terminal, text: &str) -> Result<()> {
         if self.is_text() { terminal.print(text) } else { terminal.print_document(text) }
     }
@@ -66,7 +66,7 @@ impl OutputOptions {
     /// The same of an outcome, with its notes, which a report has as well.
     ///
     /// # Errors
-    /// As there.
+    /// Standard output cannot be written.
     pub fn print_outcome(&self, terminal: &mut Terminal, outcome: &Outcome) -> Result<()> {
         let record = || Report::of(outcome);
         let text = || format!("{}\n{}", report::summary(outcome), report::table(outcome));
@@ -81,7 +81,7 @@ impl OutputOptions {
     /// Prints what would be done, as JSON or as text.
     ///
     /// # Errors
-    /// As there, or the tables are to be typeset: there are none yet.
+    /// Standard output cannot be written; or the tables are to be typeset, and there are none yet.
     pub fn print_plan<R: Serialize>(
         &self,
         terminal: &mut Terminal,

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::report::{NetworkRecord, Parts};
 
 /// The largest number of single precision, in which some programs compute. Products of a few such numbers are finite in double
-/// precision, so that none is written as infinity either.
+/// precision: they are not written as infinity.
 const LARGEST: f64 = f32::MAX as f64;
 
 /// Checks that each number that is exported is finite in single precision.

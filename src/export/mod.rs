@@ -18,7 +18,7 @@ mod target;
 mod vtu;
 
 pub use job::{Holds, Job, Tension};
-pub use target::{Content, NamedFile, Target};
+pub use target::{Content, NamedFile, Target, write_files};
 
 use crate::error::Result;
 use crate::unknown;

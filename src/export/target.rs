@@ -4,8 +4,8 @@ use super::extent::check_numbers;
 use crate::error::{Error, Result};
 use crate::file::write_whole;
 use crate::mesh::vtk::{self, Grid};
-use crate::report::{MeasureKind, NetworkRecord, SpringRecord};
-use std::path::Path;
+use crate::report::{MeasureKind, NetworkRecord, SpringRecord, open_outputs};
+use std::path::{Path, PathBuf};
 
 /// A file by its name.
 pub type NamedFile = (&'static str, Content);
@@ -27,6 +27,17 @@ impl Content {
             Content::Grid(grid) => vtk::write(path, grid),
         }
     }
+}
+
+/// Writes the files of an export into `folder`, and returns their paths.
+///
+/// # Errors
+/// A file is one of the inputs, or would replace one of others; or it cannot be written. The folder is as it was.
+pub fn write_files(files: &[NamedFile], folder: &Path, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+    let mut edition = open_outputs(folder, &names, inputs)?;
+    files.iter().try_for_each(|(name, content)| edition.write(name, |path| content.write(path)))?;
+    edition.publish()
 }
 
 /// What a script in Python says where it takes in the rule by which bodies come to rest, and that rule.

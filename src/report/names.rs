@@ -18,7 +18,7 @@ pub(super) struct Stems {
 }
 
 impl Stems {
-    /// Of the fits, and of the models that move.
+    /// The stems of these fits, and of these models that move.
     pub fn of<'a>(fits: impl Iterator<Item = &'a str>, moved: impl Iterator<Item = &'a str>) -> Stems {
         let fits: Vec<&str> = fits.collect();
         let moved: Vec<String> = moved.map(|name| format!("motion {name}")).collect();

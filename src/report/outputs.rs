@@ -19,7 +19,7 @@ pub fn open_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Result
 /// The same for all that a run of the scene writes.
 ///
 /// # Errors
-/// As there; or two arrays of a file for ParaView would have the same name.
+/// Those of [`Edition::begin`]; or two arrays of a file for ParaView would have the same name.
 pub fn open_scene_outputs(scene: &Scene, folder: &Path) -> Result<Edition> {
     let output = scene.output();
     let fits: Vec<&str> = scene.fits().iter().map(|fit| fit.name.as_str()).collect();

@@ -108,6 +108,19 @@ fn files_of_others_stay() {
     assert!(refused > 300 && done > 50, "{refused} refused, {done} done");
 }
 
+/// A name that reads as a path of the former run elsewhere is a name.
+#[test]
+fn a_backslash_is_part_of_a_name() {
+    let folder = scenes();
+    let folder = folder.path();
+    let run = || springfit(folder, "run run-new.toml --out out").output().unwrap();
+    assert!(run().status.success());
+    let mine = folder.join("out/motion-offdiag\\0000.vtu");
+    fs::write(&mine, "of the user").unwrap();
+    assert!(folder.join("out/motion-offdiag/0000.vtu").exists() && run().status.success());
+    assert_eq!(fs::read_to_string(&mine).unwrap(), "of the user");
+}
+
 /// A file of a run that a user has changed since is the user's.
 #[test]
 fn what_was_changed_since_is_not_replaced() {

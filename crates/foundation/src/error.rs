@@ -35,8 +35,8 @@ pub enum ErrorKind {
 /// an argument, or a part of a mesh (`$Nodes`, `node 4`). The wording of the problem may change between versions; programs
 /// use [`kind`](Error::kind), [`file`](Error::file), [`line`](Error::line) and [`key`](Error::key).
 ///
-/// Names, values and expressions that are quoted are on one line, without characters that a terminal interprets; long ones are cut, and
-/// their length is told.
+/// Names, values and expressions that are quoted are on one line, without characters that a terminal interprets. The error shows
+/// the beginning of a long one and states its length.
 ///
 /// An optimum that the solver does not reach and a network that is not stable are not errors but a status of the result.
 ///

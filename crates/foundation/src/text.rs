@@ -25,7 +25,7 @@ pub fn printable_lines(text: &str) -> Cow<'_, str> {
 /// Keys of files whose texts are expressions or quantities, which may have several lines, as may what is inside a table of such a name.
 /// All other texts are names and titles.
 const EXPRESSIONS: [&str; 24] = [
-    // Of elements and materials.
+    // Keys of elements and materials.
     "shape",
     "measure",
     "energy",
@@ -33,7 +33,7 @@ const EXPRESSIONS: [&str; 24] = [
     "at",
     "points",
     "weights",
-    // Of scenes.
+    // Keys of scenes.
     "where",
     "young",
     "poisson",
@@ -48,7 +48,7 @@ const EXPRESSIONS: [&str; 24] = [
     "body",
     "force",
     "displacement",
-    // Of networks, beside these.
+    // Keys that files of networks have beside these.
     "expression",
     "law",
     "over",

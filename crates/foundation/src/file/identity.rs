@@ -22,15 +22,24 @@ pub fn check_apart<'a>(outputs: &[PathBuf], inputs: impl IntoIterator<Item = &'a
 
 /// Whether both files exist and are the same file.
 fn is_same(a: &Path, b: &Path) -> bool {
+    // A file that does not exist is not the same as any other.
+    let (Ok(of_a), Ok(of_b)) = (fs::metadata(a), fs::metadata(b)) else { return false };
+    match identity(&of_a) {
+        Some(identity_of_a) => identity(&of_b) == Some(identity_of_a),
+        None => fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b)),
+    }
+}
+
+/// The device on which a file is, and its number there; none where the system does not tell them.
+pub(super) fn identity(data: &fs::Metadata) -> Option<[u64; 2]> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::MetadataExt;
-        let identity = |path: &Path| fs::metadata(path).ok().map(|data| (data.dev(), data.ino()));
-        // A file that does not exist is not the same as any other.
-        identity(a).is_some_and(|a| identity(b) == Some(a))
+        Some([data.dev(), data.ino()])
     }
     #[cfg(not(unix))]
     {
-        fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
+        let _ = data;
+        None
     }
 }

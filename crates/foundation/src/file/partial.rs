@@ -4,6 +4,7 @@
 //! alive: what killed processes left is removed by the next one that writes there.
 
 use std::collections::BTreeSet;
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -150,8 +151,8 @@ impl PartialFolder {
 }
 
 /// Whether a file or folder of this name is temporary.
-pub(super) fn is_partial(name: &Path) -> bool {
-    name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX) && !name.contains(['/', '\\']))
+fn is_partial(name: &OsStr) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))
 }
 
 /// The folder of a file.
@@ -174,7 +175,7 @@ fn builder(mode: u32) -> Builder<'static, 'static> {
 pub(super) fn sweep(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         // Only a regular file can be one: opening a pipe may wait forever.
-        let Some(kind) = entry.file_type().ok().filter(|_| is_partial(Path::new(&entry.file_name()))) else { continue };
+        let Some(kind) = entry.file_type().ok().filter(|_| is_partial(&entry.file_name())) else { continue };
         let path = entry.path();
         let held = if kind.is_dir() { path.join(LOCK) } else { path.clone() };
         let is_dead = match held.symlink_metadata() {

@@ -23,7 +23,7 @@ impl<'a> Balance<'a> {
     /// Checks the measure of a spring, once for all springs with it.
     ///
     /// # Errors
-    /// The gradients of the measure do not add up to zero, so that a body that is moved would have forces; or its expression is none.
+    /// The gradients of the measure do not add up to zero, so that a body that is moved would have forces; or its expression cannot be read.
     pub fn check(&mut self, spring: &SpringRecord) -> Result<()> {
         if std::mem::replace(&mut self.is_checked[spring.measure], true) {
             return Ok(());

@@ -154,7 +154,7 @@ pub(super) struct Identity {
 }
 
 impl Identity {
-    /// Of a fit with these settings.
+    /// The identity of a fit with these settings.
     pub fn of(settings: BTreeMap<String, Value>, points: &[f64], network: &Network, wanted: &Wanted) -> Identity {
         let mut data = DataSum(Sum::default());
         data.numbers(points);

@@ -69,7 +69,7 @@ impl Contents {
         Ok(Some(contents))
     }
 
-    /// Of the files in `folder` with these names.
+    /// Lists the files in `folder` with these names, with their sums.
     ///
     /// # Errors
     /// A file cannot be read.

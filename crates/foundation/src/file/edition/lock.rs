@@ -1,6 +1,7 @@
 //! The lock of a folder into which a process writes.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::file::identity::identity;
 use crate::file::partial::{Begun, LOCK};
 use crate::text::printable;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -93,18 +94,8 @@ fn is_owner(text: &str) -> bool {
 
 /// Whether the path leads to the open file.
 fn is_at(file: &File, path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let identity = |data: fs::Metadata| (data.dev(), data.ino());
-        let there = fs::symlink_metadata(path).map(identity);
-        there.is_ok_and(|there| file.metadata().map(identity).is_ok_and(|own| own == there))
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = file;
-        path.exists()
-    }
+    let (there, own) = (fs::symlink_metadata(path), file.metadata());
+    there.is_ok_and(|there| own.is_ok_and(|own| identity(&own) == identity(&there)))
 }
 
 /// The process and its command.

@@ -11,6 +11,7 @@ mod contents;
 mod exchange;
 mod lock;
 
+use super::identity::identity;
 use super::partial::{PartialFolder, folder_of, sweep, unbroken};
 use super::{check_apart, check_folder, check_replaceable, create_folder, unwritable};
 use crate::error::{Error, Result};
@@ -40,7 +41,7 @@ struct Work {
     staging: PartialFolder,
     lock: Lock,
     former: Contents,
-    /// Of the command, which are kept.
+    /// The inputs of the command, which stay.
     inputs: BTreeSet<PathBuf>,
     _made: Made,
 }
@@ -116,10 +117,10 @@ impl Edition {
     /// # Errors
     /// The folder cannot be read.
     pub fn take_folder(&mut self, name: &str) -> Result<()> {
-        let staging = self.staging().to_path_buf();
-        let found = files_below(&staging.join(name)).map_err(|e| Error::io("cannot be read", e).in_file(&staging))?;
-        let relative = |path: PathBuf| Some(path.strip_prefix(&staging).ok()?.to_string_lossy().replace('\\', "/"));
-        self.names.extend(found.into_iter().filter_map(relative));
+        let path = self.staging().join(name);
+        let found = names_below(&path).map_err(|e| Error::io("cannot be read", e).in_file(&path))?;
+        let files = found.into_iter().filter(|within| !within.ends_with('/'));
+        self.names.extend(files.map(|within| format!("{name}/{within}")));
         Ok(())
     }
 
@@ -179,7 +180,7 @@ pub fn finish_edition(folder: &Path) -> Result<()> {
     }
 }
 
-/// The same for a process that holds the lock.
+/// Gives the files of an edition their places, for a process that holds the lock of the folder.
 fn finish(folder: &Path) -> Result<()> {
     let next = folder.join(NEXT);
     if !next.symlink_metadata().is_ok_and(|data| data.is_dir()) {
@@ -200,13 +201,11 @@ fn finish(folder: &Path) -> Result<()> {
         }
         new.replace(&next, folder).map_err(failed)?;
     }
-    let left = files_below(&next).map_err(failed)?;
-    // Folders are left, and the lock.
-    let is_rest =
-        |path: &PathBuf| path.is_dir() || path.file_name().is_some_and(|name| lock::is_lock(&name.to_string_lossy()));
-    match left.iter().find(|path| !is_rest(path)) {
+    // Empty folders are left, and the lock.
+    let left = names_below(&next).map_err(failed)?;
+    match left.iter().find(|name| !name.ends_with('/') && !lock::is_lock(name)) {
         None => fs::remove_dir_all(&next).map_err(failed),
-        Some(path) => Err(foreign(path)),
+        Some(name) => Err(foreign(&next.join(name))),
     }
 }
 
@@ -239,11 +238,8 @@ fn is_alone(folder: &Path, is_former: impl Fn(&str) -> bool) -> bool {
     let is_here =
         || std::env::current_dir().is_ok_and(|here| folder.canonicalize().is_ok_and(|own| here.starts_with(own)));
     let is_link = || folder.symlink_metadata().map_or(true, |data| data.is_symlink());
-    let is_own = |path: &PathBuf| {
-        let name = path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        lock::is_lock(&name) || contents::is_contents(&name) || is_former(&name)
-    };
-    !is_link() && !is_here() && files_below(folder).is_ok_and(|files| files.iter().all(is_own))
+    let is_own = |name: &String| lock::is_lock(name) || contents::is_contents(name) || is_former(name);
+    !is_link() && !is_here() && names_below(folder).is_ok_and(|names| names.iter().all(is_own))
 }
 
 /// The folder around a folder.
@@ -253,30 +249,27 @@ fn parent_of(folder: &Path) -> Option<PathBuf> {
 
 /// Whether a folder can be renamed to another place without its content being copied.
 fn is_near(parent: &Path, folder: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        let device = |path: &Path| fs::metadata(path).ok().map(|data| data.dev());
-        device(parent).is_some() && device(parent) == device(folder)
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = (parent, folder);
-        false
-    }
+    let device = |path: &Path| fs::metadata(path).ok().and_then(|data| identity(&data)).map(|[device, _]| device);
+    device(parent).is_some_and(|own| device(folder) == Some(own))
 }
 
-/// All that is in a folder and in the folders in it and is not a folder; links are not followed. An empty folder counts as a file.
-fn files_below(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
+/// The names of all that is in a folder and in the folders in it and is not a folder, relative to it; links are not followed. The name
+/// of an empty folder is there, too, and ends with a slash.
+fn names_below(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
-        let below = if entry.file_type()?.is_dir() { files_below(&entry.path())? } else { Vec::new() };
-        if below.is_empty() {
-            files.push(entry.path());
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if !entry.file_type()?.is_dir() {
+            names.push(name);
+            continue;
         }
-        files.extend(below);
+        let below = names_below(&entry.path())?;
+        if below.is_empty() {
+            names.push(format!("{name}/"));
+        }
+        names.extend(below.into_iter().map(|within| format!("{name}/{within}")));
     }
-    files.sort();
-    Ok(files)
+    names.sort();
+    Ok(names)
 }

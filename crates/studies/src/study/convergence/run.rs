@@ -52,7 +52,7 @@ pub type EachLevel<'a> = dyn FnMut(&Convergence) -> Result<()> + 'a;
 /// As [`converge`], or as [`converge_to`] with a reference; `each` is given the results of the first levels as soon as they are there.
 ///
 /// # Errors
-/// Those of [`converge`] and [`converge_to`], and those of `each`.
+/// A level fails as in [`converge`] and [`converge_to`], or `each` fails.
 pub fn converge_with(
     scene: &Scene,
     reference: Option<&Scene>,
