@@ -55,7 +55,7 @@ fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
     let figures = [" GB of memory", " GB is left", "fewer points"];
     assert_refused(&run("cholesky", 600), "scene.toml:2: mesh: the stiffness", &figures);
     assert_refused(&run("cholesky", 1200), "scene.toml:2: mesh: the factor", &figures);
-    assert_refused(&run("multigrid", 200), "scene.toml:2: mesh: the stiffness", &figures);
+    assert_refused(&run("multigrid", 280), "scene.toml:2: mesh: the stiffness", &figures);
 }
 
 /// Neither way fits: the figure is that of the levels, which is the lesser one here.
@@ -64,7 +64,7 @@ fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
 fn the_figure_of_a_refusal_is_the_least_that_would_do() {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("scene.toml"), scene(30, "", "")).unwrap();
-    let limit = "export RAYON_NUM_THREADS=1; ulimit -v 200000";
+    let limit = "export RAYON_NUM_THREADS=1; ulimit -v 280000";
     let found = program(folder.path(), limit, &["run", "scene.toml", "--out", "out"]);
     let words = ["the stiffness with the levels of its multigrid takes 0.", "a factor does not fit either"];
     assert_refused(&found, "scene.toml:2: mesh: the stiffness with the levels", &words);
