@@ -21,7 +21,8 @@ fn faults(schema: &Value, root: &Value, value: &Value, place: &str) -> Vec<Strin
     let mut inner = Vec::new();
     for (keyword, rule) in schema {
         match keyword.as_str() {
-            "$schema" | "title" | "description" | "default" | "$defs" | "format" | "required" | "properties" => {}
+            "$schema" | "x-type" | "x-unit" | "x-default" | "x-of" | "title" | "description" | "default" | "$defs"
+            | "format" | "required" | "properties" => {}
             "$ref" => {
                 let target =
                     root.pointer(rule.as_str().unwrap().trim_start_matches('#')).expect("the definition is there");

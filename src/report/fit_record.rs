@@ -16,62 +16,65 @@ pub struct FitRecord {
     /// The kind of fit with its settings.
     #[serde(flatten)]
     pub kind: KindRecord,
-    /// The name in tables and files.
+    /// Tables and files name the fit so.
     pub name: String,
-    /// The spring groups, if not all that are not optional.
+    /// These spring groups are used; the list is null if they are all that are not optional.
     pub groups: Option<Vec<String>>,
-    /// `fitted`, `stable`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
+    /// The network is `fitted`, `stable`, `near-mechanism`, `indefinite` or a `mechanism`; at large deformation it is `converged` or
+    /// `stalled`.
     pub status: String,
-    /// The number of springs of the network.
+    /// The network has this number of springs.
     pub springs: usize,
-    /// For the constants, without assembly.
+    /// The constants took this time in s, without assembly.
     pub seconds: f64,
-    /// Time of the fit for each element, s.
+    /// The constants of each element took this time in s.
     pub seconds_per_element: f64,
-    /// Time to sum the springs of the cells into the network, s.
+    /// The sum of the springs of the cells into the network took this time in s.
     pub seconds_assembly: f64,
-    /// `‖R − K‖/‖R‖` of the elements; null for whole-object fits.
+    /// The elements have these errors `‖R − K‖/‖R‖` in the Frobenius norm; they are null for whole-object fits.
     pub relative_frobenius: SpreadRecord,
-    /// `‖R − K‖/‖R‖` in the induced 2-norm over the elements.
+    /// The elements have these errors `‖R − K‖/‖R‖` in the induced 2-norm; they are null for whole-object fits.
     pub relative_spectral: SpreadRecord,
-    /// Springs with a constant below zero.
+    /// This number of springs has a constant below zero.
     pub negative_springs: usize,
-    /// Elements whose equations do not determine all constants.
+    /// This number of elements has springs that are linearly dependent; the optimum of least norm is used.
     pub undetermined_elements: usize,
-    /// The least and the largest energy of the network over the body's; of exact networks with volume springs on patches, or on
-    /// cells of several quadrature points, over that of finite elements with λ at most 2 μ, which do not lock.
+    /// The energy of the network is between these multiples of that of the body. For exact networks with volume springs on patches, or on
+    /// cells that have several quadrature points, the body is one that does not lock: λ is at most 2 μ. Where moduli are found from
+    /// measured displacements, it has those of the scene times the least factor.
     pub energy_ratio: Option<[Option<f64>; 2]>,
-    /// Points that move most in the softest motion, from 0.
+    /// These points, from 0, move most in the softest motion.
     pub loose_nodes: Vec<usize>,
-    /// The largest relative duality gap.
+    /// The relative duality gap is at most this.
     pub certificate_gap: Option<f64>,
-    /// Elements with the constants of another of the same shape.
+    /// This number of elements has the constants of another of the same shape.
     pub reused_elements: usize,
-    /// Elements whose optimum is not unique.
+    /// This number of elements has an optimum that is not unique.
     pub ambiguous_elements: usize,
-    /// Elements whose iteration stopped short of the optimum.
+    /// This number of elements has an iteration that stopped short of the optimum.
     pub unreached_elements: usize,
-    /// A bound of the error of the energy of every motion, from the worst element; null where there is none.
+    /// The relative error of the energy of the whole body is at most this in every motion, from the worst element; it is null where there
+    /// is no bound.
     pub energy_error_bound: Option<f64>,
-    /// What the network is as a material, at rest.
+    /// `as_material` has what the network is as a material, at rest.
     pub as_material: NetworkMaterialRecord,
-    /// Of the whole network, where the scene asks for `moduli`; Pa. In plane strain that of the solid.
+    /// The whole network has this Young's modulus in Pa, if the scene asks for `moduli`. In plane strain it is that of the solid.
     pub effective_young: Option<f64>,
-    /// Poisson's ratio of the network where it was measured (`[output] moduli`).
+    /// The whole network has this Poisson's ratio, if the scene asks for `moduli`. In plane strain it is that of the solid.
     pub effective_poisson: Option<f64>,
-    /// Zener's ratio of anisotropy where it was measured.
+    /// The whole network has Zener's ratio of anisotropy, if the scene asks for `moduli`.
     pub zener: Option<f64>,
-    /// The errors under each load.
+    /// Each entry has the errors under a load.
     pub loads: Vec<LoadRecord>,
-    /// Of a published method.
+    /// `unmet` has the assumptions of a published formula that the body violates; it is null with others.
     pub unmet: Option<PublishedOutcomeRecord>,
-    /// Of a whole-object fit.
+    /// `whole` has the outcome of a whole-object fit; it is null with others.
     pub whole: Option<WholeOutcomeRecord>,
-    /// Of a sampled fit.
+    /// `sampled` has the outcome of a sampled fit; it is null with others.
     pub sampled: Option<SampledOutcomeRecord>,
-    /// Of an exact network that was to have no negative springs.
+    /// `positive` has the outcome of an exact network that was to have no negative springs; it is null with others.
     pub positive: Option<PositiveRecord>,
-    /// Of a fit with rest measures of its own.
+    /// `tension` has the outcome of a fit with rest measures of its own; it is null with others.
     pub tension: Option<TensionRecord>,
 }
 

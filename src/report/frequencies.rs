@@ -49,13 +49,13 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
 /// The natural frequencies of a model in `report.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrequencyRecord {
-    /// Of the fit, or "finite elements".
+    /// The model is the fit of this name, or `finite elements`.
     pub name: String,
-    /// Hz, ascending.
+    /// The natural frequencies are in Hz, ascending.
     pub frequencies: Option<Vec<f64>>,
-    /// Rigid motions that are left out.
+    /// This number of rigid motions is left out.
     pub rigid_motions: usize,
-    /// Why there are none.
+    /// A sentence says why there are no frequencies; it is null if there are.
     pub reason: Option<String>,
 }
 

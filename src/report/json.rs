@@ -20,62 +20,62 @@ pub const VERSION: u32 = 2;
 /// `report.json`. A value that does not exist or is not finite is null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
-    /// [`VERSION`].
+    /// The version of the format is 2; it changes when a key is removed or its meaning changes.
     pub version: u32,
-    /// The title.
+    /// The scene has this title.
     pub scene: String,
-    /// What was given in place of values of the scene's file, as `KEY=VALUE`.
+    /// These values stand in place of those of the scene's file, as `KEY=VALUE`; `--set` gives them.
     pub settings: Vec<String>,
-    /// The size of the box around the body along each axis, m.
+    /// The box around the body has this size along each axis, m.
     pub extent: Vec<f64>,
-    /// What was assumed because no input says it, as a sentence.
+    /// A sentence says what was assumed because no input says it.
     pub assumed: Option<String>,
-    /// The number of points of the mesh.
+    /// The mesh has this number of points.
     pub nodes: usize,
-    /// The number of cells.
+    /// The mesh has this number of cells.
     pub elements: usize,
-    /// The names of the elements of the mesh.
+    /// The cells have elements of these names.
     pub element_types: Vec<String>,
-    /// Elements whose nodes were numbered the other way round.
+    /// This number of elements had their nodes numbered the other way round.
     pub turned_elements: usize,
-    /// Points of the file that no cell uses.
+    /// This number of points of the file belongs to no element.
     pub unused_nodes: usize,
-    /// What is known of the shapes of the cells.
+    /// `quality` has what is known of the shapes of the cells.
     pub quality: QualityRecord,
-    /// Of the largest network.
+    /// The largest network has this number of springs.
     pub springs: Option<usize>,
-    /// Pa; null if it differs from cell to cell.
+    /// Young's modulus of the material is in Pa; it is null if it differs from cell to cell.
     pub young: Option<f64>,
-    /// Poisson's ratio; null if it differs from cell to cell.
+    /// Poisson's ratio of the material is null if it differs from cell to cell.
     pub poisson: Option<f64>,
-    /// The material of each region; one without a name if the body has no regions.
+    /// Each region has a material; a body without regions has one entry.
     pub materials: Vec<RegionRecord>,
-    /// The title of the material's law.
+    /// The material's law has this title.
     pub law: Option<String>,
-    /// How far the finite elements followed each load; empty at small deformation.
+    /// Each entry says how far the finite elements followed a load; the list is empty at small deformation.
     pub loads_followed: Vec<FollowedRecord>,
-    /// How far linear finite elements are deformed.
+    /// Each entry says how far linear finite elements are deformed under a load.
     pub deformations: Vec<DeformationRecord>,
-    /// Stages that the scene did not ask for, with the reason.
+    /// The scene did not ask for these stages; each entry has the reason.
     pub left_out: Vec<String>,
-    /// Loads under which displacements were measured.
+    /// Each entry is a load under which displacements were measured.
     pub measured: Vec<MeasuredRecord>,
-    /// Of the finite elements under each load; empty without a gauge.
+    /// Each entry has what the tension test of the finite elements gives under a load; the list is empty without `[gauge]`.
     pub gauge: Vec<Option<ReadingRecord>>,
-    /// Whole-object fits that differ in their start alone.
+    /// Each entry says whether whole-object fits that differ in their start alone agree.
     pub starts: Vec<AgreementRecord>,
-    /// The lowest natural frequencies.
+    /// Each entry has the lowest natural frequencies of a model.
     pub frequencies: Vec<FrequencyRecord>,
-    /// How motions were computed; null without `[motion]`.
+    /// `motion_options` says how motions were computed; it is null without `[motion]`.
     pub motion_options: Option<MotionOptionsRecord>,
-    /// Of each model that moved.
+    /// Each entry is the motion of a model.
     pub motion: Vec<MotionRecord>,
-    /// The fits in the order of the scene.
+    /// Each entry is a fit, in the order of the scene.
     pub fits: Vec<FitRecord>,
-    /// What a reader must know before trusting a figure, one sentence each.
+    /// Each sentence says what a reader must know before trusting a figure. Those of a filled surface have its volumes and faults as well.
     pub notes: Vec<String>,
-    /// In `report.json`, the names of the files that the run has written into its folder, with that of the report; those that a motion's
-    /// `.pvd` lists are not named.
+    /// The run has written these files into its folder, with the report itself; `plot` draws no others. Files that the `.pvd` of a motion
+    /// lists are not named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
 }
@@ -83,36 +83,37 @@ pub struct Report {
 /// The quality of the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct QualityRecord {
-    /// From 0, flat, to 1, right angles.
+    /// The least quality of an element is from 0 for flat to 1 for right angles.
     pub worst: Option<f64>,
-    /// The element and number of the cell with the least quality.
+    /// The element and number of the cell say where the least quality is.
     pub worst_cell: Option<String>,
-    /// Null if the quality was not measured, as that of a mesh that is generated.
+    /// This number of elements is below the limit; it is null if quality was not measured, as for a generated mesh.
     pub poor_elements: Option<usize>,
-    /// Left out: of poor quality, flat or tangled.
+    /// This number of elements was left out because they are poor, flat or tangled.
     pub skipped_elements: usize,
-    /// Left out: elements with the nodes of another.
+    /// This number of elements was left out because another has the same nodes.
     pub duplicate_elements: usize,
-    /// Left out: elements folded over their neighbours.
+    /// This number of elements was left out because they are folded over their neighbours.
     pub folded_elements: usize,
-    /// Null if coordinates are too coarse to tell.
+    /// This number of nodes is at the place of another; it is null if coordinates are too coarse to tell.
     pub coincident_nodes: Option<usize>,
-    /// On edges and faces that do not have them; null if coordinates are too coarse to tell, or if the mesh was generated or divided.
+    /// This number of nodes is on edges or faces that do not have them. It is null if coordinates are too coarse to tell, or if the mesh
+    /// was generated or divided.
     pub hanging_nodes: Option<usize>,
-    /// Parts that share no node; null if they were not counted.
+    /// The mesh has this number of parts that share no node; it is null if they were not counted.
     pub pieces: Option<usize>,
 }
 
 /// Whether whole-object fits from several starts give the same errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AgreementRecord {
-    /// The names of the fits that start differently.
+    /// These fits differ only in their start.
     pub fits: Vec<String>,
-    /// The held-out load under which the errors differ most.
+    /// The errors differ most under this held-out load.
     pub load: String,
-    /// As a share of the least error.
+    /// The errors differ by this share of the least one.
     pub difference: Option<f64>,
-    /// Whether the errors differ by no more than a fifth.
+    /// The errors differ by no more than a fifth.
     pub agree: bool,
 }
 

@@ -9,13 +9,13 @@ use serde::{Deserialize, Serialize};
 /// How far linear finite elements are deformed under a load or in a motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DeformationRecord {
-    /// The load; null for the motion.
+    /// The load has this name; it is null for the motion.
     pub load: Option<String>,
-    /// The largest principal strain by size.
+    /// The largest principal strain by size is this.
     pub strain: Option<f64>,
-    /// The largest rotation, rad.
+    /// The largest rotation is in rad.
     pub rotation: Option<f64>,
-    /// Whether that is beyond the linear theory.
+    /// The deformation is beyond the linear theory: 10 % of strain or 0.1 rad.
     pub beyond_linear: bool,
 }
 

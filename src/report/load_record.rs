@@ -9,84 +9,84 @@ use serde::{Deserialize, Serialize};
 /// Young's modulus, Pa, and Poisson's ratio as a gauge measures them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReadingRecord {
-    /// Young's modulus, Pa.
+    /// Young's modulus is in Pa, as the tension test measures it.
     pub young: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio is that which the tension test measures.
     pub poisson: f64,
 }
 
 /// A load under which displacements were measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredRecord {
-    /// The name of the load.
+    /// The load has this name.
     pub load: String,
-    /// The number of points with a measured displacement.
+    /// This number of points has a measured displacement.
     pub points: usize,
-    /// Of the finite elements, percent.
+    /// The finite elements have this root mean square distance from the measured displacements, percent of the largest.
     pub fem_e_rms: Option<f64>,
-    /// As `fem_e_rms`, the largest error.
+    /// The finite elements have this largest distance from the measured displacements, percent of the largest.
     pub fem_e_max: Option<f64>,
 }
 
 /// How far an equilibrium was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FollowedRecord {
-    /// Whether the whole load was reached.
+    /// The whole load was reached.
     pub converged: bool,
-    /// The share of the load that was reached.
+    /// This share of the load was reached.
     pub load: Option<f64>,
-    /// Relative to the forces that act.
+    /// The residual is relative to the forces that act.
     pub residual: Option<f64>,
-    /// Newton's iterations of all steps.
+    /// All steps took this number of Newton's iterations.
     pub iterations: usize,
-    /// Iterations whose tangent was shifted.
+    /// This number of iterations had a tangent that was shifted.
     pub shifted: usize,
-    /// Whether the forces balance to their rounding only, which is more than the tolerance.
+    /// The forces balance to their rounding only, which is more than the tolerance.
     pub rounded: bool,
-    /// Elements that are inverted at the end.
+    /// This number of elements is turned inside out at the end.
     pub inverted_elements: usize,
 }
 
 /// The answer of a network to a load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LoadRecord {
-    /// The name of the load.
+    /// The load has this name.
     pub name: String,
-    /// Percent of the largest displacement.
+    /// The root mean square error is in percent of the largest displacement.
     pub e_rms: Option<f64>,
-    /// The largest error, percent of the largest displacement.
+    /// The largest error is in percent of the largest displacement.
     pub e_max: Option<f64>,
-    /// Percent of the largest displacement, at the point that moves most in the finite elements.
+    /// The error at the point that moves most in the finite elements is in percent of the largest displacement.
     pub e_tip: Option<f64>,
-    /// By how many percent the network is softer than the finite elements: from the work of the load, twice the energy of a linear
-    /// model, or from the inverse of that under prescribed displacements.
+    /// The network is softer than the finite elements by this error of the compliance, percent. With the work w of the load it is `w/w_FEM
+    /// − 1`; where displacements are prescribed, with the work of the forces that hold them, `w_FEM/w − 1`.
     pub e_energy: Option<f64>,
-    /// To assemble, factorise and solve, each as if this were the only load.
+    /// The finite elements took this time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_fem: f64,
-    /// As `seconds_fem`, with the network.
+    /// The network took this time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_lem: f64,
-    /// Null at large deformation.
+    /// `solver_fem` says how the equations of the finite elements were solved; it is null at large deformation.
     pub solver_fem: Option<SolvedRecord>,
-    /// Null where the network has no answer.
+    /// `solver_lem` says how the equations of the network were solved; it is null at large deformation or without an answer.
     pub solver_lem: Option<SolvedRecord>,
-    /// How the load was followed at large deformation.
+    /// `followed` says how far the network followed the load at large deformation; it is null at small deformation.
     pub followed: Option<FollowedRecord>,
-    /// The reading of the gauge; null without `[gauge]`.
+    /// `gauge` has what the tension test of the network gives; it is null without `[gauge]`.
     pub gauge: Option<ReadingRecord>,
 }
 
 /// How linear equations were solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolvedRecord {
-    /// `cholesky` or `lu`; `multigrid`.
+    /// The equations were solved by `cholesky`, `lu` or `multigrid`.
     pub method: String,
-    /// Displacements that are not held.
+    /// This number of displacements is not held.
     pub unknowns: usize,
-    /// Null with a factor.
+    /// Conjugate gradients took this number of iterations; it is null with a factor.
     pub iterations: Option<usize>,
-    /// `‖f − K u‖/‖f‖`.
+    /// The share `‖f − K u‖/‖f‖` of the forces is left.
     pub residual: Option<f64>,
-    /// Nodes and unknowns of each on all levels, the finest first.
+    /// The text has nodes and unknowns of each on all levels of the multigrid, the finest first; it is null with a factor.
     pub levels: Option<String>,
 }
 

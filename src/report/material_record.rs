@@ -8,26 +8,28 @@ use serde::{Deserialize, Serialize};
 /// What a network is as a material, from samples of its cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NetworkMaterialRecord {
-    /// Young's modulus, Pa, harmonic mean over all directions; null where some strain meets no resistance.
+    /// The harmonic mean of Young's modulus over all directions is in Pa; it is null if some strain meets no resistance.
     pub young: Option<f64>,
-    /// Poisson's ratio, mean over all directions; null as `young`, and of a rod.
+    /// The mean of Poisson's ratio over all directions is null as `young` is, and for a rod.
     pub poisson: Option<f64>,
-    /// Young's modulus of the material there, Pa, as `young`: where it differs from cell to cell that of the finite elements of the samples.
+    /// The material has this Young's modulus in Pa. Where it differs from cell to cell, it is that of the finite elements of the samples,
+    /// to which `young` belongs.
     pub asked_young: Option<f64>,
-    /// Poisson's ratio of the material there, as `poisson`.
+    /// The material has this Poisson's ratio. Where it differs from cell to cell, it is that of the finite elements of the samples, to
+    /// which `poisson` belongs.
     pub asked_poisson: Option<f64>,
-    /// `‖C − C₀‖/‖C₀‖` of the elasticity tensors, root mean square over the samples; null where it is not finite.
+    /// The elasticity tensors have the distance `‖C − C₀‖/‖C₀‖`, root mean square over the samples; it is null where it is not finite.
     pub tensor_distance: Option<f64>,
-    /// The same of the mean of the samples' tensors.
+    /// The mean of the samples' tensors has this distance.
     pub mean_tensor_distance: Option<f64>,
-    /// The same of the worst sample.
+    /// The worst sample has this distance.
     pub largest_tensor_distance: Option<f64>,
-    /// The mean of the samples' tensors, in Kelvin's notation, Pa; in the plane times the thickness, of a rod times its
-    /// cross-section. Rows of the stresses xx, yy, (zz,) √2 xy, (√2 xz, √2 yz).
+    /// The mean of the samples' tensors is in Kelvin's notation, Pa; it is times the thickness in the plane, and times the cross-section
+    /// for a rod. Rows are those of the stresses xx, yy, (zz,) √2 xy, (√2 xz, √2 yz).
     pub stiffness: Vec<Vec<Option<f64>>>,
-    /// Cells or patches that were measured.
+    /// This number of cells or patches was measured.
     pub samples: usize,
-    /// For this.
+    /// The computation took this time in s.
     pub seconds: f64,
 }
 

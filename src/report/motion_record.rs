@@ -9,78 +9,81 @@ use serde::{Deserialize, Serialize};
 /// The settings of a motion, with defaults resolved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionOptionsRecord {
-    /// s.
+    /// The motion takes this time in s.
     pub duration: f64,
-    /// s.
+    /// A step has this length in s.
     pub step: f64,
-    /// The number of time steps.
+    /// The motion has this number of steps.
     pub steps: usize,
-    /// The name of the integrator.
+    /// The integrator has this name.
     pub integrator: String,
-    /// Whether forces are linear in the displacements.
+    /// Networks keep their stiffness at rest.
     pub linear: bool,
-    /// Of Newton's method; null where it is not used, as `tolerance`.
+    /// A step takes at most this number of Newton's iterations; it is null where Newton's method is not used.
     pub iterations: Option<usize>,
-    /// Of the equations of implicit steps.
+    /// The equations of implicit steps are solved to this tolerance; it is null where Newton's method is not used.
     pub tolerance: Option<f64>,
-    /// s between the states that are written.
+    /// States are written this time in s apart.
     pub every: f64,
-    /// m/s²; empty for none.
+    /// This acceleration acts on all points, m/s²; the list is empty without gravity.
     pub gravity: Vec<f64>,
-    /// α, 1/s, and β, s.
+    /// Rayleigh's damping has these α in 1/s and β in s; it is null where a damping ratio is given.
     pub rayleigh: Option<[f64; 2]>,
-    /// The damping ratio of each spring, where damping is given so.
+    /// The dampers beside springs have this damping ratio; it is null where none is given.
     pub damping_ratio: Option<f64>,
-    /// The number of points whose path is written.
+    /// The mean displacement of this number of points is written.
     pub watched_points: usize,
 }
 
 /// The motion of a model, one number for each state that is written in its lists; null where a model has none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionRecord {
-    /// Of the fit, or "finite elements".
+    /// The model is the fit of this name, or `finite elements`.
     pub name: String,
-    /// The steps that were computed.
+    /// This number of steps was made.
     pub steps: usize,
-    /// Time of the computation, s.
+    /// The computation took this time in s.
     pub seconds: f64,
-    /// Steps in a second of computation.
+    /// The computation made this number of steps in a second.
     pub steps_per_second: Option<f64>,
-    /// `complete`; `not solved` if that is so of the equations of some steps; `no response`, `ran away` or `not begun`.
+    /// The motion is `complete`; `not solved` if all steps were made and the equations of some were not solved to the tolerance; `no
+    /// response`, `ran away` or `not begun`.
     pub ended: String,
-    /// Why the motion was not begun.
+    /// A sentence says why the motion was not begun; it is null if it was.
     pub reason: Option<String>,
-    /// Implicit steps whose equations were not solved to the tolerance.
+    /// This number of steps has equations that were not solved to the tolerance.
     pub unsolved_steps: usize,
-    /// How fast the fastest motion grows at rest, 1/s, in a network that releases energy.
+    /// The fastest-growing motion of an unstable network grows at this rate at rest, 1/s.
     pub growth: Option<f64>,
-    /// s.
+    /// The states are at these times, s.
     pub time: Vec<Option<f64>>,
-    /// J, as the three that follow.
+    /// The kinetic energy of each state is in J.
     pub kinetic: Vec<Option<f64>>,
-    /// Elastic energy at the recorded times, J.
+    /// The elastic energy of each state is in J, beyond that at rest.
     pub elastic: Vec<Option<f64>>,
-    /// Work of the forces until then, J.
+    /// Forces have done this work until each state, J.
     pub work: Vec<Option<f64>>,
-    /// Energy that the damping has taken, J.
+    /// Damping has taken this energy until each state, J.
     pub dissipated: Vec<Option<f64>>,
-    /// As a share of the largest energy.
+    /// The method itself has made or lost this energy until each state, as a share of the largest energy.
     pub drift: Vec<Option<f64>>,
-    /// kg m/s, `[states][axes]`.
+    /// The momentum of each state is in kg m/s, `[states][axes]`.
     pub momentum: Vec<Vec<Option<f64>>>,
-    /// Angular momentum about the origin, kg m²/s.
+    /// The angular momentum of each state about the origin is in kg m²/s, `[states][axes]`.
     pub angular_momentum: Vec<Vec<Option<f64>>>,
-    /// Mean displacement of the watched points, m.
+    /// The watched points have this mean displacement in each state, m, `[states][axes]`.
     pub watched: Vec<Vec<Option<f64>>>,
-    /// Percent of the largest displacement of the finite elements in the whole motion.
+    /// The root mean square distance from the finite elements in each state is in percent of their largest displacement in the whole
+    /// motion.
     pub e_rms: Vec<Option<f64>>,
-    /// Mean over time of the root mean square error, percent of the largest displacement.
+    /// The mean of `e_rms` over time is in percent.
     pub e_rms_mean: Option<f64>,
-    /// The largest of these errors.
+    /// The largest `e_rms` is in percent.
     pub e_rms_max: Option<f64>,
-    /// The same with springs that do not turn, where they turn beside linear finite elements: what of the error is the fit's.
+    /// With springs that do not turn, the mean of `e_rms` is this, in percent. It is the share of the fit in the error where springs turn
+    /// beside linear finite elements, and null elsewhere.
     pub linear_e_rms_mean: Option<f64>,
-    /// As `linear_e_rms_mean`, the largest.
+    /// With springs that do not turn, the largest `e_rms` is this, in percent; it is null as `linear_e_rms_mean` is.
     pub linear_e_rms_max: Option<f64>,
 }
 

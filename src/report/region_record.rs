@@ -10,17 +10,17 @@ use serde::{Deserialize, Serialize};
 /// The material of a region, in `report.json`: the least and the largest value over its cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RegionRecord {
-    /// The group, the condition or `rest`; null where the body has no regions.
+    /// The region is this group, this condition or `rest`; it is null where the body has no regions.
     pub region: Option<String>,
-    /// The number of cells.
+    /// The region has this number of cells.
     pub cells: usize,
-    /// Young's modulus, Pa; null of anisotropic materials.
+    /// Young's modulus in Pa has this least and largest value over the cells; both are null for anisotropic materials.
     pub young: [Option<f64>; 2],
-    /// Poisson's ratio; null of anisotropic materials.
+    /// Poisson's ratio has this least and largest value over the cells; both are null for anisotropic materials.
     pub poisson: [Option<f64>; 2],
-    /// m; the cross-section of rods, m²; null for solids.
+    /// The thickness in m, or the cross-section of rods in m², has this least and largest value over the cells; it is null for solids.
     pub thickness: Option<[Option<f64>; 2]>,
-    /// kg/m³; null without a density.
+    /// The density in kg/m³ has this least and largest value over the cells; it is null without a density.
     pub density: Option<[Option<f64>; 2]>,
 }
 

@@ -41,7 +41,7 @@ impl JsonSchema for Constant {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let description = "A number, or a constant expression such as \"sqrt(3)/3\".";
-        json_schema!({ "type": ["number", "string"], "description": description })
+        json_schema!({ "type": ["number", "string"], "x-type": "number or expression", "description": description })
     }
 }
 

@@ -3,30 +3,40 @@
 use super::cell::Cell;
 use super::constant::Constant;
 use super::kind::SpringKind;
-use schemars::{JsonSchema, schema_for};
+use schemars::{JsonSchema, Schema, schema_for};
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
+    /// The name is short; fits and scenes name the element by it.
     pub name: String,
+    /// The title is a headline.
     pub title: String,
+    /// The element has this reference cell. Intervals and boxes span [−1, 1]; simplices are the unit corner; a wedge is the triangle times
+    /// [−1, 1]; a pyramid has the square as its base and its apex at (0, 0, 1).
     pub cell: Cell,
-    /// Names of the reference coordinates in the shape functions.
+    /// The reference coordinates have these names in the shape functions.
     pub coordinates: Vec<String>,
-    /// Where the shape functions are published.
+    /// The shape functions are published there.
     pub source: Option<String>,
-    /// Named sub-expressions, in the order of the file.
+    /// Parts of expressions have these names; each may use those before it.
     #[serde(default, rename = "let")]
     #[schemars(with = "BTreeMap<String, String>")]
     pub definitions: toml::Table,
+    /// Each node has a place and a shape function.
     pub nodes: Vec<NodeEntry>,
+    /// The stiffness is integrated by this rule. Loads and masses have rules of the degree that they need.
     pub quadrature: Rule,
-    /// The quadrature rule of the term λ (div u)²; if it is absent, the rule of all other terms.
+    /// The term λ (div u)² of the stiffness is integrated by this rule, which is selective integration.
+    #[schemars(extend("x-default" = "`quadrature`"))]
     pub volumetric_quadrature: Option<Rule>,
+    /// Each entry is a group of springs.
     #[serde(default)]
     pub springs: Vec<SpringEntry>,
+    /// `formats` has what mesh files call the element.
     #[serde(default)]
     pub formats: Formats,
 }
@@ -34,32 +44,62 @@ pub struct Definition {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodeEntry {
+    /// The node is at this place of the reference cell, numbers or constants such as `"1/3"` and `"sqrt(3)/3"`.
     pub at: Vec<Constant>,
+    /// The shape function is 1 at the node and 0 at the others.
     pub shape: String,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(tag = "rule", rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(transform = describe_tag)]
 pub enum Rule {
-    GaussLegendre { points: usize },
-    Simplex { degree: usize },
-    Degree { degree: usize },
-    Explicit { points: Vec<Vec<Constant>>, weights: Vec<Constant> },
+    GaussLegendre {
+        /// The rule has this number of points in each direction.
+        points: usize,
+    },
+    Simplex {
+        /// Polynomials up to this degree are integrated exactly.
+        degree: usize,
+    },
+    Degree {
+        /// Polynomials up to this degree are integrated exactly.
+        degree: usize,
+    },
+    Explicit {
+        /// The points are at these places of the reference cell.
+        points: Vec<Vec<Constant>>,
+        /// The points have these weights.
+        weights: Vec<Constant>,
+    },
+}
+
+/// The tag is no field, which would have a comment.
+fn describe_tag(schema: &mut Schema) {
+    let rules = schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten();
+    for tag in rules.filter_map(|rule| rule.pointer_mut("/properties/rule")) {
+        tag["description"] =
+            "The rule is `gauss-legendre` for intervals, quadrilaterals and hexahedra, `simplex` for triangles and \
+                              tetrahedra, or `degree` or `explicit` for all cells."
+                .into();
+    }
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringEntry {
+    /// The springs are a group of this name.
     pub group: String,
+    /// The springs measure this.
     pub kind: SpringKind,
-    /// The nodes of each spring; absent if the whole cell is measured.
+    /// Each spring has one of these lists of nodes, from 0; `"complete"` takes all pairs of nodes that have no spring yet.
+    #[schemars(extend("x-type" = "lists of indices, or `\"complete\"`", "x-default" = "the whole cell"))]
     pub nodes: Option<NodeLists>,
-    /// For the kind `measure`: a function of the coordinates `x0, y0, z0, x1, …` of the nodes of one spring.
+    /// A spring of the kind `measure` has this expression of `x0, y0, z0, x1, …`, the coordinates of its nodes.
     pub measure: Option<String>,
-    /// `auto` divides the springs into classes that the symmetry of the cell maps onto each other, one group for each
-    /// class.
+    /// `auto` divides the springs into classes that the symmetry of the cell maps onto each other, one group for each class.
     pub class: Option<SpringClass>,
-    /// Whether the group is used only by fits that name it.
+    /// The group is used by fits that name it, and by no others.
     #[serde(default)]
     pub optional: bool,
 }
@@ -87,9 +127,9 @@ pub fn schema() -> serde_json::Value {
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Formats {
-    /// The type in Gmsh files.
+    /// Gmsh files have the element as this type.
     pub gmsh: Option<FormatEntry>,
-    /// The type in VTK files.
+    /// VTK files have the element as this type.
     pub vtk: Option<FormatEntry>,
 }
 
@@ -97,10 +137,10 @@ pub struct Formats {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FormatEntry {
-    /// The number of the cell type.
+    /// The type of cells has this number in the format.
     #[serde(rename = "type")]
     pub cell_type: u32,
-    /// `order[i]` is the position of node i of the element in the list of the file. If it is absent, the orders are
-    /// equal.
+    /// `order[i]` is the place of node i of the element in the list of the file.
+    #[schemars(extend("x-default" = "the same order"))]
     pub order: Option<Vec<usize>>,
 }

@@ -25,17 +25,23 @@ const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Definition {
+    /// The name is short.
     name: String,
+    /// The title is a headline.
     title: String,
+    /// The energy is published there.
     source: Option<String>,
-    /// The direction of the fibres at rest; its length does not matter.
+    /// Fibres have this direction at rest; its length does not matter.
     fibre: Option<[f64; 3]>,
-    /// The parameters with their defaults.
+    /// These parameters of the energy have these values, which a scene may replace.
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
+    /// Parts of expressions have these names; each may use those before it.
     #[serde(default, rename = "let")]
     #[schemars(with = "BTreeMap<String, String>")]
     definitions: toml::Table,
+    /// The energy per volume at rest, in J/m³, is an expression of `I1`, `I2`, `J`, `I4`, or of the principal stretches `l1`, `l2`, `l3`.
+    /// It may use `young`, `poisson`, `lambda`, `mu`, `kappa` and the parameters.
     energy: String,
 }
 

@@ -15,47 +15,49 @@ pub const NETWORK_VERSION: u32 = 1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
-    /// `springfit network`.
+    /// The format is `springfit network`.
     pub format: String,
-    /// The version of the format.
+    /// The version of the format is 1; it changes when a key is removed or its meaning changes.
     pub version: u32,
-    /// Where the network comes from.
+    /// `provenance` says where the network comes from.
     pub provenance: ProvenanceRecord,
-    /// The number of coordinates of a point.
+    /// A point has this number of coordinates.
     pub dimension: usize,
-    /// By quantity; the constants of springs by kind.
+    /// Units are named by quantity, and those of the constants by kind of spring.
     pub units: BTreeMap<String, String>,
-    /// `[points][dimension]`, m.
+    /// Points are at these positions at rest in m, `[points][dimension]`.
     pub points: Vec<Vec<f64>>,
-    /// What `nodes` are; null of a mesh that is no file.
+    /// A text says what the numbers in `nodes` are; it is null of a mesh that is no file.
     pub numbering: Option<String>,
-    /// The numbers of the points in the mesh file, `[points]`.
+    /// Points have these numbers in the mesh file, `[points]`; the list is null of a mesh that is no file.
     pub nodes: Option<Vec<u64>>,
-    /// `[points]`, kg; null without a density.
+    /// Points have these masses in kg, `[points]`; the list is null without a density. They are those that the run computes with: fitted
+    /// ones, those of the motion, or the row sums of the mass matrix. Where row sums are not positive, they are those of the HRZ method.
     pub masses: Option<Vec<f64>>,
-    /// The cells of the mesh, for each element.
+    /// Each entry has the cells of the mesh with one element.
     pub cells: Vec<CellBlockRecord<C>>,
-    /// Triangles between points on the boundary of a solid, counterclockwise as seen from outside; of a plane or surface its cells.
+    /// Triangles between points are on the boundary of a solid, counterclockwise as seen from outside; for a plane mesh or a surface they
+    /// are its cells.
     pub surface: Vec<[usize; 3]>,
-    /// The points that are held, with `[[fix]]` of the scene.
+    /// Each entry is a point that `[[fix]]` of the scene holds.
     pub held: Vec<HeldRecord>,
-    /// The loads of the scene as nodal forces.
+    /// Each entry is a load of the scene as nodal forces.
     pub loads: Vec<NodalLoadRecord>,
-    /// m/s², `[dimension]`; null where the scene says nothing of it.
+    /// The acceleration of `[motion]` is in m/s², `[dimension]`; it is null where the scene says nothing of it.
     pub gravity: Option<Vec<f64>>,
-    /// The damping of the motion.
+    /// `damping` has Rayleigh's numbers and the damping ratio.
     pub damping: NetworkDampingRecord,
-    /// The motion of the scene.
+    /// `motion` says how the scene moves the network; it is null without `[motion]`.
     pub motion: Option<DriveRecord>,
-    /// The longest step of an explicit method without damping, `2/ω` of the fastest motion at rest, s; null without masses.
+    /// Symplectic Euler without damping is stable below this step in s, `2/ω` of the fastest motion at rest; it is null without masses.
     pub largest_step: Option<f64>,
-    /// The groups of springs in the element files.
+    /// Each entry is a group of springs of an element, from which springs come.
     pub groups: Vec<OriginRecord>,
-    /// What springs measure.
+    /// Each entry is something that springs measure.
     pub measures: Vec<MeasureRecord>,
-    /// What a reader must know of the fit, one sentence each.
+    /// Each sentence says what a reader must know of the fit.
     pub notes: Vec<String>,
-    /// The springs.
+    /// Each entry is a spring.
     pub springs: S,
 }
 
@@ -63,21 +65,22 @@ pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ProvenanceRecord {
-    /// The program and its version.
+    /// The program has this name and version.
     pub program: String,
-    /// The command that was given; null if a library made the network.
+    /// The program was given this command; it is null if a library made the network.
     pub command: Option<String>,
-    /// The title of the scene, or the file of the mesh.
+    /// The scene has this title; of a mesh alone it is the file.
     pub scene: Option<String>,
-    /// Values given by `--set` in place of those of the scene.
+    /// These values of `--set` stand in place of those of the scene.
     pub settings: Vec<String>,
-    /// Where the mesh comes from, in words.
+    /// Words say where the mesh comes from.
     pub mesh: Option<String>,
-    /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits; eight hexadecimal digits.
+    /// CRC-32 of the points as little-endian numbers of 64 bits, followed by the cells as integers of 32 bits, is written as eight
+    /// hexadecimal digits.
     pub mesh_checksum: String,
-    /// The material that was fitted; null if it differs from cell to cell.
+    /// The material was fitted; it is null if it differs from cell to cell.
     pub material: Option<MaterialDataRecord>,
-    /// The fit with its errors.
+    /// `fit` has the fit with its errors.
     pub fit: Option<FitSummaryRecord>,
 }
 
@@ -85,17 +88,17 @@ pub struct ProvenanceRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialDataRecord {
-    /// Pa.
+    /// Young's modulus is in Pa.
     pub young: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio has no unit.
     pub poisson: f64,
-    /// `solid`, `plane stress`, `plane strain` or `rod`.
+    /// The body is `solid`, in `plane stress` or `plane strain`, or a `rod`.
     pub state: String,
-    /// m; the cross-section of a rod in m²; 1 for a solid.
+    /// The thickness is in m, and the cross-section of a rod in m²; it is 1 for a solid.
     pub thickness: f64,
-    /// kg/m³.
+    /// The density is in kg/m³; it is null without one.
     pub density: Option<f64>,
-    /// The title of the law at large deformation.
+    /// The law at large deformation has this title; it is null without one.
     pub law: Option<String>,
 }
 
@@ -103,21 +106,22 @@ pub struct MaterialDataRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FitSummaryRecord {
-    /// The name of the fit.
+    /// The fit has this name.
     pub name: String,
-    /// The objective.
+    /// The objective has this name.
     pub objective: String,
-    /// All settings of the objective, as in report.json.
+    /// All settings of the objective are here, as in report.json.
     pub settings: BTreeMap<String, serde_json::Value>,
-    /// `fitted`, `stable`, `near-mechanism`, `indefinite` or `mechanism`; at large deformation `converged` or `stalled`.
+    /// The network is `fitted`, `stable`, `near-mechanism`, `indefinite` or a `mechanism`; at large deformation it is `converged` or
+    /// `stalled`.
     pub status: String,
-    /// Springs with a constant below zero.
+    /// This number of springs has a constant below zero.
     pub negative_springs: usize,
-    /// `‖R − K‖/‖R‖` of the elements, mean and largest; null where springs belong to no element.
+    /// The elements have these errors `‖R − K‖/‖R‖`, mean and largest; the pair is null where springs belong to no element.
     pub relative_frobenius: Option<[f64; 2]>,
-    /// `‖C − C₀‖/‖C₀‖` of the elasticity tensor.
+    /// The elasticity tensor has the distance `‖C − C₀‖/‖C₀‖` from that of the material.
     pub relative_tensor: Option<f64>,
-    /// The errors under each load of the scene.
+    /// Each entry has the errors under a load of the scene.
     pub loads: Vec<LoadErrorsRecord>,
 }
 
@@ -125,15 +129,15 @@ pub struct FitSummaryRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadErrorsRecord {
-    /// The name of the load.
+    /// The load has this name.
     pub name: String,
-    /// Percent of the largest displacement, as the two that follow.
+    /// The root mean square error is in percent of the largest displacement.
     pub e_rms: Option<f64>,
-    /// The largest error, percent of the largest displacement.
+    /// The largest error is in percent of the largest displacement.
     pub e_max: Option<f64>,
-    /// The error at the point that moves most, percent of the largest displacement.
+    /// The error at the point that moves most is in percent of the largest displacement.
     pub e_tip: Option<f64>,
-    /// By how many percent it is softer than the finite elements, from the work of the load.
+    /// The network is softer than the finite elements by this error of the compliance, percent, from the work of the load.
     pub e_energy: Option<f64>,
 }
 
@@ -141,11 +145,11 @@ pub struct LoadErrorsRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CellBlockRecord<C = Vec<Vec<usize>>> {
-    /// The name of the element.
+    /// The element has this name.
     pub element: String,
-    /// The type of the cells in VTK; null if the element names none.
+    /// The cells have this type in VTK; it is null if the element names none.
     pub vtk: Option<u32>,
-    /// Points of each cell in the order of the element, `[cells][nodes]`.
+    /// Each cell has these points in the order of the element, `[cells][nodes]`.
     pub points: C,
 }
 
@@ -153,9 +157,9 @@ pub struct CellBlockRecord<C = Vec<Vec<usize>>> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HeldRecord {
-    /// The point, from 0.
+    /// The point has this place, from 0.
     pub point: usize,
-    /// m, `[dimension]`; null in directions in which the point is free.
+    /// The prescribed displacement is in m, `[dimension]`; it is null in directions in which the point is free.
     pub displacement: Vec<Option<f64>>,
 }
 
@@ -163,11 +167,11 @@ pub struct HeldRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodalLoadRecord {
-    /// The name of the load.
+    /// The load has this name.
     pub name: String,
-    /// The forces on its points.
+    /// Each entry is a force on a point.
     pub forces: Vec<NodalForceRecord>,
-    /// All points that are held under this load, with prescribed displacements.
+    /// Each entry is a point that is held under this load, with `[[fix]]` and prescribed displacements.
     pub held: Vec<HeldRecord>,
 }
 
@@ -175,9 +179,9 @@ pub struct NodalLoadRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodalForceRecord {
-    /// The point, from 0.
+    /// The point has this place, from 0.
     pub point: usize,
-    /// N, `[dimension]`.
+    /// The force is in N, `[dimension]`.
     pub force: Vec<f64>,
 }
 
@@ -185,11 +189,11 @@ pub struct NodalForceRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkDampingRecord {
-    /// α, 1/s.
+    /// Rayleigh's α is in 1/s.
     pub mass: f64,
-    /// β, s.
+    /// Rayleigh's β is in s.
     pub stiffness: f64,
-    /// The damping ratio from which the dampers of the springs are made; 0 if they have none.
+    /// The dampers of the springs are made of this damping ratio ζ; it is 0 if they have none.
     pub ratio: f64,
 }
 
@@ -197,23 +201,23 @@ pub struct NetworkDampingRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveRecord {
-    /// s, as the two that follow.
+    /// The motion takes this time in s.
     pub duration: f64,
-    /// The time step, s.
+    /// A step has this length in s.
     pub step: f64,
-    /// Between the states that are written.
+    /// States are written this time in s apart.
     pub every: f64,
-    /// The number of time steps.
+    /// The motion has this number of steps.
     pub steps: usize,
-    /// The name of the integrator.
+    /// The integrator has this name.
     pub integrator: String,
-    /// Whether springs keep their directions, as in linear finite elements.
+    /// Springs keep their directions, as in linear finite elements.
     pub linear: bool,
-    /// Points whose mean displacement is written.
+    /// The mean displacement of these points is written.
     pub watched: Vec<usize>,
-    /// Forces that act for a time.
+    /// Each entry is a force in time.
     pub forces: Vec<TimedForceRecord>,
-    /// Points that are moved for a time.
+    /// Each entry is a prescribed displacement in time.
     pub pulls: Vec<TimedPullRecord>,
 }
 
@@ -221,13 +225,13 @@ pub struct DriveRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimedForceRecord {
-    /// The direction, from 0.
+    /// The force has this direction, from 0.
     pub axis: usize,
-    /// N, an expression in t.
+    /// The force in N is an expression of t.
     pub force: String,
-    /// The points on which it acts, from 0.
+    /// The force acts on these points, from 0.
     pub points: Vec<usize>,
-    /// The share of each point, by which the force is multiplied.
+    /// The force is multiplied by this share for each point.
     pub shares: Vec<f64>,
 }
 
@@ -235,11 +239,11 @@ pub struct TimedForceRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TimedPullRecord {
-    /// The direction, from 0.
+    /// The displacement has this direction, from 0.
     pub axis: usize,
-    /// m, an expression in t and in the x, y, z of the point at rest.
+    /// The displacement in m is an expression of t, and of x, y, z of the point at rest.
     pub displacement: String,
-    /// The points that are moved, from 0.
+    /// These points are moved, from 0.
     pub points: Vec<usize>,
 }
 
@@ -247,9 +251,9 @@ pub struct TimedPullRecord {
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OriginRecord {
-    /// The name of the element.
+    /// The element has this name.
     pub element: String,
-    /// The name of the group of its springs.
+    /// The group of springs of the element has this name; in exact networks it is `pairs`, `areas`, `points` or `content`.
     pub group: String,
 }
 
@@ -257,15 +261,15 @@ pub struct OriginRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeasureRecord {
-    /// What is measured.
+    /// The measure is computed in this way.
     pub kind: MeasureKind,
-    /// Of a content: the element whose shape functions have these gradients; null of fibres.
+    /// A content has the shape functions of this element; it is null of fibres.
     pub element: Option<String>,
-    /// Of a content: `Σ_cells share · Σ_terms weight · |Σ_a x_a ⊗ gradients_a|`, with the points of the cells.
+    /// A content is `Σ_cells share · Σ_terms weight · |Σ_a x_a ⊗ gradients_a|` with these terms, one for each quadrature point.
     pub terms: Vec<TermRecord>,
-    /// The cells whose contents are summed, with their shares.
+    /// A content is summed over these cells.
     pub cells: Vec<ShareRecord>,
-    /// Of an expression: a function of `x0, y0, z0, x1, …`, the coordinates of the points of the spring.
+    /// An expression is a function of `x0, y0, z0, x1, …`, the coordinates of the points of the spring.
     pub expression: Option<String>,
 }
 
@@ -285,9 +289,9 @@ pub enum MeasureKind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TermRecord {
-    /// The weight of the term in the sum.
+    /// The term has this weight in the sum.
     pub weight: f64,
-    /// `[nodes][columns]`.
+    /// The shape functions have these gradients, `[nodes][columns]`.
     pub gradients: Vec<Vec<f64>>,
 }
 
@@ -295,9 +299,9 @@ pub struct TermRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShareRecord {
-    /// Places in the points of the spring.
+    /// The nodes of the cell have these places in the points of the spring.
     pub nodes: Vec<usize>,
-    /// The share of the content of the cell.
+    /// The content of the cell has this share.
     pub share: f64,
 }
 
@@ -305,23 +309,23 @@ pub struct ShareRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpringRecord<'a> {
-    /// What the spring measures.
+    /// The spring is of this kind, which says what it measures.
     pub kind: Cow<'a, str>,
-    /// The points of which it is a function, from 0.
+    /// The spring has these points, from 0.
     pub points: Cow<'a, [usize]>,
-    /// In the unit of the kind; with a law the slope of its force at rest.
+    /// The constant k is in the unit of the kind; with a law it is the slope at rest.
     pub constant: f64,
-    /// In the unit of what is measured: m, m², m³ or rad.
+    /// The rest measure c₀ is in the unit of what is measured: m, m², m³ or rad.
     pub rest: f64,
-    /// The place of its measure in `measures`.
+    /// The measure of the spring has this place in `measures`.
     pub measure: usize,
-    /// The force as an expression of `s = (c − c0)/c0`, `c`, `c0` (the rest) and parameters; null if it is linear.
+    /// The tension is this expression of `s = (c − c0)/c0`, `c`, `c0` (the rest) and parameters; it is null if it is linear.
     pub law: Option<Cow<'a, str>>,
-    /// Of the law, by name.
+    /// The parameters of the law have these values.
     pub parameters: BTreeMap<String, f64>,
-    /// The coefficient c_s of the damper beside it: the unit of `constant`, times s.
+    /// The damper beside the spring has this coefficient c_s, in the unit of `constant` times s.
     pub damper: f64,
-    /// Places in `groups`: of all cells that share the spring.
+    /// The cells that share the spring have these places in `groups`; the list is empty for springs of patches and across cells.
     pub groups: Cow<'a, [usize]>,
 }
 

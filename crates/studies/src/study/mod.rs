@@ -20,6 +20,7 @@ mod extent;
 mod fits;
 mod fitting;
 mod forecast;
+mod keys;
 mod masses;
 mod outcome;
 mod own_name;
@@ -56,7 +57,7 @@ pub use fits::{
     PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
     Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task,
     TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe,
-    WholeRecord, WorseLoad,
+    WholeRecord, WorseLoad, fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};

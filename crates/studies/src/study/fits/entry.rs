@@ -1,7 +1,6 @@
 //! A `[[fit]]` of a scene file.
 
 use super::exact::{ExactEntry, without_groups};
-use super::keys::keys;
 use super::named::NamedFit;
 use super::published::PublishedEntry;
 use super::recipe::Recipe;
@@ -13,6 +12,7 @@ use crate::file;
 use crate::fit::Objective;
 use crate::fit::published::Method;
 use crate::named::{suggestion, unknown};
+use crate::study::keys::keys;
 use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;

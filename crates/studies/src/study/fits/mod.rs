@@ -4,7 +4,6 @@ mod entry;
 mod exact;
 mod facts;
 mod fitted;
-mod keys;
 mod kind;
 mod named;
 mod published;
@@ -28,6 +27,7 @@ pub use record::KindRecord;
 pub use sampled::{
     FitFunctions, ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at,
 };
+pub use schema::fit_schema;
 pub use spread::SpreadRecord;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
 pub use whole::{

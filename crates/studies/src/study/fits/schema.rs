@@ -1,12 +1,12 @@
 //! The JSON Schema of a `[[fit]]`: one alternative for each kind, which its objective tells.
 
-use super::entry::{FitEntry, Kind};
+use super::entry::{COMMON, FitEntry, Kind};
 use super::exact::ExactEntry;
 use super::published::PublishedEntry;
 use super::sampled::SampledEntry;
 use super::stiffness::StiffnessEntry;
 use super::whole::WholeEntry;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
@@ -21,12 +21,18 @@ impl JsonSchema for FitEntry {
     }
 }
 
+/// The JSON Schema of fits alone.
+pub fn fit_schema() -> Value {
+    schema_for!(FitEntry).to_value()
+}
+
 fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
     let mut properties = Map::new();
     if kind == Kind::Whole {
         // It may start from a sampled fit.
         properties.extend(keys::<SampledEntry>(generator));
         properties.remove("tied");
+        properties.values_mut().for_each(|key| key["x-of"] = Kind::Sampled.name().into());
     }
     properties.extend(match kind {
         Kind::Stiffness => keys::<StiffnessEntry>(generator),
@@ -35,12 +41,7 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
         Kind::Published => keys::<PublishedEntry>(generator),
         Kind::Exact => keys::<ExactEntry>(generator),
     });
-    let name = json!({ "type": "string", "description": "A name for tables and files, unlike that of any other fit." });
-    let groups = "The spring groups of the elements; all that are not optional if absent.";
-    properties.insert("name".into(), name);
-    properties.insert("objective".into(), json!({ "enum": kind.objectives() }));
-    let springs = json!({ "type": "array", "items": { "type": "string" }, "description": groups });
-    properties.insert("springs".into(), springs);
+    properties.extend(common(kind));
     json!({
         "title": kind.name(),
         "type": "object",
@@ -48,6 +49,28 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
         "required": ["objective"],
         "additionalProperties": false,
     })
+}
+
+/// The keys that all fits have.
+fn common(kind: Kind) -> [(String, Value); COMMON.len()] {
+    let [name, objective, springs] = COMMON.map(String::from);
+    let names = json!({
+        "type": "string",
+        "description": "Tables and files name the fit so. Each fit has a name of its own, and none is `finite elements`.",
+        "x-default": "made from the settings",
+    });
+    let objectives = json!({
+        "type": "string",
+        "enum": kind.objectives(),
+        "description": "The objective says what the springs are fitted to, and by it which other keys the fit has.",
+    });
+    let groups = json!({
+        "type": "array",
+        "items": { "type": "string" },
+        "description": "The network has the springs of these groups of the element.",
+        "x-default": "all that are not optional",
+    });
+    [(name, names), (objective, objectives), (springs, groups)]
 }
 
 /// The properties of the keys that a kind has.

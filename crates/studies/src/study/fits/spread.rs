@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 /// The mean and the maximum of a number over the elements; null if there is none.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpreadRecord {
-    /// The mean.
+    /// The mean is taken over the elements.
     pub mean: Option<f64>,
-    /// The maximum.
+    /// The largest value is taken over the elements.
     pub max: Option<f64>,
 }
 

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 #[serde(transparent)]
 pub struct PressureField(
     #[serde(deserialize_with = "distribution::pressure")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::pressure_schema")]
     Distribution,
 );
 
@@ -28,7 +28,7 @@ pub struct PressureField(
 #[serde(transparent)]
 pub struct NumberField(
     #[serde(deserialize_with = "distribution::ratio")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::ratio_schema")]
     pub Distribution,
 );
 
@@ -36,11 +36,14 @@ pub struct NumberField(
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrthotropicEntry {
-    /// E1, E2, E3, Pa.
+    /// The list has E1, E2 and E3 in Pa.
+    #[schemars(extend("x-type" = "three pressures, or varying"))]
     young: Vec<PressureField>,
-    /// ν12, ν23, ν13.
+    /// The list has ν12, ν23 and ν13; `ν_ij` is the contraction along j per stretch along i under tension along i.
+    #[schemars(extend("x-type" = "three numbers, or varying"))]
     poisson: Vec<NumberField>,
-    /// G12, G23, G13, Pa.
+    /// The list has G12, G23 and G13 in Pa.
+    #[schemars(extend("x-type" = "three pressures, or varying"))]
     shear: Vec<PressureField>,
 }
 
@@ -48,11 +51,13 @@ pub struct OrthotropicEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TransverseEntry {
-    /// Along the axis and across it, Pa.
+    /// The list has Young's modulus along the axis and across it, in Pa.
+    #[schemars(extend("x-type" = "two pressures, or varying"))]
     young: Vec<PressureField>,
-    /// Across under tension along, and in the plane across.
+    /// The list has Poisson's ratio across the axis per stretch along it under tension along it, and that within the plane across.
+    #[schemars(extend("x-type" = "two numbers, or varying"))]
     poisson: Vec<NumberField>,
-    /// Of planes along the axis, Pa.
+    /// The shear modulus along the axis is in Pa.
     shear: PressureField,
 }
 
@@ -60,8 +65,11 @@ pub struct TransverseEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CubicEntry {
+    /// The stiffness c11 is in Pa.
     c11: PressureField,
+    /// The stiffness c12 is in Pa.
     c12: PressureField,
+    /// The stiffness c44 is in Pa.
     c44: PressureField,
 }
 

@@ -34,19 +34,25 @@ pub enum Source {
 /// A file of numbers at places.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(title = "data")]
 pub struct DataEntry {
-    /// The path, relative to the scene.
+    /// The values are read from this file, relative to the scene: `.csv`, `.vtu` or `.vtk`. A table has a header with `x`, `y`, (`z`) and
+    /// the column of the values.
+    #[schemars(extend("x-type" = "path"))]
     pub file: PathBuf,
-    /// The name of the array, if the file has several.
+    /// The values are in this array of points or cells, or in this column.
+    #[schemars(extend("x-default" = "the only one"))]
     pub array: Option<String>,
-    /// The unit of the numbers; the SI unit if absent.
+    /// The values have this unit, such as `"MPa"`, `"mm"` or `"g/cm^3"`.
+    #[schemars(extend("x-default" = "the SI unit"))]
     pub unit: Option<String>,
-    /// The length of a unit of the file's positions, m.
+    /// One unit of the positions in the file has this length in m, above 0.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::mesh_unit_schema")]
     pub scale: f64,
-    /// How numbers between the places of the file are found.
-    #[schemars(extend("enum" = Interpolation::NAMES))]
+    /// Values between the places of the file are those of the nearest place (`nearest`), or of the plane through the nearest places by
+    /// least squares within the range of their values (`linear`).
+    #[schemars(extend("enum" = Interpolation::NAMES, "x-default" = "by what the values belong to"))]
     pub interpolation: Option<String>,
 }
 
@@ -87,10 +93,11 @@ impl DataEntry {
     }
 }
 
-/// The schema of a distribution.
-pub fn schema(generator: &mut SchemaGenerator) -> Schema {
+/// The schema of a distribution of a quantity, or of a number without a unit.
+fn schema(quantity: Option<Quantity>, generator: &mut SchemaGenerator) -> Schema {
     let data = generator.subschema_for::<DataEntry>();
-    json_schema!({ "anyOf": [{ "type": ["number", "string"] }, data] })
+    let name = quantity.map_or("number", |quantity| value::name_and_unit(quantity).0);
+    json_schema!({ "anyOf": [{ "type": ["number", "string"] }, data], "x-type": format!("{name}, or varies") })
 }
 
 struct DistributionVisitor(Option<Quantity>);
@@ -145,9 +152,13 @@ fn read<'de, D: Deserializer<'de>>(quantity: Option<Quantity>, deserializer: D) 
     deserializer.deserialize_any(DistributionVisitor(quantity))
 }
 
-/// Functions for `deserialize_with`.
+/// Functions for `deserialize_with` and `schema_with`.
 macro_rules! distributions {
-    ($($name:ident, $optional:ident: $quantity:expr),+ $(,)?) => {$(
+    ($($name:ident, $optional:ident, $schema:ident: $quantity:expr),+ $(,)?) => {$(
+        pub fn $schema(generator: &mut SchemaGenerator) -> Schema {
+            schema($quantity, generator)
+        }
+
         // Not every quantity is used both as a required and as an optional key.
         #[allow(dead_code)]
         pub fn $name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Distribution, D::Error> {
@@ -162,8 +173,8 @@ macro_rules! distributions {
 }
 
 distributions! {
-    pressure, optional_pressure: Some(Quantity::Pressure),
-    ratio, optional_ratio: None,
-    length, optional_length: Some(Quantity::Length),
-    density, optional_density: Some(Quantity::Density),
+    pressure, optional_pressure, pressure_schema: Some(Quantity::Pressure),
+    ratio, optional_ratio, ratio_schema: None,
+    length, optional_length, length_schema: Some(Quantity::Length),
+    density, optional_density, density_schema: Some(Quantity::Density),
 }

@@ -8,7 +8,7 @@ use super::laws::laws_of_cells;
 use super::lists::{check_fits, read_fits};
 use super::load::{LoadCase, read_loads};
 use super::material::{MaterialEntries, MaterialEntry};
-use super::motion::MotionRecipe;
+use super::motion_recipe::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
 use super::reference::ReferenceEntry;

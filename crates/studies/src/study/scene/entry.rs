@@ -24,24 +24,37 @@ const LARGEST_TOLERANCE: f64 = 1e-3;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
+    /// The title is the headline of tables and report.
+    #[schemars(extend("x-default" = "the name of the file"))]
     pub title: Option<String>,
+    /// `[mesh]` says which mesh the body has.
     pub mesh: MeshInput,
+    /// `[material]` says what the body is made of; a list `[[material]]` has one entry for each region.
     pub material: MaterialEntries,
+    /// Each `[[fit]]` is one way to find the constants of the springs.
     #[serde(default)]
+    #[schemars(extend("x-default" = "required, one or more"))]
     pub fit: Vec<FitEntry>,
+    /// `[newton]` says how loads are followed at large deformation; it needs a law of the material.
     pub newton: Option<NewtonEntry>,
+    /// `[solver]` says how linear equations are solved; it does not go with a law of the material.
     pub solver: Option<SolverEntry>,
+    /// Each `[[fix]]` holds a part of the body.
     #[serde(default)]
     pub fix: Vec<FixEntry>,
+    /// Each `[[load]]` is a case of its own, solved apart from the others. Without loads springs are fitted and nothing is solved.
     #[serde(default)]
     pub load: Vec<LoadEntry>,
-    /// The finer body with which the networks are compared.
+    /// `[reference]` is a finer body with which the networks are compared.
     pub reference: Option<ReferenceEntry>,
+    /// `[gauge]` is a tension test: Young's modulus and Poisson's ratio from the strain of a straight part.
     pub gauge: Option<GaugeEntry>,
+    /// `[motion]` is a motion from rest in time; it needs a density.
     pub motion: Option<MotionEntry>,
+    /// `[output]` says what is written and computed besides the tables.
     #[serde(default)]
     pub output: Output,
-    /// What `springfit sweep` runs; other commands run the scene as it is.
+    /// `[sweep]` has the studies of `springfit sweep`; other commands run the scene as it is.
     pub sweep: Option<SweepEntry>,
 }
 
@@ -49,8 +62,14 @@ pub struct SceneFile {
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NewtonEntry {
+    /// A load is applied in this number of steps at first, 1 or more; a step that fails is halved.
+    #[schemars(extend("default" = Newton::default().steps))]
     pub steps: Option<usize>,
+    /// A load step takes at most this number of iterations of Newton's method, 1 or more.
+    #[schemars(extend("default" = Newton::default().iterations))]
     pub iterations: Option<usize>,
+    /// A load step ends when its residual is this share of the forces that act, above 0 and below 1.
+    #[schemars(extend("default" = Newton::default().tolerance))]
     pub tolerance: Option<f64>,
 }
 
@@ -58,19 +77,30 @@ pub struct NewtonEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolverEntry {
-    #[schemars(extend("enum" = StaticMethod::NAMES))]
+    /// The method is `cholesky`, a sparse factor, or `multigrid`, conjugate gradients on levels; `auto` takes the faster one by size and
+    /// number of loads.
+    #[schemars(extend("enum" = StaticMethod::NAMES, "default" = StaticSolver::default().method.name()))]
     pub method: Option<String>,
+    /// Iterations end at this relative error in the norm of the energy, from 1e-14 to below 1e-3. An answer that leaves more than ten times
+    /// as much of the forces, and more than 1e-6, is an error. The key does not go with `cholesky`.
+    #[schemars(extend("default" = StaticSolver::default().tolerance))]
     pub tolerance: Option<f64>,
+    /// Conjugate gradients take at most this number of iterations, 1 or more. The key does not go with `cholesky`.
+    #[schemars(extend("default" = StaticSolver::default().iterations))]
     pub iterations: Option<usize>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FixEntry {
+    /// The part that is held is this group of the mesh; one of `group` and `where` is required.
     pub group: Option<String>,
+    /// The part that is held has the points that satisfy this condition on x, y, z in m, such as `z < 1e-9 && x^2 + y^2 < 0.005^2`; one of
+    /// `group` and `where` is required.
     #[serde(rename = "where")]
     pub condition: Option<String>,
-    /// The directions that are held; all if absent.
+    /// The part is held in these directions, some of `x`, `y` and `z`.
+    #[schemars(extend("x-default" = "all"))]
     pub axes: Option<Vec<String>>,
 }
 

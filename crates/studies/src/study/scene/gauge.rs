@@ -10,13 +10,17 @@ use serde::Deserialize;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GaugeEntry {
+    /// The straight part is this group of the mesh; one of `group` and `where` is required.
     pub group: Option<String>,
+    /// The straight part has the points that satisfy this condition on x, y, z in m; one of `group` and `where` is required.
     #[serde(rename = "where")]
     pub condition: Option<String>,
+    /// The part is pulled in this direction.
     #[schemars(extend("enum" = ["x", "y", "z"]))]
     pub axis: String,
+    /// The straight part has this cross-section in m², above 0.
     #[serde(deserialize_with = "value::area")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::area_schema")]
     pub area: f64,
 }
 

@@ -20,23 +20,26 @@ const TOO_LONG: f64 = 1e5;
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshInput {
-    /// The path of a mesh file, relative to the scene.
+    /// The mesh is read from this file, relative to the scene, such as `.msh`, `.vtu`, `.inp` or `.bdf`. One of `file`, `box`, `disc` and
+    /// `fill` is required.
+    #[schemars(extend("x-type" = "path"))]
     pub file: Option<PathBuf>,
-    /// A box that is generated.
+    /// The mesh is a box that is generated.
     #[serde(rename = "box")]
     pub generated: Option<BoxEntry>,
-    /// A disc that is generated.
+    /// The mesh is a disc or dome of triangles that is generated.
     pub disc: Option<DiscEntry>,
-    /// A closed surface that is filled with cells.
+    /// The mesh fills a closed surface with cells.
     pub fill: Option<FillEntry>,
-    /// The length of a mesh unit, m.
+    /// One unit of the mesh has this length in m, above 0.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::mesh_unit_schema")]
     pub scale: f64,
-    /// Element files that are searched before the shipped ones, relative to the scene.
+    /// These element files are searched before the shipped elements; paths are relative to the scene.
     #[serde(default)]
+    #[schemars(extend("x-type" = "list of paths"))]
     pub elements: Vec<String>,
-    /// The required quality of the cells of a file.
+    /// `quality` says what becomes of poor cells of a `file`. Without it, cells below 1e-4 are reported.
     pub quality: Option<QualityEntry>,
     /// How often the edges of all cells are halved.
     #[serde(skip)]
@@ -46,7 +49,11 @@ pub struct MeshInput {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct QualityEntry {
+    /// A cell below this quality is poor, from 0 for flat to 1 for right angles.
+    #[schemars(extend("default" = Gate::default().least))]
     pub least: Option<f64>,
+    /// Poor cells are kept with a warning (`warn`), are an error (`refuse`), or are left out (`skip`).
+    #[schemars(extend("enum" = ["warn", "refuse", "skip"], "default" = "warn"))]
     pub below: Option<String>,
 }
 
@@ -60,13 +67,15 @@ impl QualityEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BoxEntry {
-    /// The name of a shipped element, or a path relative to the scene that ends in .toml.
+    /// The cells have this element: the name of a shipped one, or a path relative to the scene that ends in `.toml`. Its cells must fill a
+    /// box; triangles, tetrahedra, wedges and pyramids divide each square or cube.
     pub element: String,
-    /// The lengths of the sides.
+    /// The box has these lengths along the axes, in mesh units.
     pub size: Vec<f64>,
-    /// The number of cells in each direction.
+    /// The box has these numbers of cells along the axes.
     pub cells: Vec<usize>,
-    /// The corner with the least coordinates; the origin if absent.
+    /// The corner of least coordinates is here, in mesh units.
+    #[schemars(extend("x-default" = "zeros"))]
     pub origin: Option<Vec<f64>>,
 }
 
@@ -74,18 +83,19 @@ pub struct BoxEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DiscEntry {
-    /// The name of a shipped element, or a path relative to the scene that ends in .toml.
+    /// The cells have this element on triangles: the name of a shipped one, or a path relative to the scene that ends in `.toml`.
     pub element: String,
-    /// The radius.
+    /// The disc has this radius in mesh units.
     pub radius: f64,
-    /// The height of the centre above the rim.
+    /// The middle is this height above the rim, in mesh units.
     #[serde(default)]
     pub height: f64,
-    /// The number of rings.
+    /// The disc has this number of rings of triangles, from 1 to 800.
     pub rings: usize,
-    /// The number of points in all; if absent, each ring has six points more than the previous one.
+    /// The disc has this number of points in all; the key needs `rim`. Without both, each ring has six points more than the one inside it.
+    #[schemars(extend("x-default" = "six more in each ring"))]
     pub points: Option<usize>,
-    /// The number of points on the rim.
+    /// The rim has this number of points; the key needs `points`.
     pub rim: Option<usize>,
 }
 
@@ -93,18 +103,24 @@ pub struct DiscEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillEntry {
-    /// The path of a file of triangles or quadrangles, relative to the scene.
+    /// The surface is read from this file, relative to the scene, such as `.stl`, `.obj`, `.ply` or `.off`. It is a closed surface of
+    /// triangles or quadrangles with its normals outwards.
+    #[schemars(extend("x-type" = "path"))]
     pub surface: PathBuf,
-    /// The edge of a cube of the lattice, mesh units.
+    /// A cube of the lattice has edges of this length, in mesh units, above 0.
     pub cell: f64,
-    /// The name of a shipped element of hexahedra or tetrahedra, or a path relative to the scene that ends in .toml.
+    /// The cells have this element of hexahedra, which are the cubes, or of tetrahedra, twelve for each cube. It is the name of a shipped
+    /// one, or a path relative to the scene that ends in `.toml`.
     #[serde(default = "cubes")]
     pub element: String,
-    /// `stepped` for whole cells of the lattice, or `smooth` for tetrahedra that are cut off at the surface.
+    /// The body has whole cells of the lattice whose centres are inside (`stepped`), or tetrahedra that are cut off at the surface
+    /// (`smooth`).
     #[serde(default = "stepped")]
+    #[schemars(extend("enum" = FillBoundary::NAMES))]
     pub boundary: String,
-    /// `refuse` if layers of the surface overlap, or `union` to fill what any of them encloses.
+    /// A surface that crosses itself is refused (`refuse`), or what any of its layers encloses is filled (`union`).
     #[serde(default = "refused")]
+    #[schemars(extend("enum" = FillLayers::NAMES))]
     pub layers: String,
 }
 

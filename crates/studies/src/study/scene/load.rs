@@ -71,19 +71,30 @@ impl LoadCase {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LoadEntry {
+    /// Tables and files name the load so; each load has a name of its own.
+    #[schemars(extend("x-default" = "`load 1`, …"))]
     pub name: Option<String>,
+    /// The part that is loaded is this group of the mesh. One of `group` and `where` is required, unless the load is a `body` force,
+    /// `gravity` or a `sum`.
     pub group: Option<String>,
+    /// The part that is loaded has the points that satisfy this condition on x, y, z in m. One of `group` and `where` is required, unless
+    /// the load is a `body` force, `gravity` or a `sum`.
     #[serde(rename = "where")]
     pub condition: Option<String>,
+    /// A traction in Pa acts on the sides of the part: for each direction a number or an expression of x, y, z in m, such as `"-1e5*y"`.
+    /// One of `traction`, `force`, `body`, `gravity`, `displacement` and `sum` is required.
     pub traction: Option<Vec<Varying>>,
+    /// A force in N acts on the part in all. It is shared over sides, cells or points of the part.
     pub force: Option<Vec<f64>>,
+    /// A body force in N/m³ acts on the cells: for each direction a number or an expression of x, y, z in m.
     pub body: Option<Vec<Varying>>,
-    /// The acceleration of gravity, m/s².
+    /// A body force of this acceleration in m/s², times the density of the material, acts on the cells.
     pub gravity: Option<Vec<f64>>,
+    /// The part has this displacement in m: for each direction a number or `"free"`. At least one direction is moved.
     pub displacement: Option<Vec<PrescribedComponent>>,
-    /// The names of other loads that act at the same time.
+    /// The load consists of these other loads at the same time: names of two or more loads of forces.
     pub sum: Option<Vec<String>>,
-    /// The file of displacements that were measured under it.
+    /// `measured` has displacements that were measured under this load.
     pub measured: Option<MeasuredEntry>,
 }
 
@@ -91,17 +102,20 @@ pub struct LoadEntry {
 #[derive(Debug, Clone, Deserialize, JsonSchema, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredEntry {
-    /// The path, relative to the scene.
+    /// The displacements are read from this file, relative to the scene. It is a table with the columns `x, y, z` (or `point`, from 0) and
+    /// `ux, uy, uz`, also of some points only; or a `.vtu` or `.vtk`.
+    #[schemars(extend("x-type" = "path"))]
     pub file: PathBuf,
-    /// The length of a unit of the file, m.
+    /// One unit of the file has this length in m, above 0.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::mesh_unit_schema")]
     pub scale: f64,
-    /// The name of the array, if the file has several.
+    /// The displacements are in this array of the VTK file.
+    #[schemars(extend("x-default" = "the only one"))]
     pub array: Option<String>,
-    /// The standard deviation of the noise of each displacement, m.
+    /// The noise of each displacement has this standard deviation in m. Every load that is fitted has one, or none.
     #[serde(default, deserialize_with = "value::optional_length")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::length_schema", extend("x-default" = "unknown"))]
     pub sigma: Option<f64>,
 }
 

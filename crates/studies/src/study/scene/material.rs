@@ -30,48 +30,59 @@ use std::path::PathBuf;
     { "required": ["stiffness"] },
 ]))]
 pub struct MaterialEntry {
-    /// The group of cells that have the material.
+    /// The cells of this group of the mesh have the material.
+    #[schemars(extend("x-default" = "the rest"))]
     pub group: Option<String>,
-    /// The condition on the nodes of the cells that have the material.
+    /// The cells all of whose nodes satisfy this condition on x, y, z in m have the material.
     #[serde(rename = "where")]
+    #[schemars(extend("x-default" = "the rest"))]
     pub condition: Option<String>,
-    /// Young's modulus, Pa.
+    /// Young's modulus in Pa is above 0. An isotropic material has `young` and `poisson`.
     #[serde(default, deserialize_with = "distribution::optional_pressure")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::pressure_schema", extend("x-default" = "required if isotropic"))]
     pub young: Option<Distribution>,
-    /// Poisson's ratio.
+    /// Poisson's ratio is above −1 and below 0.5; 0.5 itself is possible in plane stress.
     #[serde(default, deserialize_with = "distribution::optional_ratio")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::ratio_schema", extend("x-default" = "required if isotropic"))]
     pub poisson: Option<Distribution>,
-    /// In place of Young's modulus and Poisson's ratio.
+    /// The material has three planes of symmetry. The key stands in place of `young` and `poisson`.
     pub orthotropic: Option<OrthotropicEntry>,
-    /// In place of Young's modulus and Poisson's ratio.
+    /// The material has one axis of symmetry, which is its first axis. The key stands in place of `young` and `poisson`.
     #[serde(rename = "transversely-isotropic")]
     pub transverse: Option<TransverseEntry>,
-    /// In place of Young's modulus and Poisson's ratio.
+    /// The material is a cubic crystal. The key stands in place of `young` and `poisson`.
     pub cubic: Option<CubicEntry>,
-    /// In place of Young's modulus and Poisson's ratio: rows in the order xx, yy, zz, yz, xz, xy, Pa.
+    /// The material has this stiffness in Pa, with rows and columns in the order xx, yy, zz, yz, xz, xy, for shear strains 2 ε. The key
+    /// stands in place of `young` and `poisson`.
+    #[schemars(extend("x-type" = "six lists of six pressures, or varying"))]
     pub stiffness: Option<StiffnessEntry>,
-    /// The first two axes of the material; x and y if absent.
+    /// An anisotropic material has these first and second axes. Each is a vector of numbers or expressions of x, y, z in m, or data of a
+    /// file; lengths do not matter, and the second is made orthogonal to the first.
+    #[schemars(extend("x-type" = "list of vectors", "x-default" = "x and y"))]
     pub axes: Option<Vec<AxisEntry>>,
+    /// A plane mesh or a surface is in plane stress or in plane strain.
+    #[schemars(extend("default" = "stress"))]
     pub plane: Option<Plane>,
-    /// The thickness, m.
+    /// A plane mesh or a surface has this thickness in m, above 0. A surface in space requires it.
     #[serde(default, deserialize_with = "distribution::optional_length")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::length_schema", extend("x-default" = "1 m in the plane"))]
     pub thickness: Option<Distribution>,
-    /// The cross-section of rods, m².
+    /// Rods have this cross-section in m², above 0.
     #[serde(default, deserialize_with = "value::optional_area")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::area_schema", extend("x-default" = "1 m²"))]
     pub area: Option<f64>,
-    /// The density, kg/m³.
+    /// The density in kg/m³ is above 0; it gives the points masses.
     #[serde(default, deserialize_with = "distribution::optional_density")]
-    #[schemars(schema_with = "distribution::schema")]
+    #[schemars(schema_with = "distribution::density_schema")]
     pub density: Option<Distribution>,
-    /// The name of a shipped energy, or a path relative to the scene that ends in .toml. Deformations are large then.
+    /// Loads are solved at large deformation with this law: the name of a shipped one, or a path relative to the scene that ends in
+    /// `.toml`. It is there in every entry of `[[material]]` or in none.
     pub law: Option<String>,
-    /// Values of parameters of the law, in place of those of its file.
+    /// Parameters of the law have these values.
+    #[schemars(extend("x-type" = "table of numbers, or varying", "x-default" = "those of the law"))]
     pub parameters: Option<BTreeMap<String, NumberField>>,
-    /// The direction of the fibres of the law, in place of that of its file.
+    /// The fibres of the law have this direction: a vector of numbers or expressions of x, y, z in m, or data of a file with three numbers.
+    #[schemars(extend("x-type" = "vector", "x-default" = "that of the law"))]
     pub fibre: Option<AxisEntry>,
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::motion_recipe::{AppliedForce, DampingRecipe, ForcePrecision, MotionRecipe, PrescribedMotion, SLACK};
 use super::part::Part;
 use super::value::{self, Varying};
 use crate::bound::{self, check_count};
@@ -14,112 +15,65 @@ use crate::symbolic::{Expr, Scope, parse_rational};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A motion, before the mesh is known.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotionRecipe {
-    /// The time step, the method and the solver.
-    pub options: Options,
-    /// The numbers of the networks' forces.
-    pub precision: ForcePrecision,
-    /// The duration, s.
-    pub duration: f64,
-    /// The number of steps; the last one reaches the end.
-    pub steps: usize,
-    /// The time between states that are written, s; the first and the last state always are.
-    pub every: f64,
-    /// How masses are lumped.
-    pub lumping: Lumping,
-    /// The acceleration of gravity, m/s²; empty if there is none.
-    pub gravity: Vec<f64>,
-    /// The damping.
-    pub damping: DampingRecipe,
-    /// The points whose mean displacement is written.
-    pub watch: Option<Part>,
-    /// Whether the finite elements move as well.
-    pub finite_elements: bool,
-    /// The prescribed displacements.
-    pub pulls: Vec<PrescribedMotion>,
-    /// The forces.
-    pub forces: Vec<AppliedForce>,
-}
-
-/// The numbers in which networks compute their forces, and, without an account, positions and velocities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ForcePrecision {
-    /// `f64`.
-    #[default]
-    Double,
-    /// `f32`.
-    Single,
-}
-
-crate::named!(ForcePrecision {
-    "double" => Double,
-    "single" => Single,
-});
-
-/// The damping of a motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DampingRecipe {
-    /// Rayleigh damping: α, 1/s, and β, s, of `C = α M + β K₀`.
-    Rayleigh([f64; 2]),
-    /// The damping ratio of a damper parallel to each spring.
-    Ratio(f64),
-}
-
-/// A part with a prescribed displacement over time, m.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PrescribedMotion {
-    /// The part.
-    pub part: Part,
-    /// One expression in t, x, y, z per direction; `None` leaves a direction free.
-    pub displacement: Vec<Option<Expr>>,
-}
-
-/// A force over time, N, on a part.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AppliedForce {
-    /// The part.
-    pub part: Part,
-    /// One expression in t per direction.
-    pub force: Vec<Expr>,
-    /// Whether the force acts on each point, instead of being the total.
-    pub each: bool,
-}
-
 /// The keys of `[motion]`.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEntry {
+    /// The motion ends with the first step that reaches this time in s. A note says so if that is later.
     #[serde(deserialize_with = "value::time")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::time_schema")]
     duration: f64,
+    /// A step in time has this length in s, above 0 and at most the duration.
     #[serde(deserialize_with = "value::time")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::time_schema")]
     step: f64,
-    #[schemars(extend("enum" = Integrator::NAMES))]
+    /// Steps are made by this method. `symplectic-euler` is explicit and returns an error if the step exceeds 2/ω.
+    #[schemars(extend("enum" = Integrator::NAMES, "default" = Integrator::default().name()))]
     integrator: Option<String>,
+    /// An implicit step takes at most this number of iterations of Newton's method, 1 or more; 1 is the linearised step of real-time
+    /// programs.
+    #[schemars(extend("default" = Options::default().iterations))]
     iterations: Option<usize>,
+    /// An implicit step ends when its residual is this share of the forces that act, above 0 and below 1.
+    #[schemars(extend("default" = Options::default().tolerance))]
     tolerance: Option<f64>,
+    /// Networks keep their stiffness at rest, as the finite elements do, so that one factor serves all steps.
     #[serde(default)]
     linear: bool,
+    /// Work, dissipation and drift are reported.
+    #[schemars(extend("x-default" = "true; false with `precision = \"single\"`"))]
     account: Option<bool>,
-    #[schemars(extend("enum" = ForcePrecision::NAMES))]
+    /// Networks compute the forces of explicit steps in these numbers. `single` rounds them to 6e-8 of the body, and without `account`
+    /// positions and velocities as well.
+    #[schemars(extend("enum" = ForcePrecision::NAMES, "default" = ForcePrecision::default().name()))]
     precision: Option<String>,
-    #[schemars(extend("enum" = LinearSolver::NAMES))]
+    /// The equations of implicit steps are solved by a Cholesky factor (`factor`) or by `conjugate-gradients`.
+    #[schemars(extend("enum" = LinearSolver::NAMES, "default" = LinearSolver::default().name()))]
     solver: Option<String>,
+    /// Conjugate gradients stop at this relative residual, from 1e-15 to below 1.
+    #[schemars(extend("default" = 1e-8))]
     remainder: Option<f64>,
-    #[schemars(extend("enum" = Lumping::NAMES))]
+    /// Masses are lumped by row sums (`row-sum`), or by `hrz`, which is above zero for every element.
+    #[schemars(extend("enum" = Lumping::NAMES, "default" = Lumping::default().name()))]
     mass: Option<String>,
+    /// This acceleration acts on all points, in m/s².
     gravity: Option<Vec<f64>>,
+    /// `damping` says how motions die away; without it they do not.
     damping: Option<DampingEntry>,
+    /// States are written this time in s apart, one step or more. Each is that of the first step at or beyond a multiple of it, and a note
+    /// says so if the times between them are not alike.
     #[serde(default, deserialize_with = "value::optional_time")]
-    #[schemars(schema_with = "value::quantity")]
+    #[schemars(schema_with = "value::time_schema", extend("x-default" = "whole steps, a hundredth of the duration or more"))]
     every: Option<f64>,
+    /// `watch` names the points whose mean displacement is written.
     watch: Option<WatchEntry>,
+    /// The finite elements move as well, as reference.
+    #[schemars(extend("default" = true))]
     finite_elements: Option<bool>,
+    /// Each `[[motion.pull]]` prescribes the displacement of a part in time.
     #[serde(default)]
     pull: Vec<PullEntry>,
+    /// Each `[[motion.force]]` is a force on a part in time.
     #[serde(default)]
     force: Vec<ForceEntry>,
 }
@@ -127,14 +81,19 @@ pub struct MotionEntry {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct DampingEntry {
+    /// The damping is `C = α M + β K₀`; the pair has α in 1/s and β in s, both 0 or more. One of `rayleigh` and `ratio` is required.
     rayleigh: Option<[f64; 2]>,
+    /// Each spring has a damper beside it with this damping ratio, 0 or more. It needs `finite_elements = false`, because finite elements
+    /// have no springs.
     ratio: Option<f64>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct WatchEntry {
+    /// The watched points are those of this group of the mesh; one of `group` and `where` is required.
     group: Option<String>,
+    /// The watched points satisfy this condition on x, y, z in m; one of `group` and `where` is required.
     #[serde(rename = "where")]
     condition: Option<String>,
 }
@@ -142,61 +101,34 @@ struct WatchEntry {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PullEntry {
+    /// The part that is moved is this group of the mesh; one of `group` and `where` is required.
     group: Option<String>,
+    /// The part that is moved has the points that satisfy this condition on x, y, z in m; one of `group` and `where` is required.
     #[serde(rename = "where")]
     condition: Option<String>,
+    /// The part has this displacement in m: for each direction a number, an expression of t in s and x, y, z in m, or `"free"`. At least
+    /// one direction is moved.
     displacement: Vec<Varying>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ForceEntry {
+    /// The part on which the force acts is this group of the mesh; one of `group` and `where` is required.
     group: Option<String>,
+    /// The part on which the force acts has the points that satisfy this condition on x, y, z in m; one of `group` and `where` is required.
     #[serde(rename = "where")]
     condition: Option<String>,
+    /// The force in N has a number or an expression of t in s for each direction. It is shared over sides, cells or points of the part, as
+    /// that of a load is.
     force: Vec<Varying>,
+    /// The force acts on each point as much, instead of in all.
     #[serde(default)]
     each: bool,
 }
 
-/// A tolerance for the quotient of duration and step, because decimals are not exact in binary.
-const SLACK: f64 = 1.0 - 1e-12;
 /// The largest number of states that are written by default, after the first.
 const STATES: f64 = 100.0;
-
-impl MotionRecipe {
-    /// The motion in words.
-    pub fn title(&self) -> String {
-        let (step, name) = (self.options.step, self.options.integrator.name());
-        let precision = match self.precision {
-            ForcePrecision::Double => "",
-            ForcePrecision::Single => " in single precision",
-        };
-        format!("{:?} s in {} steps of {step:?} s by {name}{precision}", self.duration, self.steps)
-    }
-
-    /// The time at the end of the last step, s: that of the first step that reaches the duration.
-    pub fn end(&self) -> f64 {
-        self.steps as f64 * self.options.step
-    }
-
-    /// Whether the times between states that are written are alike but for the last one.
-    pub fn is_even(&self) -> bool {
-        let written = self.written();
-        let apart: Vec<usize> = written.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        apart.split_last().is_none_or(|(_, apart)| apart.iter().all(|steps| *steps == apart[0]))
-    }
-
-    /// The steps at whose end a state is written: the first one at or after each multiple of `every`, and the last
-    /// step.
-    pub fn written(&self) -> Vec<usize> {
-        let at = |state: usize| (state as f64 * self.every / self.options.step * SLACK).ceil() as usize;
-        let mut steps: Vec<usize> = (0..).map(at).take_while(|step| *step < self.steps).collect();
-        steps.push(self.steps);
-        steps.dedup();
-        steps
-    }
-}
 
 impl MotionEntry {
     /// The motion of these keys.

@@ -7,19 +7,22 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// Whether the springs and displacements are written as VTU files, a motion as a series of them.
+    /// Springs and displacements are written as VTU files, and a motion as a series of them.
     pub vtu: bool,
-    /// Whether the springs are written as a CSV file.
+    /// Springs and points are written as CSV files.
     pub csv: bool,
-    /// Whether the networks are written whole as JSON files; they are unless switched off.
+    /// Each network is written whole as a JSON file.
+    #[schemars(extend("default" = true))]
     pub json: Option<bool>,
-    /// Whether the errors of the elements' matrices are computed; they are unless switched off.
+    /// The errors of the elements' matrices are computed. Without them the tables have `-`, and files null.
+    #[schemars(extend("default" = true))]
     pub errors: Option<bool>,
-    /// Whether each network is measured as a material: Young's modulus, Poisson's ratio, Zener's ratio.
+    /// Young's modulus, Poisson's ratio and Zener's ratio of each whole network are measured.
     pub moduli: bool,
-    /// The number of natural frequencies of each model, besides those of rigid motions.
+    /// This number of natural frequencies of each model is computed, without those of rigid motions; they need a density.
     pub frequencies: usize,
-    /// Which reports are written: `true` report.json and the page report.html, `false` neither; by default report.json alone.
+    /// The file report.json and the page report.html are written (`true`), or neither (`false`).
+    #[schemars(extend("x-default" = "report.json alone"))]
     pub report: Option<bool>,
 }
 

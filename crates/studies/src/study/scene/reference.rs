@@ -11,9 +11,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReferenceEntry {
-    /// How often the edges of all cells are halved.
+    /// The edges of all cells are halved this number of times, from 1 to 6. One of `refine` and `mesh` is required.
     pub refine: Option<u32>,
-    /// Another mesh of the same body, with the keys of `[mesh]`.
+    /// The finer body is another mesh of the same body with the same groups. It has the keys of `[mesh]`, such as `{ file = "fine.msh",
+    /// scale = "mm" }`.
     pub mesh: Option<MeshInput>,
 }
 

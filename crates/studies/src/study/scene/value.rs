@@ -67,29 +67,41 @@ impl<'de> Deserialize<'de> for Varying {
     }
 }
 
-/// The schema of a quantity.
-pub fn quantity(_: &mut SchemaGenerator) -> Schema {
-    json_schema!({ "type": ["number", "string"] })
+/// The name of a quantity in tables of keys, and its SI unit.
+pub fn name_and_unit(quantity: Quantity) -> (&'static str, &'static str) {
+    match quantity {
+        Quantity::Length | Quantity::MeshUnit => ("length", "m"),
+        Quantity::Area => ("area", "m²"),
+        Quantity::Pressure => ("pressure", "Pa"),
+        Quantity::Density => ("density", "kg/m³"),
+        Quantity::Time => ("time", "s"),
+    }
+}
+
+/// The schema of a quantity, with its name and unit.
+fn schema(quantity: Quantity) -> Schema {
+    let (name, unit) = name_and_unit(quantity);
+    json_schema!({ "type": ["number", "string"], "x-type": name, "x-unit": unit })
 }
 
 /// The schemas of values that are written as a number or as a text.
 macro_rules! schemas {
-    ($($type:ident: $description:literal),+ $(,)?) => {$(
+    ($($type:ident: $name:literal, $description:literal);+ $(;)?) => {$(
         impl JsonSchema for $type {
             fn schema_name() -> Cow<'static, str> {
                 stringify!($type).into()
             }
 
             fn json_schema(_: &mut SchemaGenerator) -> Schema {
-                json_schema!({ "type": ["number", "string"], "description": $description })
+                json_schema!({ "type": ["number", "string"], "x-type": $name, "description": $description })
             }
         }
     )+};
 }
 
 schemas! {
-    Varying: "A number, or an expression of x, y, z (m) such as \"1e5*x\".",
-    PrescribedComponent: "A number of metres, or \"free\".",
+    Varying: "number or expression", "A number, or an expression of x, y, z (m) such as \"1e5*x\".";
+    PrescribedComponent: "number or `\"free\"`", "A number of metres, or \"free\".";
 }
 
 /// A number in the SI unit, or a text with a unit.
@@ -119,9 +131,13 @@ impl Visitor<'_> for QuantityVisitor {
     }
 }
 
-/// Functions for `deserialize_with` of keys that hold a quantity, in the SI unit.
+/// Functions for `deserialize_with` and `schema_with` of keys that hold a quantity, in the SI unit.
 macro_rules! quantities {
-    ($($one:ident, $optional:ident: $quantity:ident),+ $(,)?) => {$(
+    ($($one:ident, $optional:ident, $schema:ident: $quantity:ident),+ $(,)?) => {$(
+        pub fn $schema(_: &mut SchemaGenerator) -> Schema {
+            schema(Quantity::$quantity)
+        }
+
         // Not every quantity is used both as a required and as an optional key.
         #[allow(dead_code)]
         pub fn $one<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
@@ -136,8 +152,8 @@ macro_rules! quantities {
 }
 
 quantities! {
-    length, optional_length: Length,
-    area, optional_area: Area,
-    time, optional_time: Time,
-    mesh_unit, optional_mesh_unit: MeshUnit,
+    length, optional_length, length_schema: Length,
+    area, optional_area, area_schema: Area,
+    time, optional_time, time_schema: Time,
+    mesh_unit, optional_mesh_unit, mesh_unit_schema: MeshUnit,
 }

@@ -1,7 +1,7 @@
 //! The table `[sweep]` of a scene.
 
 use super::design::{Design, Plan};
-use super::range::Values;
+use super::range::{RangeEntry, Values};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::study::scene::Setting;
@@ -13,21 +13,29 @@ use toml::{Table, Value};
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepEntry {
-    /// By key, a list of values or a range; or a list of tables, each a study.
+    /// Each key of the scene in this table has a list of values or a range; or a list has one table of keys and values for each study.
     #[schemars(schema_with = "over")]
     over: Value,
-    /// Which combinations of the values are studies; all of them if absent.
+    /// The studies are all combinations with the last key fastest (`grid`), independent samples (`random`), or points of Sobol's sequence
+    /// (`sobol`).
+    #[schemars(extend("default" = "grid"))]
     design: Option<Design>,
-    /// The number of studies of a random or Sobol design.
+    /// A random or Sobol design has this number of studies, 1 or more.
+    #[schemars(extend("x-default" = "required for `random` and `sobol`"))]
     samples: Option<usize>,
-    /// Another seed gives other samples.
+    /// Another seed gives other samples. Without one, Sobol's sequence begins at the lower ends.
+    #[schemars(extend("x-default" = "0; for `sobol` none"))]
     seed: Option<u64>,
 }
 
-fn over(_: &mut SchemaGenerator) -> Schema {
+fn over(generator: &mut SchemaGenerator) -> Schema {
+    let range = generator.subschema_for::<RangeEntry>();
     json_schema!({
-        "description": "By key, a list of values or a range; or a list of tables, each a study.",
-        "type": ["object", "array"],
+        "anyOf": [
+            { "type": "object", "additionalProperties": { "anyOf": [{ "type": "array" }, range, { "type": "object" }] } },
+            { "type": "array" },
+        ],
+        "x-type": "table, or list of tables",
     })
 }
 

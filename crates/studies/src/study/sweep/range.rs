@@ -2,10 +2,32 @@
 
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
+use crate::study::keys::keys;
+use schemars::JsonSchema;
+use serde::Deserialize;
 use toml::{Table, Value};
 
-/// What a range may say.
-const KEYS: [&str; 5] = ["from", "to", "count", "step", "spacing"];
+/// The keys of a range. They are read one by one, for errors that name them.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "range")]
+#[allow(dead_code)]
+pub struct RangeEntry {
+    /// The values begin at this number, or at this text with a unit.
+    #[schemars(with = "serde_json::Value", extend("x-type" = "number or text"))]
+    from: Value,
+    /// The values end at this number, or at this text with the unit of `from`.
+    #[schemars(with = "serde_json::Value", extend("x-type" = "number or text"))]
+    to: Value,
+    /// The range has this number of values with both ends, 1 or more. A range of a random or Sobol design has none.
+    #[schemars(extend("x-default" = "required in a grid without `step`"))]
+    count: Option<usize>,
+    /// The values go from the first end on by this step, in place of `count`. They are whole numbers where ends and step are.
+    step: Option<f64>,
+    /// The values have equal differences (`linear`), or equal ratios (`log`) with ends above 0.
+    #[schemars(extend("enum" = ["linear", "log"], "default" = "linear"))]
+    spacing: Option<String>,
+}
 
 /// The values that a key takes.
 #[derive(Debug, Clone)]
@@ -28,7 +50,7 @@ pub struct Range {
 impl Values {
     /// Whether a table is a range, and not keys of a scene that lie deeper.
     pub fn is_range(table: &Table) -> bool {
-        KEYS.iter().any(|key| table.get(*key).is_some_and(|value| !value.is_table()))
+        keys::<RangeEntry>().iter().any(|key| table.get(*key).is_some_and(|value| !value.is_table()))
     }
 
     /// # Errors
@@ -83,8 +105,9 @@ impl Range {
 }
 
 fn range(table: &Table) -> Result<Values> {
-    if let Some(unknown) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-        let known: Vec<String> = KEYS.iter().map(|key| format!("\"{key}\"")).collect();
+    let known = keys::<RangeEntry>();
+    if let Some(unknown) = table.keys().find(|key| !known.contains(&key.as_str())) {
+        let known: Vec<String> = known.iter().map(|key| format!("\"{key}\"")).collect();
         let problem = format!("unknown field \"{unknown}\", expected one of {}", known.join(", "));
         return Err(Error::at(unknown, problem));
     }

@@ -11,17 +11,23 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExactEntry {
-    #[schemars(extend("enum" = ExactEnergy::NAMES))]
+    /// The network has this energy.
+    #[schemars(extend("enum" = ExactEnergy::NAMES, "x-default" = "that of the material's law, or `\"stable-neo-hookean\"`"))]
     pub energy: Option<String>,
-    #[schemars(extend("enum" = ShearSprings::NAMES))]
+    /// Springs for the shear modulus measure the deformation in each cell (`cells`), or on the domain of each edge of linear triangles and
+    /// tetrahedra (`edges`). `edges` is nearer to the truth than the finite elements of the same mesh, with three times the springs.
+    #[schemars(extend("enum" = ShearSprings::NAMES, "default" = ShearSprings::default().name()))]
     pub shear: Option<String>,
-    #[schemars(extend("enum" = VolumeSprings::NAMES))]
+    /// There is one volume spring for each quadrature point (`points`), cell (`cells`), or patch of cells around a node (`patches`).
+    /// `cells` and `patches` avoid locking near ν = 0.5.
+    #[schemars(extend("enum" = VolumeSprings::NAMES, "default" = VolumeSprings::default().name()))]
     pub volume: Option<String>,
-    /// The share of the second invariant, for the energy "stable-mooney-rivlin".
+    /// The second invariant has this share in the energy `stable-mooney-rivlin`.
+    #[schemars(extend("default" = 0.25))]
     pub share: Option<f64>,
-    /// Whether no constant may be negative: the nearest such network is used.
+    /// No constant is below zero: the nearest such network is used.
     pub nonnegative: bool,
-    /// Whether springs across the sides of cells may be added for this.
+    /// Springs across the sides of cells are added where no others suffice, with `nonnegative`.
     pub across: bool,
 }
 

@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 /// The difference from the exact network. Errors of energies are relative to the exact ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PositiveRecord {
-    /// What was changed: `unchanged`, `springs`, `across` or `tensions`.
+    /// The network is `unchanged`, or `springs`, springs `across` sides or `tensions` were changed.
     pub route: String,
-    /// The number of negative springs of the exact network.
+    /// The exact network has this number of negative springs.
     pub negative_springs: usize,
-    /// The number of springs of the exact network that were removed.
+    /// This number of springs of the exact network was removed.
     pub dropped_springs: usize,
-    /// The number of springs that were added across the sides of cells.
+    /// This number of springs was added across the sides of cells.
     pub springs_across: usize,
-    /// The least and the largest tension of a spring on content, relative to the exact one.
+    /// The tension of a spring on content is between these multiples of the exact one.
     pub tensions: [f64; 2],
-    /// The largest relative error of the energy of a homogeneous strain.
+    /// The energy of a homogeneous strain has at most this relative error.
     pub affine_energy_error: f64,
-    /// The number of modes whose energies were to be kept.
+    /// The energies of this number of modes were to be kept.
     pub modes: usize,
-    /// The least and the largest relative error of the energy of a mode.
+    /// The energy of a mode has a relative error between these two.
     pub mode_energy_errors: [f64; 2],
-    /// The largest force on a point at rest, relative to the largest force of a spring.
+    /// The largest force on a point at rest is this share of the largest force of a spring.
     pub rest_force: f64,
-    /// The iterations of the solver.
+    /// The quadratic programme took this number of iterations.
     pub iterations: u32,
 }
 

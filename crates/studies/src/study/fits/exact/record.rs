@@ -7,20 +7,21 @@ use serde::{Deserialize, Serialize};
 
 /// The settings of an exact network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "(exact)")]
 pub struct ExactRecord {
-    /// The objective, `exact`.
+    /// The objective is `exact`.
     pub objective: String,
-    /// The energy. Null: that of the material's law, or the stable neo-Hookean one if there is no law.
+    /// The network has this energy. It is null if it is that of the material's law, or the stable neo-Hookean one without a law.
     pub energy: Option<String>,
-    /// The domains over which shear springs average the deformation: `cells` or `edges`.
+    /// Shear springs average the deformation over `cells`, or over the domains of `edges`.
     pub shear: String,
-    /// The contents that volume springs measure: `points`, `cells` or `patches`.
+    /// Volume springs measure the content of quadrature `points`, `cells` or `patches`.
     pub volume: String,
-    /// The share of the second invariant, if the energy has one.
+    /// The second invariant has this share, if the energy has one.
     pub share: Option<f64>,
-    /// Whether no constant may be negative.
+    /// No constant may be negative.
     pub nonnegative: bool,
-    /// Whether springs across the sides of cells may be added.
+    /// Springs across the sides of cells may be added.
     pub across: bool,
 }
 

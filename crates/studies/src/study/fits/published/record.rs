@@ -6,21 +6,22 @@ use serde::{Deserialize, Serialize};
 
 /// The method, and where it is published.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "(published)")]
 pub struct PublishedRecord {
-    /// The name of the method.
+    /// The objective is the name of a published formula.
     pub objective: String,
-    /// The paper.
+    /// The formula is published there.
     pub source: String,
 }
 
 /// The assumptions of the method that are not met.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedOutcomeRecord {
-    /// The Poisson's ratio of the formula, if that of the material is different.
+    /// The formula has this Poisson's ratio; it is null if the material has it too.
     pub poisson_assumed: Option<f64>,
-    /// The number of elements of another shape than the formula assumes.
+    /// This number of elements has another shape than the formula assumes.
     pub elements_of_other_shape: usize,
-    /// The largest relative deviation of their lengths from those of the assumed shape.
+    /// Their lengths deviate from those of the assumed shape by at most this share.
     pub largest_deviation: f64,
 }
 

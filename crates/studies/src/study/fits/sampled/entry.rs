@@ -10,6 +10,7 @@ use crate::springs::Law;
 use crate::study::choice::choice;
 use schemars::JsonSchema;
 use serde::Deserialize;
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,35 +19,69 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledEntry {
-    #[schemars(extend("enum" = Weights::NAMES))]
+    /// Each shape counts by the inverse square of its force (`relative`), or all shapes count alike (`none`).
+    #[schemars(extend("enum" = Weights::NAMES, "default" = Weights::Relative.name()))]
     pub weight: Option<String>,
+    /// Forces that do no work on homogeneous deformations have this scale.
+    #[schemars(extend("default" = SampledRecipe::default().fit.higher))]
     pub higher: Option<f64>,
+    /// All springs of a group have one set of parameters.
     pub tied: bool,
+    /// No parameter is below zero.
     pub nonnegative: bool,
-    #[schemars(with = "Option<serde_json::Value>")]
+    /// The law of force is `linear`, `free-rest` or an expression such as `"k1*s + k3*s^3"`. A table has an expression for each spring
+    /// group.
+    #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "text, or table of texts", "default" = "linear"))]
     pub force: Option<toml::Value>,
-    #[schemars(extend("enum" = Norm::NAMES))]
+    /// The differences of the forces are measured in this norm.
+    #[schemars(extend("enum" = Norm::NAMES, "default" = Norm::Two.name()))]
     pub norm: Option<String>,
+    /// The Huber norm bends at this share of the root mean square of the weighted components of the forces; the key belongs to `norm =
+    /// "huber"`.
+    #[schemars(extend("default" = 0.5))]
     pub huber: Option<f64>,
+    /// Parameters have these least and largest values, such as `{ a = [0, 10] }`.
     #[schemars(with = "Option<BTreeMap<String, [f64; 2]>>")]
     pub bounds: Option<toml::Table>,
+    /// The search begins at this number of points; the key belongs to laws that are not linear in their parameters.
+    #[schemars(extend("default" = SampledRecipe::default().fit.starts))]
     pub starts: Option<usize>,
+    /// `shapes` says which deformed shapes the forces are fitted to.
     pub shapes: Option<ShapesEntry>,
+    /// The forces of this energy are sampled: the name of a shipped law, or a path that ends in `.toml`. It may be absent where the
+    /// material has a law.
     pub law: Option<String>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShapesEntry {
+    /// The shapes are of these families of deformations. At most one of `families`, `gradients` and `loads` is given.
+    #[schemars(extend(
+        "items" = json!({ "type": "string", "enum": DeformationFamily::NAMES }),
+        "x-default" = "the first four",
+    ))]
     pub families: Option<Vec<String>>,
-    /// A file of deformation gradients, relative to the scene.
+    /// The shapes have the deformation gradients of this CSV file, relative to the scene, row by row. Four of five are fitted, up to
+    /// `count`, and a shorter list is used repeatedly.
+    #[schemars(extend("x-type" = "path"))]
     pub gradients: Option<PathBuf>,
+    /// The shapes are those that the finite elements take on the way to these loads of the scene.
     pub loads: Option<Vec<String>>,
+    /// The springs are fitted to this number of shapes.
+    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.shapes))]
     pub count: Option<usize>,
+    /// The springs are tested on this number of other shapes.
+    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.held_out))]
     pub held_out: Option<usize>,
-    #[schemars(with = "Option<serde_json::Value>")]
+    /// The amplitudes of `families` are between these two numbers; one number, such as 0.3, means −0.3 to 0.3.
+    #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "number, or pair of numbers", "default" = 0.3))]
     pub stretch: Option<toml::Value>,
+    /// Each node is displaced at random by this share of the cell's size.
+    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.perturbation))]
     pub perturbation: Option<f64>,
+    /// Another seed gives other random numbers.
+    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.seed))]
     pub seed: Option<u64>,
 }
 

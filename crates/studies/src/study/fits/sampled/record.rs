@@ -11,36 +11,37 @@ use std::collections::BTreeMap;
 
 /// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "(sampled)")]
 pub struct SampledRecord {
-    /// The objective, `sampled`.
+    /// The objective is `sampled`.
     pub objective: String,
-    /// The weights of the shapes: `relative` or `none`.
+    /// Shapes have the weights `relative` or `none`.
     pub weight: String,
-    /// The scale of the forces that do no work on homogeneous deformations.
+    /// Forces that do no work on homogeneous deformations have this scale.
     pub higher: f64,
-    /// Whether all springs of a group have the same parameters.
+    /// All springs of a group have the same parameters.
     pub tied: bool,
-    /// Whether no parameter may be negative.
+    /// No parameter may be negative.
     pub nonnegative: bool,
-    /// The force law.
+    /// The springs have this law of force.
     pub force: ForceRecord,
-    /// The norm of the residual forces.
+    /// The residual forces are measured in this norm.
     pub norm: String,
-    /// The δ of the norm "huber", as a share.
+    /// The Huber norm bends at this share; it is null with other norms.
     pub huber: Option<f64>,
-    /// The bounds of parameters, by name.
+    /// Parameters have these least and largest values, by name.
     pub bounds: BTreeMap<String, [f64; 2]>,
-    /// The number of starts of the search.
+    /// The search begins at this number of points.
     pub starts: usize,
-    /// The families of deformations; `None` if the shapes are from a file or from loads.
+    /// The shapes are of these families of deformations; the list is null if they are from a file or from loads.
     pub families: Option<Vec<String>>,
-    /// The least and the largest amplitude.
+    /// The amplitude is between these two.
     pub stretch: [f64; 2],
-    /// How far nodes are moved in addition, as a share of the size of the cell.
+    /// Nodes are displaced at random by this share of the size of the cell.
     pub perturbation: f64,
-    /// The seed of the random numbers.
+    /// The random numbers have this seed.
     pub seed: u64,
-    /// The energy, if it is not that of the material.
+    /// The forces of this energy are sampled; it is null if it is that of the material.
     pub law: Option<String>,
 }
 
@@ -55,15 +56,15 @@ pub enum ForceRecord {
 /// The relative errors of the forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcomeRecord {
-    /// The number of shapes of the fit.
+    /// The springs are fitted to this number of shapes.
     pub shapes: usize,
-    /// The errors on the shapes of the fit.
+    /// The forces have these relative errors on the shapes of the fit.
     pub trained: SpreadRecord,
-    /// The errors on the shapes that were held out.
+    /// The forces have these relative errors on the shapes that were held out.
     pub held_out: Option<SpreadRecord>,
-    /// The least share of starts that found the best parameters.
+    /// At least this share of starts found the best parameters.
     pub agreeing_starts: Option<f64>,
-    /// The loads of the scene whose shapes were sampled.
+    /// The shapes of these loads of the scene were sampled.
     pub loads: Vec<String>,
 }
 

@@ -1,7 +1,7 @@
 //! The keys of a `[[fit]]` to the stiffness at rest.
 
 use crate::error::{Error, Result};
-use crate::fit::{Choices, Fit, Objective, Rest, Solver, Topology, Weight};
+use crate::fit::{Balance, Choices, Fit, Higher, Objective, Rest, Solver, Topology, Weight};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -9,20 +9,36 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct StiffnessEntry {
-    #[schemars(extend("enum" = Weight::NAMES))]
+    /// The weight says which parts of the difference R − K count. It belongs to `frobenius` and, but for `offdiag`, to `spectral`.
+    #[schemars(extend("enum" = Weight::NAMES, "default" = Weight::None.name()))]
     pub weight: Option<String>,
+    /// Motions beyond constant strain have this scale in modal weights, above 0 and at most 1.
+    #[schemars(extend("default" = Higher::DEFAULT.value()))]
     pub higher: Option<f64>,
+    /// The `divergence` is balanced between too soft, 0, and too stiff, 1.
+    #[schemars(extend("default" = Balance::DEFAULT.value()))]
     pub balance: Option<f64>,
+    /// All springs of a group have one constant.
     pub tied: bool,
+    /// No constant is below zero.
     pub nonnegative: bool,
-    #[schemars(extend("enum" = Solver::NAMES))]
+    /// The solver is that of the objective (`native`), or a general optimiser.
+    #[schemars(extend("enum" = Solver::NAMES, "default" = "native"))]
     pub solver: Option<String>,
-    /// These three belong to the general solvers.
+    /// A general optimiser takes this number of iterations, 1 or more.
+    #[schemars(extend("default" = Solver::DEFAULT_ITERATIONS))]
     pub iterations: Option<u64>,
+    /// The optimiser may also switch springs off; the key belongs to `particle-swarm` and `simulated-annealing`.
     pub topology: bool,
+    /// Each remaining spring adds this share of the objective at the start to the objective, 0 or more; the key belongs to `topology =
+    /// true`.
+    #[schemars(extend("default" = 0))]
     pub sparsity: Option<f64>,
-    #[schemars(extend("enum" = Rest::NAMES))]
+    /// Rest measures are those of the mesh (`mesh`), fitted as well (`free`), or zero (`zero`), with `frobenius`, `offdiag` and `modal`.
+    #[schemars(extend("enum" = Rest::NAMES, "default" = Rest::Mesh.name()))]
     pub rest: Option<String>,
+    /// The search of `spectral` may end at this proved gap, relative to the value, from 0 to 1e-8; at 0 rounding ends it.
+    #[schemars(extend("default" = 0))]
     pub gap: Option<f64>,
 }
 

@@ -6,26 +6,28 @@ use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in. Settings that the objective does not have are null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "(stiffness)")]
 pub struct StiffnessRecord {
-    /// The objective.
+    /// The objective has this name.
     pub objective: String,
-    /// The weight of a norm.
+    /// The norm has this weight; it is null if the objective has none.
     pub weight: Option<String>,
-    /// The scale of the motions beyond constant strain.
+    /// Motions beyond constant strain have this scale; it is null without a modal weight.
     pub higher: Option<f64>,
-    /// The balance of the divergence, from 0 (soft) to 1 (stiff).
+    /// The divergence has this balance from 0 (soft) to 1 (stiff); it is null with other objectives.
     pub balance: Option<f64>,
-    /// Whether there is one constant per group.
+    /// All springs of a group have one constant.
     pub tied: bool,
-    /// Whether no constant may be negative.
+    /// No constant may be negative.
     pub nonnegative: bool,
-    /// The solver.
+    /// The solver is `normal equations`, `block principal pivoting`, `barrier`, `newton`, `interior point`, `orthogonal least squares`, or
+    /// a general optimiser.
     pub solver: String,
-    /// The cost of a spring, as a share of the objective at the start.
+    /// Each spring adds this share of the objective at the start; it is null without a search of topologies.
     pub sparsity: Option<f64>,
-    /// The rest measures: `mesh`, `free` or `zero`.
+    /// Rest measures are those of the `mesh`, `free` or `zero`.
     pub rest: String,
-    /// The gap at which a spectral fit may end.
+    /// A spectral fit may end at this proved gap; it is null with other objectives.
     pub gap: Option<f64>,
 }
 

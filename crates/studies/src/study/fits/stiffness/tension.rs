@@ -18,15 +18,15 @@ pub struct TensionOutcome {
 /// The record of the tension in a report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TensionRecord {
-    /// `|rest length / length in the mesh − 1|` of the springs between two points.
+    /// Rest lengths deviate by the shares `|rest length / length in the mesh − 1|`, for springs between two points.
     pub rest_lengths: SpreadRecord,
-    /// The number of springs with a negative rest length.
+    /// This number of springs has a rest length below zero.
     pub negative_rest_lengths: usize,
-    /// The number of springs whose force does not depend on what they measure.
+    /// This number of springs has a force that does not depend on what they measure.
     pub constant_forces: usize,
-    /// The largest force on a node at rest, relative to the largest force of a spring.
+    /// The largest force on a node at rest is this share of the largest force of a spring.
     pub unbalanced: f64,
-    /// The number of elements without springs.
+    /// This number of elements has no springs.
     pub idle_elements: usize,
 }
 

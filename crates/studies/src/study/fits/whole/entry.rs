@@ -23,42 +23,73 @@ const FEW: f64 = 1e-9;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct WholeEntry {
-    /// The start: an objective, "sampled" or "equal", or a list of them.
-    #[schemars(with = "Option<serde_json::Value>")]
+    /// The fit starts from the constants of this objective, or of `sampled`, `equal` or `exact`; a list gives one fit from each. With
+    /// `sampled`, the keys of sampled fits are allowed too.
+    #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "text, or list of texts", "default" = "offdiag"))]
     pub start: Option<toml::Value>,
-    /// These three belong to the objective of the start.
+    /// The objective of the start has this weight.
+    #[schemars(extend("x-default" = "that of the objective"))]
     pub weight: Option<String>,
+    /// Motions beyond constant strain have this scale in the objective of the start, above 0 and at most 1.
+    #[schemars(extend("x-default" = "that of the objective"))]
     pub higher: Option<f64>,
+    /// The divergence of the start is balanced between too soft, 0, and too stiff, 1.
+    #[schemars(extend("x-default" = "that of the objective"))]
     pub balance: Option<f64>,
+    /// These loads are fitted: names of loads of the scene, or `made` for loads that are made for the fit.
+    #[schemars(extend("default" = [MADE]))]
     pub loads: Option<Vec<String>>,
-    /// A name, or a list of names.
+    /// These loads choose ρ: names of loads of the scene, or `made`. `leave-one-out` leaves out one load after the other. `discrepancy`
+    /// takes the largest ρ whose residuals are no larger than the `sigma` of the measured displacements.
     #[serde(deserialize_with = "one_or_more")]
-    #[schemars(with = "Option<serde_json::Value>")]
+    #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "text, or list of texts", "default" = [MADE]))]
     pub validate: Option<Vec<String>>,
-    #[schemars(extend("enum" = Sharing::NAMES))]
+    /// Each spring, group, region or element has a factor of its own. With the start `exact` the moduli of each cell (`moduli`), of each
+    /// region (`region-moduli`, or `region-young` with Poisson's ratio of the material) or of the body (`body-moduli`) have one. Moduli are
+    /// found from measured loads alone, or from none.
+    #[schemars(extend("enum" = Sharing::NAMES, "x-default" = "`\"spring\"`; `\"moduli\"` with the start `exact`"))]
     pub unknowns: Option<String>,
-    #[schemars(extend("enum" = Residual::NAMES))]
+    /// The fit makes the errors of `displacements` or of `forces` small, or first those of the forces (`forces-first`).
+    #[schemars(extend("enum" = Residual::NAMES, "default" = Residual::default().name()))]
     pub residual: Option<String>,
+    /// The regularization ρ is given, 0 or more, instead of chosen by `validate`.
+    #[schemars(extend("x-default" = "chosen by `validate`"))]
     pub regularization: Option<f64>,
+    /// The largest constant of the length springs is at most this many times the least where ρ is chosen, 1 or more. A given ρ is used
+    /// whatever the range is.
+    #[schemars(extend("default" = WholeSettings::default().range))]
     pub range: Option<f64>,
+    /// This number of natural frequencies is fitted as well. They need a density, and no measured displacements.
+    #[schemars(extend("default" = 0))]
     pub frequencies: Option<usize>,
-    /// The number of natural frequencies to which masses are fitted after the springs.
+    /// The masses of the points are fitted to this number of natural frequencies under each support, after the springs. They need a
+    /// density, and no measured displacements.
+    #[schemars(extend("default" = 0))]
     pub masses: Option<usize>,
+    /// Another seed gives other random loads.
+    #[schemars(extend("default" = SEED))]
     pub seed: Option<u64>,
-    /// The groups that are held, for each support under which made loads are fitted.
+    /// Made loads are fitted under these supports, each a list of groups that are held, such as `[["left"], ["left", "right"]]`.
+    #[schemars(extend("x-default" = "that of `[[fix]]`"))]
     pub supports: Option<Vec<Vec<String>>>,
-    /// The same for the loads that choose ρ.
+    /// Made loads that choose ρ have these supports, each a list of groups that are held; the key belongs to `validate = "made"`.
+    #[schemars(extend("x-default" = "`supports`"))]
     pub validate_supports: Option<Vec<Vec<String>>>,
-    /// The same for loads that are neither fitted nor choose ρ, whose errors are reported.
+    /// Made loads with these supports, each a list of groups that are held, neither are fitted nor choose ρ; their errors are reported.
     pub other_supports: Option<Vec<Vec<String>>>,
-    /// The springs for μ of the start "exact".
-    #[schemars(extend("enum" = ShearSprings::NAMES))]
+    /// Springs for the shear modulus of the start `exact` measure the deformation in each cell, or on the domain of each edge. With `edges`
+    /// the unknowns of `moduli` are those of the domain of each edge.
+    #[schemars(extend("enum" = ShearSprings::NAMES, "default" = ShearSprings::default().name()))]
     pub shear: Option<String>,
-    /// The springs for λ of the start "exact".
-    #[schemars(extend("enum" = VolumeSprings::NAMES))]
+    /// The start `exact` has these volume springs. With `patches` the cells and the patches have half of λ each, and with `shear = "edges"`
+    /// the patches have all of it.
+    #[schemars(extend("enum" = VolumeSprings::NAMES, "default" = VolumeSprings::default().name()))]
     pub volume: Option<String>,
-    #[schemars(extend("enum" = DescentMethod::NAMES))]
+    /// The search steps by this method.
+    #[schemars(extend("enum" = DescentMethod::NAMES, "default" = WholeSettings::default().method.name()))]
     pub solver: Option<String>,
+    /// The search takes at most this number of iterations with each ρ, 1 or more.
+    #[schemars(extend("default" = WholeSettings::default().iterations))]
     pub iterations: Option<u64>,
 }
 

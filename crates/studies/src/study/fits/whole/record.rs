@@ -12,32 +12,34 @@ use serde::{Deserialize, Serialize};
 
 /// The settings, with defaults filled in.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "(whole)")]
 pub struct WholeRecord {
-    /// The objective, `whole`.
+    /// The objective is `whole`.
     pub objective: String,
-    /// The constants from which the fit starts.
+    /// The fit starts from these constants.
     pub start: StartRecord,
-    /// The weight of the objective of the start.
+    /// The objective of the start has this weight; it is null if the start has none.
     pub weight: Option<String>,
-    /// The scale of the motions beyond constant strain in that weight.
+    /// Motions beyond constant strain have this scale in that weight; it is null without a modal weight.
     pub higher: Option<f64>,
-    /// Which springs share an unknown factor: `spring`, `group`, `region` or `element`.
+    /// Springs share an unknown factor by `spring`, `group`, `region` or `element`, or the moduli of cells, regions or the body are the
+    /// unknowns.
     pub unknowns: String,
-    /// The residuals: `displacements`, `forces` or `forces-first`.
+    /// The residuals are those of `displacements`, `forces` or `forces-first`.
     pub residual: String,
-    /// The solver.
+    /// The search steps by this method.
     pub solver: String,
-    /// The number of natural frequencies that are fitted.
+    /// This number of natural frequencies is fitted.
     pub frequencies: usize,
-    /// The number of natural frequencies to which the masses are fitted after the springs.
+    /// The masses are fitted to this number of natural frequencies after the springs.
     pub masses: usize,
-    /// The seed of the random loads.
+    /// The random loads have this seed.
     pub seed: u64,
-    /// The groups that are held, for each support under which made loads are fitted; empty for that of the scene.
+    /// Made loads are fitted under these supports, each a list of groups; the list is empty for that of the scene.
     pub supports: Vec<Vec<String>>,
-    /// The same for the loads that choose the regularization; empty for those of the fit.
+    /// Loads that choose the regularization have these supports; the list is empty for those of the fit.
     pub validate_supports: Vec<Vec<String>>,
-    /// The same for loads that are neither fitted nor choose it, whose errors are reported.
+    /// Loads that neither are fitted nor choose the regularization have these supports; their errors are reported.
     #[serde(default)]
     pub other_supports: Vec<Vec<String>>,
 }
@@ -53,96 +55,103 @@ pub enum StartRecord {
 /// The loads of the fit, and its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WholeOutcomeRecord {
-    /// The names of the loads that were fitted.
+    /// These loads were fitted.
     pub loads: Vec<String>,
-    /// The names of the loads that chose the regularization.
+    /// These loads chose the regularization.
     pub validated: Vec<String>,
-    /// The regularization that was chosen; null if the start was best.
+    /// The regularization ρ was chosen; it is null if the start was best.
     pub regularization: Option<f64>,
-    /// The largest factor by which a constant changed.
+    /// A constant changed by at most this factor.
     pub largest_change: Option<f64>,
-    /// The ratio of the largest to the least constant of the length springs.
+    /// The largest constant of the length springs is this many times the least.
     pub range: Option<f64>,
-    /// Whether a better regularization was rejected because of this ratio.
+    /// A better ρ was left out because the range would have been too large.
     pub limited_by_range: bool,
-    /// The stages of the path: the curve of errors against ρ.
+    /// Each entry is a stage of the path: the curve of errors against ρ.
     pub curve: Vec<StageRecord>,
-    /// The number of steps.
+    /// This number of steps was made.
     pub steps: usize,
-    /// Whether the fit was cancelled.
+    /// The fit was ended early.
     pub cancelled: bool,
-    /// Whether the network is stable under every load at the start.
+    /// The starting network is stable under every load.
     pub stands: bool,
-    /// The relative errors on the loads of the fit.
+    /// Each entry has the relative errors on a load of the fit.
     pub relative_errors_fitted: Vec<FittedLoadRecord>,
-    /// The relative errors on the loads that chose the regularization.
+    /// Each entry has the relative errors on a load that chose the regularization.
     pub relative_errors_validated: Vec<FittedLoadRecord>,
-    /// The factors on the moduli of the body or of its regions, if these are the unknowns.
+    /// Each entry is the factor on a modulus of the body or of its regions, if these are the unknowns.
     pub moduli: Vec<FoundModulusRecord>,
-    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
+    /// These moduli have a 95 % interval that reaches beyond the factor 2: one alone, or several whose combination the displacements do not
+    /// see.
     pub hardly_seen: Vec<String>,
-    /// How many times as large as the stated noise the residuals are; null where it is not stated.
+    /// The residuals are this many times as large as the stated noise; it is null where no `sigma` is given.
     pub misfit: Option<f64>,
-    /// The relative errors under loads that were neither fitted nor chose the regularization.
+    /// Each entry has the errors of a support under loads that were neither fitted nor chose ρ. The list is empty without `[reference]` and
+    /// `supports`, and with measured displacements.
     pub held_out: Vec<HeldOutRecord>,
-    /// The relative errors of the frequencies.
+    /// `relative_errors_of_frequencies` has the relative errors of the frequencies before and after.
     pub relative_errors_of_frequencies: FrequencyErrorsRecord,
-    /// The masses, if they were fitted.
+    /// `masses` has the fit of the masses; it is null unless the scene asks for `masses`.
     pub masses: Option<FittedMassesRecord>,
 }
 
 /// Masses that were fitted to frequencies. The masses themselves are in the file of the network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedMassesRecord {
-    /// The number of frequencies that were fitted under each support.
+    /// This number of frequencies was fitted under each support.
     pub frequencies: usize,
-    /// The regularization that was chosen.
+    /// The regularization ρ was chosen.
     pub regularization: f64,
-    /// The largest error of the second moments on the diagonal, relative to those of the body.
+    /// The second moments `Σ m x_k²` about the centre have at most this error, relative to those of the body. It is none, or that of lumped
+    /// masses.
     pub second_moment_error: f64,
-    /// The largest factor by which a mass changed.
+    /// A mass changed by at most this factor.
     pub largest_change: f64,
-    /// Their sum, kg.
+    /// The sum of the masses is in kg.
     pub total: f64,
-    /// The share of lumped masses in the mass matrix; the rest is the consistent one.
+    /// Lumped masses have this share s in the mass matrix `(1 − s) M_c + s diag(m)`; M_c is the consistent one.
     #[serde(default)]
     pub lumped_share: f64,
-    /// ρ, and the root mean square errors of the frequencies that were fitted and that chose ρ.
+    /// Each entry has the errors of the frequencies with one ρ.
     pub curve: Vec<MassStageRecord>,
-    /// The errors of frequencies under each support.
+    /// Each entry has the errors of the frequencies under a support.
     pub supports: Vec<SupportFrequenciesRecord>,
 }
 
 /// A point of the curve of errors of frequencies against ρ.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MassStageRecord {
+    /// The stage has this regularization ρ.
     pub regularization: f64,
+    /// The frequencies that were fitted have this root mean square error.
     pub trained: f64,
-    /// Null where no frequencies choose.
+    /// The frequencies that chose ρ have this root mean square error; it is null where none choose.
     pub validated: Option<f64>,
 }
 
 /// The errors of frequencies under a support.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SupportFrequenciesRecord {
-    /// The groups that are held.
+    /// These groups are held.
     pub support: String,
-    /// Whether the first frequencies were fitted.
+    /// The first frequencies were fitted.
     pub trained: bool,
-    /// Whether they chose the regularization without being fitted.
+    /// The frequencies chose the regularization without being fitted.
     #[serde(default)]
     pub chooses: bool,
-    /// The finite elements of the mesh and the network with lumped masses, and the network with fitted ones and with the mass matrix.
+    /// The entries are the finite elements of the mesh and the fitted network with lumped masses, and the fitted network with fitted masses
+    /// and with the mass matrix.
     pub models: Vec<ModelFrequenciesRecord>,
 }
 
 /// The root mean squares of the relative errors `ω_i/ω̄_i − 1` of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelFrequenciesRecord {
+    /// The model is `finite elements`, `fitted`, `fitted masses` or `mass matrix`.
     pub model: String,
-    /// Of the first frequencies.
+    /// This is the root mean square of `ω_i/ω̄_i − 1` over as many first frequencies as were fitted.
     pub first: f64,
-    /// Of as many after these, which no fit has seen.
+    /// This is the root mean square of `ω_i/ω̄_i − 1` over as many frequencies after the first, which no fit has seen.
     pub next: f64,
 }
 
@@ -177,13 +186,13 @@ impl FittedMassesRecord {
 /// The factor on a modulus.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FoundModulusRecord {
-    /// The modulus and the region.
+    /// The modulus is `mu` or `lambda`, with its region.
     pub modulus: String,
-    /// The factor on that of the material.
+    /// The modulus of the material is multiplied by this factor.
     pub factor: f64,
-    /// The ends of the 95 % interval; null if the displacements do not determine it.
+    /// The factor is in this interval with 95 %; it is null if the displacements do not determine it, or if an end is beyond all numbers.
     pub interval: Option<[f64; 2]>,
-    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; null without a finer body.
+    /// The meshes cause this standard deviation of the logarithm of the factor, which is in the interval; it is null without a finer body.
     pub mesh_deviation: Option<f64>,
 }
 
@@ -201,42 +210,48 @@ impl FoundModulusRecord {
 /// The relative errors under loads with one support.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HeldOutRecord {
-    /// The groups that are held.
+    /// These groups are held.
     pub support: String,
-    /// Whether loads with this support were fitted.
+    /// Loads with this support were fitted.
     pub trained: bool,
-    /// Whether loads with this support chose the regularization without being fitted.
+    /// Loads with this support chose the regularization without being fitted.
     #[serde(default)]
     pub chooses: bool,
-    /// The number of loads.
+    /// The support has this number of loads, none of which was fitted or chose ρ.
     pub loads: usize,
-    /// The finite elements of the mesh, its exact networks, the network at the start, and the fitted one.
+    /// The entries are the finite elements of the mesh, its exact networks, the network at the start, and the fitted one.
     pub models: Vec<ModelErrorRecord>,
-    /// The loads whose errors the fitted network has more than a tenth larger than the finite elements of the mesh.
+    /// Each entry is a load whose error is more than a tenth larger with the fitted network than with the finite elements of the mesh.
     #[serde(default)]
     pub worse_than_finite_elements: Vec<WorseLoadRecord>,
-    /// Seconds of the same step of the finer body; null without one.
+    /// A linear implicit step of the finer body takes this time in s; it is null without one.
     pub seconds_per_step_fine: Option<f64>,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` under a load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WorseLoadRecord {
+    /// The load has this name.
     pub load: String,
-    /// Of the finite elements of the mesh.
+    /// The finite elements of the mesh have this relative error `‖u − ū‖/‖ū‖`.
     pub finite_elements: f64,
-    /// Of the fitted network.
+    /// The fitted network has this relative error `‖u − ū‖/‖ū‖`.
     pub fitted: f64,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` of a model; null if it is not stable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ModelErrorRecord {
+    /// The model is `finite elements`; `exact`, `exact patches` and `exact edges patches` where the mesh has them; `start`, where the
+    /// moduli of the body are fitted already; or `fitted`.
     pub model: String,
+    /// The relative errors `‖u − ū‖/‖ū‖` have this median; it is null if the model is not stable.
     pub median: Option<f64>,
+    /// The largest relative error `‖u − ū‖/‖ū‖` is this; it is null if the model is not stable.
     pub worst: Option<f64>,
+    /// The largest error is under this load.
     pub worst_load: Option<String>,
-    /// Seconds of a linear implicit step, which is one solution with a factor or levels that are there.
+    /// A linear implicit step takes this time in s: one solution with a factor or levels that are there.
     pub seconds_per_step: Option<f64>,
 }
 
@@ -269,21 +284,22 @@ impl HeldOutRecord {
 /// A stage of the path.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StageRecord {
-    /// ρ.
+    /// The stage has this regularization ρ.
     pub regularization: f64,
-    /// The geometric mean of the relative errors on the loads of the validation, or on each load that was left out; null
-    /// without validation, or if the network is not stable.
+    /// The relative errors on the loads of the validation, or on each load that was left out, have this geometric mean; with `discrepancy`
+    /// it is the residuals over the noise. It is null without validation, or if the network is not stable.
     pub validated: Option<f64>,
-    /// The root mean square of the relative errors on the loads of the fit.
+    /// The relative errors on the loads of the fit have this root mean square.
     pub trained: Option<f64>,
-    /// The root mean square of the logarithms of the factors on the constants.
+    /// The logarithms of the factors on the constants have this root mean square.
     pub change: f64,
-    /// Whether it was rejected because of the range of its constants.
+    /// The stage was left out because of the range of its constants.
     pub rejected: bool,
-    /// Whether its search ended by itself, and not at `iterations`.
+    /// The search ended by itself, and not at `iterations`.
     #[serde(default)]
     pub finished: bool,
-    /// The objective at the start of the stage and after each step, of the residuals that were minimised last.
+    /// The objective has these values at the start of the stage and after each step. With `forces-first` it is that of the displacements,
+    /// and with L-BFGS the list has each lower point.
     #[serde(default)]
     pub objective: Vec<f64>,
 }
@@ -291,15 +307,20 @@ pub struct StageRecord {
 /// The relative error under a load; null if the network is not stable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FittedLoadRecord {
+    /// The load has this name.
     pub load: String,
+    /// The displacements have this relative error before the fit.
     pub before: Option<f64>,
+    /// The displacements have this relative error after the fit.
     pub after: Option<f64>,
 }
 
 /// The relative errors `ω_i/ω̄_i − 1` of the frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrequencyErrorsRecord {
+    /// The frequencies have the relative errors `ω_i/ω̄_i − 1` before the fit.
     pub before: Vec<Option<f64>>,
+    /// The frequencies have the relative errors `ω_i/ω̄_i − 1` after the fit.
     pub after: Vec<Option<f64>>,
 }
 

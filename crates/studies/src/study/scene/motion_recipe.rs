@@ -1,0 +1,118 @@
+//! The motion of a scene, checked, before the mesh is known.
+//!
+//! Theory: page *Dynamics* of the book.
+
+use super::part::Part;
+use crate::dynamics::Options;
+use crate::model::Lumping;
+use crate::symbolic::Expr;
+
+/// A tolerance for the quotient of duration and step, because decimals are not exact in binary.
+pub(super) const SLACK: f64 = 1.0 - 1e-12;
+
+/// A motion, before the mesh is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionRecipe {
+    /// The time step, the method and the solver.
+    pub options: Options,
+    /// The numbers of the networks' forces.
+    pub precision: ForcePrecision,
+    /// The duration, s.
+    pub duration: f64,
+    /// The number of steps; the last one reaches the end.
+    pub steps: usize,
+    /// The time between states that are written, s; the first and the last state always are.
+    pub every: f64,
+    /// How masses are lumped.
+    pub lumping: Lumping,
+    /// The acceleration of gravity, m/s²; empty if there is none.
+    pub gravity: Vec<f64>,
+    /// The damping.
+    pub damping: DampingRecipe,
+    /// The points whose mean displacement is written.
+    pub watch: Option<Part>,
+    /// Whether the finite elements move as well.
+    pub finite_elements: bool,
+    /// The prescribed displacements.
+    pub pulls: Vec<PrescribedMotion>,
+    /// The forces.
+    pub forces: Vec<AppliedForce>,
+}
+
+/// The numbers in which networks compute their forces, and, without an account, positions and velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ForcePrecision {
+    /// `f64`.
+    #[default]
+    Double,
+    /// `f32`.
+    Single,
+}
+
+crate::named!(ForcePrecision {
+    "double" => Double,
+    "single" => Single,
+});
+
+/// The damping of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DampingRecipe {
+    /// Rayleigh damping: α, 1/s, and β, s, of `C = α M + β K₀`.
+    Rayleigh([f64; 2]),
+    /// The damping ratio of a damper parallel to each spring.
+    Ratio(f64),
+}
+
+/// A part with a prescribed displacement over time, m.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrescribedMotion {
+    /// The part.
+    pub part: Part,
+    /// One expression in t, x, y, z per direction; `None` leaves a direction free.
+    pub displacement: Vec<Option<Expr>>,
+}
+
+/// A force over time, N, on a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AppliedForce {
+    /// The part.
+    pub part: Part,
+    /// One expression in t per direction.
+    pub force: Vec<Expr>,
+    /// Whether the force acts on each point, instead of being the total.
+    pub each: bool,
+}
+
+impl MotionRecipe {
+    /// The motion in words.
+    pub fn title(&self) -> String {
+        let (step, name) = (self.options.step, self.options.integrator.name());
+        let precision = match self.precision {
+            ForcePrecision::Double => "",
+            ForcePrecision::Single => " in single precision",
+        };
+        format!("{:?} s in {} steps of {step:?} s by {name}{precision}", self.duration, self.steps)
+    }
+
+    /// The time at the end of the last step, s: that of the first step that reaches the duration.
+    pub fn end(&self) -> f64 {
+        self.steps as f64 * self.options.step
+    }
+
+    /// Whether the times between states that are written are alike but for the last one.
+    pub fn is_even(&self) -> bool {
+        let written = self.written();
+        let apart: Vec<usize> = written.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        apart.split_last().is_none_or(|(_, apart)| apart.iter().all(|steps| *steps == apart[0]))
+    }
+
+    /// The steps at whose end a state is written: the first one at or after each multiple of `every`, and the last
+    /// step.
+    pub fn written(&self) -> Vec<usize> {
+        let at = |state: usize| (state as f64 * self.every / self.options.step * SLACK).ceil() as usize;
+        let mut steps: Vec<usize> = (0..).map(at).take_while(|step| *step < self.steps).collect();
+        steps.push(self.steps);
+        steps.dedup();
+        steps
+    }
+}
