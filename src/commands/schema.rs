@@ -13,6 +13,9 @@ pub struct Schema {
     /// The kind of file
     #[arg(value_enum)]
     of: Kind,
+    /// Print the keys with their types, defaults and meanings as tables in Markdown instead
+    #[arg(long)]
+    markdown: bool,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -33,18 +36,23 @@ const EXAMPLES: &str = "\
 Examples:
   springfit schema scene > scene.schema.json
   # In the first line of a scene, for the editor plugins of taplo:
-  #:schema ./scene.schema.json";
+  #:schema ./scene.schema.json
+  springfit schema scene --markdown        # what each key means";
 
 impl Schema {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        let schema = match self.of {
-            Kind::Scene => study::scene_schema(),
-            Kind::Element => element::schema(),
-            Kind::Material => material::schema(),
-            Kind::Network => report::network_schema(),
-            Kind::Report => report::schema(),
+        // The third says whether the program writes such files.
+        let (schema, name, is_written) = match self.of {
+            Kind::Scene => (study::scene_schema(), "scene", false),
+            Kind::Element => (element::schema(), "element", false),
+            Kind::Material => (material::schema(), "material", false),
+            Kind::Network => (report::network_schema(), "network", true),
+            Kind::Report => (report::schema(), "report", true),
         };
-        terminal.print_json(&schema)?;
+        match self.markdown {
+            true => terminal.print(&report::key_tables_text(&report::key_tables(&schema, name, is_written)))?,
+            false => terminal.print_json(&schema)?,
+        }
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -2,6 +2,7 @@
 
 mod figures;
 mod gallery;
+mod keys;
 mod links;
 mod markdown;
 mod printed;
