@@ -1,5 +1,6 @@
 //! `springfit fit`.
 
+use super::fit_flags::FitFlags;
 use super::interrupt;
 use super::mesh_file::MeshOptions;
 use super::output::{OutputOptions, command};
@@ -43,60 +44,11 @@ pub struct Fit {
     /// mesh, use divergence, or offdiag with --nonnegative
     #[arg(long, help_heading = "Fit")]
     objective: Option<String>,
-    /// The body's energy: stable-neo-hookean or neo-hookean [default: stable-neo-hookean] (exact only)
-    #[arg(long, help_heading = "Exact networks")]
-    energy: Option<String>,
-    /// Springs for the shear modulus in each cell, or on the domain of each edge of triangles and tetrahedra: cells or edges
-    /// [default: cells]. edges is nearer to the truth than the finite elements of the same mesh, with three times the springs (exact only)
-    #[arg(long, help_heading = "Exact networks")]
-    shear: Option<String>,
-    /// One volume spring for each quadrature point, cell, or patch of cells around a node: points, cells or patches [default: points].
-    /// cells and patches avoid locking near nu = 0.5 (exact only)
-    #[arg(long, help_heading = "Exact networks")]
-    volume: Option<String>,
+    #[command(flatten)]
+    keys: FitFlags,
     /// A group of the mesh that is held; may be repeated (whole only)
     #[arg(long, help_heading = "Whole-object fits")]
     fix: Vec<String>,
-    /// Energy whose forces are sampled: a shipped name such as neo-hookean, or a file (sampled only)
-    #[arg(long, help_heading = "Sampled fits")]
-    law: Option<String>,
-    /// linear, free-rest, or a law of force such as "k1*s + k3*s^3" (sampled only)
-    #[arg(long, help_heading = "Sampled fits")]
-    force: Option<String>,
-    /// Largest amplitude of the sampled shapes [default: 0.3] (sampled only)
-    #[arg(long, allow_hyphen_values = true, help_heading = "Sampled fits")]
-    stretch: Option<f64>,
-    /// How many shapes to fit to [default: 300] (sampled only)
-    #[arg(long, help_heading = "Sampled fits")]
-    shapes: Option<usize>,
-    /// Weight of the error of the stiffness: none, offdiag, modal or relative with frobenius; none, modal or relative with spectral; none
-    /// or relative with sampled
-    #[arg(long, help_heading = "Fits to the stiffness")]
-    weight: Option<String>,
-    /// Weight of deformations beyond constant strain, up to 1 [default: 0.316 of modal, 1 of sampled] (modal and sampled only)
-    #[arg(long, help_heading = "Fits to the stiffness")]
-    higher: Option<f64>,
-    /// Balance between too soft, 0, and too stiff, 1 [default: 0.25] (divergence only)
-    #[arg(long, help_heading = "Fits to the stiffness")]
-    balance: Option<f64>,
-    /// Spring groups to use, separated by commas [default: all that are not optional]
-    #[arg(long, value_delimiter = ',', help_heading = "Fit")]
-    springs: Option<Vec<String>>,
-    /// One constant per group
-    #[arg(long, help_heading = "Fit")]
-    tied: bool,
-    /// No constant below zero
-    #[arg(long, help_heading = "Fit")]
-    nonnegative: bool,
-    /// Springs across the sides of cells where no others suffice (exact with --nonnegative only)
-    #[arg(long, help_heading = "Exact networks")]
-    across: bool,
-    /// Rest lengths of the springs: mesh (as in the mesh), free (fitted) or zero [default: mesh] (frobenius, offdiag and modal only)
-    #[arg(long, help_heading = "Fits to the stiffness")]
-    rest: Option<String>,
-    /// Proved gap at which the search may end, up to 1e-8 [default: 0, where rounding ends it] (spectral only)
-    #[arg(long, allow_hyphen_values = true, help_heading = "Fits to the stiffness")]
-    gap: Option<f64>,
     /// Plane mesh or surface: stress or strain [default: stress]
     #[arg(long, help_heading = "Material")]
     plane: Option<State>,
@@ -149,7 +101,7 @@ impl Fit {
             let expected = "a file ending in .shard with --shard";
             return Err(Error::expected("--output", expected, self.output.display()).of_kind(ErrorKind::Unsupported));
         }
-        let elements = self.options.elements().iter().chain(&self.law).map(PathBuf::from);
+        let elements = self.options.elements().iter().chain(&self.keys.law).map(PathBuf::from);
         let inputs: Vec<PathBuf> = MeshSource::files(&self.mesh).into_iter().chain(elements).collect();
         springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
         springfit::check_file(&self.output)?;
@@ -178,7 +130,7 @@ impl Fit {
             };
             return Err(Error::at("--fix", problem));
         }
-        if sampled && self.law.is_none() {
+        if sampled && self.keys.law.is_none() {
             let expected = "the energy whose forces the objective \"sampled\" samples, such as neo-hookean";
             return Err(Error::expected("--law", expected, "none"));
         }
@@ -276,7 +228,7 @@ impl Fit {
         set.extend([format!("lambda = {lambda:e}"), format!("mu = {mu:e}")]);
         let plane = self.plane.and_then(|plane| plane.to_possible_value());
         set.extend(plane.map(|plane| format!("plane = {}", plane.get_name())));
-        for path in self.options.elements().iter().chain(&self.law).map(Path::new).filter(|path| path.is_file()) {
+        for path in self.options.elements().iter().chain(&self.keys.law).map(Path::new).filter(|path| path.is_file()) {
             let sum = Sum::of_file(path).map_err(|e| Error::io("cannot be read", e).in_file(path))?;
             set.push(format!("file = {sum}"));
         }
@@ -291,25 +243,7 @@ impl Fit {
     fn entry(&self) -> FitEntry {
         // The fit that gives the material itself; all others miss some of it on some meshes.
         let objective = self.objective.clone().unwrap_or("exact".into());
-        let mut shapes = toml::Table::new();
-        shapes.extend(self.shapes.map(|count| ("count".into(), (count as i64).into())));
-        shapes.extend(self.stretch.map(|stretch| ("stretch".into(), stretch.into())));
-        FitEntry::new(objective)
-            .with_springs(self.springs.clone())
-            .with("energy", self.energy.clone())
-            .with("shear", self.shear.clone())
-            .with("volume", self.volume.clone())
-            .with("weight", self.weight.clone())
-            .with("higher", self.higher)
-            .with("balance", self.balance)
-            .with("tied", self.tied.then_some(true))
-            .with("nonnegative", self.nonnegative.then_some(true))
-            .with("across", self.across.then_some(true))
-            .with("rest", self.rest.clone())
-            .with("gap", self.gap)
-            .with("force", self.force.clone())
-            .with("shapes", Some(shapes).filter(|shapes| !shapes.is_empty()))
-            .with("law", self.law.clone())
+        self.keys.entry(objective)
     }
 
     /// The groups that are held.
@@ -327,12 +261,9 @@ impl Fit {
     fn of_option(&self, error: Error) -> Error {
         let command = <Fit as Args>::augment_args(clap::Command::new("fit"));
         // Options have the last part of a key's path.
-        let last = error.key().map(|key| match key.rsplit('.').next().unwrap_or(key) {
-            "count" => "shapes".to_string(),
-            "shapes" if self.shapes.is_none() => "stretch".to_string(),
-            name => name.to_string(),
-        });
-        match last {
+        let last = error.key().map(|key| key.rsplit('.').next().unwrap_or(key));
+        let flag = last.and_then(|key| self.keys.flag(key).or(Some(key))).map(String::from);
+        match flag {
             Some(name) if command.get_arguments().any(|argument| argument.get_long() == Some(&name)) => {
                 error.at_key(format!("--{name}"))
             }

@@ -8,6 +8,7 @@ mod derive;
 mod elements;
 mod export;
 mod fit;
+mod fit_flags;
 mod generate;
 mod groups;
 mod interrupt;
