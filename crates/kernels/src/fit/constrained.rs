@@ -1,21 +1,20 @@
 //! The quadratic programme `min ½ kᵀ M k − bᵀ k` under `k ≥ 0`: block principal pivoting, whose result is checked by
-//! the optimality conditions. A conic solver takes over the problems that pivoting does not solve.
+//! the optimality conditions. Singular problems have a solver of their own.
 //!
 //! Theory: page *Least squares* of the book.
 
 use super::dense::at_rounding;
 use super::normal::{Normal, Rank};
+use super::singular::least_nonnegative;
 use super::wide::Wide;
 use crate::scalar::{Real, Scalar};
-use clarabel::algebra::{CscMatrix, MatrixMathMut};
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 
 /// The tolerance of the optimality conditions, as a fraction of the largest |b| in the scaling with a unit diagonal.
 const OPTIMALITY: f64 = 1e-10;
 
 /// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): assume which constants are positive,
 /// solve for them, and exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. If `M` is singular or the exchanges do not
-/// end, the interior-point solver decides.
+/// end, the optimum of least norm in the scaling with a unit diagonal is found.
 pub fn solve_nonnegative(normal: &Normal) -> (Vec<f64>, Rank) {
     normal.solve_determined(solve_scalable)
 }
@@ -99,13 +98,13 @@ pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
     (wide.unscaled(&k), rank)
 }
 
-/// What pivoting has found, or what the interior-point method decides.
+/// What pivoting has found, or the optimum of least norm of singular equations.
 fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f64>, Rank) {
     if let Some(k) = pivoted {
         return (k, Rank::Full);
     }
     let scaled = scaled();
-    match interior_point(&scaled) {
+    match least_nonnegative(&scaled) {
         Some(k) => (k, Rank::Deficient),
         None => (vec![0.0; scaled.size()], Rank::Unsolved),
     }
@@ -172,22 +171,4 @@ fn exchange(positive: Vec<bool>, mut wrong: impl FnMut(&[bool]) -> Option<Vec<us
             Some(_) => {}
         }
     }
-}
-
-/// The same problem solved by Clarabel's interior-point method; `None` if it reports no solution.
-pub fn interior_point(normal: &Normal) -> Option<Vec<f64>> {
-    let m = normal.size();
-    let upper: Vec<(usize, usize)> = (0..m).flat_map(|t| (0..=t).map(move |s| (s, t))).collect();
-    let rows = upper.iter().map(|st| st.0).collect();
-    let columns = upper.iter().map(|st| st.1).collect();
-    let values = upper.iter().map(|&(s, t)| normal.entry(s, t)).collect();
-    let p = CscMatrix::new_from_triplets(m, m, rows, columns, values);
-    let q: Vec<f64> = normal.rhs.iter().map(|b| -b).collect();
-    let mut minus = CscMatrix::identity(m);
-    minus.negate();
-    let settings = DefaultSettings { verbose: false, tol_gap_rel: 1e-12, tol_feas: 1e-12, ..Default::default() };
-    let mut solver = DefaultSolver::new(&p, &q, &minus, &vec![0.0; m], &[NonnegativeConeT(m)], settings).ok()?;
-    solver.solve();
-    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-    solved.then(|| solver.solution.x.iter().map(|k| k.max(0.0)).collect())
 }

@@ -43,6 +43,7 @@ mod residual;
 mod rest;
 mod sampled;
 mod settings;
+mod singular;
 mod sizes;
 mod solver;
 mod spectral;
@@ -54,7 +55,7 @@ mod wide;
 // The tests of the small dense solvers are in the one binary of all tests, which reaches public items alone.
 #[doc(hidden)]
 pub mod solvers {
-    pub use super::constrained::{interior_point, solve_nonnegative};
+    pub use super::constrained::solve_nonnegative;
     pub use super::extremes::Extremes;
     pub use super::jacobi::eigenvectors;
     pub use super::normal::Normal;

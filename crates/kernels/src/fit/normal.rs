@@ -38,7 +38,7 @@ pub enum Rank {
     /// The springs are linearly dependent under this objective. Of all optima the one of least norm is returned, in the
     /// scaling in which `M` has a unit diagonal.
     Deficient,
-    /// The interior-point method that was to decide did not find an optimum: the constants are zero.
+    /// Rounding leaves no constants that satisfy the conditions of optimality: the constants are zero.
     Unsolved,
 }
 
@@ -184,7 +184,17 @@ impl<T: Real> Normal<T> {
     }
 }
 
+/// Eigenvalues up to this count as zero.
+pub fn least_singular(eigenvalues: &DVector<f64>) -> f64 {
+    RANK * f64::epsilon() * eigenvalues.amax()
+}
+
 impl Normal {
+    /// The largest |b|.
+    pub fn largest(&self) -> f64 {
+        self.rhs.iter().fold(0.0, |largest, b| largest.max(b.abs()))
+    }
+
     /// `2 bᵀd − dᵀ M d`: the decrease of `‖r − J d‖²` from `‖r‖²`, with `M = JᵀJ` and `b = Jᵀr`.
     pub fn fall(&self, d: &[f64]) -> f64 {
         let along = |v: &[f64]| v.iter().zip(d).map(|(v, d)| v * d).sum::<f64>();
@@ -227,7 +237,7 @@ impl Normal {
         let (scaled, scale) = self.scaled();
         let m = self.size();
         let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
-        let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
+        let least = least_singular(&eigen.eigenvalues);
         let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));
         for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {
             *c = if value > least { *c / value } else { 0.0 };

@@ -9,25 +9,14 @@
 //!
 //! Theory: page *Sampled fits* of the book.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::SupportedConeT::{self, NonnegativeConeT, ZeroConeT};
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::convex::{Programme, sparse};
 
-/// The accuracy asked of the conic solver, relative to a right-hand side and columns of unit root mean square.
-const TOLERANCE: f64 = 1e-12;
-
-/// The accuracy that is accepted if rounding stops the solver earlier. The solver's own default, 5e-5, would be far too
-/// coarse.
-const REDUCED_TOLERANCE: f64 = 1e-8;
-
-/// Added to the diagonal of the solver's equations. With its default, 1e-8, residuals that much smaller than the
-/// largest are lost and the 1-norm with a gross outlier does not converge; from 1e-10 down, rounding stops the maximum
-/// norm.
-const REGULARIZATION: f64 = 1e-9;
-
-/// The fraction by which an omitted equation may exceed the maximum of those that are used.
+/// The fraction by which an omitted equation may exceed the maximum of those that are used, …
 const EXCESS: f64 = 1e-9;
+
+/// … and by how much a maximum of zero may be exceeded, relative to the root mean square of the right-hand side.
+const ROUNDING: f64 = 1e-12;
 
 /// Columns whose pivot is below this fraction of the largest count as combinations of the others.
 const DEPENDENT: f64 = 1e-8;
@@ -141,10 +130,9 @@ impl Residual {
         let column = |i: usize| self.row(i).iter().copied().enumerate().chain(bounds(i));
         let constraints = sparse(n + 2 * m, (0..m).map(column));
         let limits = [vec![0.0; n], vec![1.0; 2 * m]].concat();
-        let orthogonal = if self.nonnegative { NonnegativeConeT(n) } else { ZeroConeT(n) };
-        let cones = [orthogonal, NonnegativeConeT(2 * m)];
-        let (_, x) = interior_point(&quadratic, &linear, &constraints, &limits, &cones)?;
-        Some(self.unknowns_of(x))
+        let equations = if self.nonnegative { 0 } else { n };
+        let optimum = Programme { quadratic, linear, constraints, limits, equations }.optimum()?;
+        Some(self.unknowns_of(optimum.multipliers))
     }
 
     /// Chebyshev's problem by exchange: each round adds the equations with the largest residuals, at most doubling
@@ -156,7 +144,7 @@ impl Residual {
             let (inside, outside): (Vec<usize>, Vec<usize>) = (0..taken.len()).partition(|&i| taken[i]);
             let x = self.smallest_maximum_of(&inside)?;
             let maximum = inside.iter().fold(0.0f64, |maximum, &i| maximum.max(self.at(i, &x).abs()));
-            let allowed = maximum * (1.0 + EXCESS) + TOLERANCE;
+            let allowed = maximum * (1.0 + EXCESS) + ROUNDING;
             let left_out = outside.into_iter().map(|i| (self.at(i, &x).abs(), i));
             let mut worst: Vec<(f64, usize)> = left_out.filter(|(residual, _)| *residual > allowed).collect();
             if worst.is_empty() {
@@ -192,12 +180,12 @@ impl Residual {
         let rhs: Vec<f64> = equations.iter().map(|&i| self.rhs[i]).collect();
         let limits = [rhs.clone(), rhs.iter().map(|b| -b).collect(), vec![0.0; bounds]].concat();
         let linear = [vec![0.0; n], vec![1.0]].concat();
-        let cones = [NonnegativeConeT(limits.len())];
-        let (x, _) = interior_point(&CscMatrix::zeros((n + 1, n + 1)), &linear, &constraints, &limits, &cones)?;
-        Some(self.unknowns_of(x))
+        let quadratic = sparse(n + 1, (0..=n).map(|_| []));
+        let optimum = Programme { quadratic, linear, constraints, limits, equations: 0 }.optimum()?;
+        Some(self.unknowns_of(optimum.variables))
     }
 
-    /// The unknowns among the variables of the solver, with the small remainders at bounds set to zero.
+    /// The unknowns among the variables or multipliers of the solver, with the small remainders at bounds set to zero.
     fn unknowns_of(&self, mut variables: Vec<f64>) -> Vec<f64> {
         variables.truncate(self.unknowns);
         if self.nonnegative {
@@ -222,42 +210,4 @@ fn basis(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     // A = Q R and Rᵀ = S L, so that A S L⁻ᵀ = Q.
     let (s, l) = r.rows(0, rank).transpose().qr().unpack();
     Some(s * l.transpose().try_inverse()? * (m as f64).sqrt())
-}
-
-/// The matrix with these columns, the entries of each in the order of its rows.
-fn sparse<C: IntoIterator<Item = (usize, f64)>>(height: usize, columns: impl Iterator<Item = C>) -> CscMatrix {
-    let (mut starts, mut rows, mut values) = (vec![0], vec![], vec![]);
-    for column in columns {
-        for (row, value) in column.into_iter().filter(|entry| entry.1 != 0.0) {
-            rows.push(row);
-            values.push(value);
-        }
-        starts.push(rows.len());
-    }
-    CscMatrix::new(height, starts.len() - 1, starts, rows, values)
-}
-
-/// `min ½ vᵀ P v + qᵀ v` under `G v + s = h`, with `s` in the cones: `v` and the multipliers of the constraints.
-fn interior_point(
-    p: &CscMatrix,
-    q: &[f64],
-    g: &CscMatrix,
-    h: &[f64],
-    cones: &[SupportedConeT<f64>],
-) -> Option<(Vec<f64>, Vec<f64>)> {
-    let settings = DefaultSettings {
-        verbose: false,
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
-        reduced_tol_gap_abs: REDUCED_TOLERANCE,
-        reduced_tol_gap_rel: REDUCED_TOLERANCE,
-        reduced_tol_feas: REDUCED_TOLERANCE,
-        static_regularization_constant: REGULARIZATION,
-        ..Default::default()
-    };
-    let mut solver = DefaultSolver::new(p, q, g, h, cones, settings).ok()?;
-    solver.solve();
-    let solved = matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-    solved.then_some((solver.solution.x, solver.solution.z))
 }

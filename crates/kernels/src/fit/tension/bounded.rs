@@ -1,12 +1,9 @@
 //! Least squares under equilibrium with nonnegative constants.
 
 use super::problem::{Optimum, Problem};
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::convex::{Programme, sparse};
 
-/// The accuracy asked of the conic solver, relative to a right-hand side and columns of norm one.
-const TOLERANCE: f64 = 1e-12;
 /// How much the optimum over the nonzero constants may exceed that of the conic solver, as a share of `‖b‖²`.
 const EXCESS: f64 = 1e-9;
 /// A constant below this share of the largest unknown is zero.
@@ -44,7 +41,7 @@ pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Op
     }
 }
 
-/// The optimum to the accuracy of Clarabel's interior-point method, and which of the bounded unknowns are zero there,
+/// The optimum to the accuracy of the interior-point method, and which of the bounded unknowns are zero there,
 /// by the size of their multipliers; None if it reports no solution.
 fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>, Vec<usize>)> {
     let all: Vec<usize> = (0..problem.a.ncols()).collect();
@@ -53,34 +50,20 @@ fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>,
     let seen = &problem.a * &basis;
     let n = basis.ncols();
     // min ½ wᵀ P w + qᵀ w over s = B w ≥ 0.
-    let p = sparse(&seen.tr_mul(&seen).upper_triangle());
-    let q: Vec<f64> = seen.tr_mul(&problem.b).iter().map(|b| -b / size).collect();
-    let bounds = sparse(&-basis.select_rows(bounded));
-    let settings = DefaultSettings {
-        verbose: false,
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
-        ..Default::default()
+    let dense = |matrix: &DMatrix<f64>| {
+        let column = |j: usize| matrix.column(j).iter().copied().enumerate().collect::<Vec<_>>();
+        sparse(matrix.nrows(), (0..matrix.ncols()).map(column))
     };
-    let cones = [NonnegativeConeT(bounded.len())];
-    let mut solver = DefaultSolver::new(&p, &q, &bounds, &vec![0.0; bounded.len()], &cones, settings).ok()?;
-    solver.solve();
-    if !matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-        return None;
+    let optimum = Programme {
+        quadratic: dense(&seen.tr_mul(&seen).upper_triangle()),
+        linear: seen.tr_mul(&problem.b).iter().map(|b| -b / size).collect(),
+        constraints: dense(&-basis.select_rows(bounded)),
+        limits: vec![0.0; bounded.len()],
+        equations: 0,
     }
-    let w = size * DVector::from_column_slice(&solver.solution.x[..n]);
-    let pairs = solver.solution.z.iter().zip(&solver.solution.s);
+    .optimum()?;
+    let w = size * DVector::from_column_slice(&optimum.variables[..n]);
+    let pairs = optimum.multipliers.iter().zip(&optimum.slacks);
     let zero = bounded.iter().zip(pairs).filter(|(_, (z, s))| z > s).map(|(&j, _)| j).collect();
     Some((basis * w, zero))
-}
-
-/// The sparse form of the matrix.
-fn sparse(matrix: &DMatrix<f64>) -> CscMatrix {
-    let (rows, columns) = matrix.shape();
-    let entries: Vec<(usize, usize)> =
-        (0..columns).flat_map(|j| (0..rows).map(move |i| (i, j))).filter(|&ij| matrix[ij] != 0.0).collect();
-    let values = entries.iter().map(|&ij| matrix[ij]).collect();
-    let (i, j) = entries.into_iter().unzip();
-    CscMatrix::new_from_triplets(rows, columns, i, j, values)
 }

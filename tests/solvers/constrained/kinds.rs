@@ -1,0 +1,64 @@
+//! Random problems with bounds, of kinds whose optima are unique or not.
+
+use springfit::fit::solvers::Normal;
+
+/// Numbers between −1 and 1.
+pub fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(2) + 1;
+    move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// How the columns of the least-squares problem `|A k − r|²` are drawn.
+#[derive(Clone, Copy)]
+pub enum Kind {
+    /// More rows than unknowns.
+    Regular,
+    /// Fewer rows than unknowns.
+    Flat,
+    /// Each column twice.
+    Repeated,
+    /// Some columns are sums of two others.
+    Sums,
+}
+
+impl Kind {
+    pub fn of(number: usize) -> Kind {
+        [Kind::Regular, Kind::Flat, Kind::Repeated, Kind::Sums][number % 4]
+    }
+
+    /// The normal equations. Every third problem has a right-hand side that positive constants reach, and the columns of
+    /// every second have sizes from 1e-6 to 1e6.
+    pub fn problem(self, number: usize) -> Normal {
+        let mut random = random(number as u64);
+        let m = 1 + number / 4 % 40;
+        let rows = match self {
+            Kind::Flat => m.div_ceil(2),
+            Kind::Regular | Kind::Repeated | Kind::Sums => m + 2,
+        };
+        let mut columns: Vec<Vec<f64>> = (0..m).map(|_| (0..rows).map(|_| random()).collect()).collect();
+        for s in 0..m {
+            match self {
+                Kind::Repeated if s % 2 == 1 => columns[s] = columns[s - 1].clone(),
+                Kind::Sums if s % 3 == 2 => {
+                    columns[s] = columns[s - 1].iter().zip(&columns[s - 2]).map(|(a, b)| a + b).collect();
+                }
+                _ => {}
+            }
+        }
+        let mut target: Vec<f64> = (0..rows).map(|_| random()).collect();
+        if number % 3 == 0 {
+            let constants: Vec<f64> = (0..m).map(|_| random().max(0.0)).collect();
+            (0..rows).for_each(|i| target[i] = columns.iter().zip(&constants).map(|(column, k)| column[i] * k).sum());
+        }
+        for column in &mut columns {
+            let size = if number / 160 % 2 == 0 { 1.0 } else { 10f64.powf(6.0 * random()) };
+            column.iter_mut().for_each(|a| *a *= size);
+        }
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let gram = (0..m * m).map(|st| dot(&columns[st / m], &columns[st % m])).collect();
+        Normal::new(gram, columns.iter().map(|column| dot(column, &target)).collect())
+    }
+}
