@@ -6,7 +6,7 @@ use super::rows::Rows;
 use super::system::{self, dofs};
 use super::{Entries, Response};
 use crate::material::{Energy, EnergyMap, State};
-use crate::mesh::{CellIndex, Mesh};
+use crate::mesh::Mesh;
 use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
@@ -57,17 +57,6 @@ pub trait Elastic {
 pub struct Body<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
-    /// The energy per volume.
-    pub energy: &'a Energy,
-    /// The state of a plane or rod.
-    pub state: State,
-}
-
-/// The finite element model of a hyperelastic body with a law in each region.
-#[derive(Debug)]
-pub struct RegionsBody<'a> {
-    /// The mesh.
-    pub mesh: &'a Mesh,
     /// The energy per volume and the state of each cell.
     pub laws: &'a EnergyMap,
 }
@@ -75,94 +64,66 @@ pub struct RegionsBody<'a> {
 impl Body<'_> {
     /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
-        inverted(self.mesh, x)
+        let mut inverted = 0;
+        system::each_cell(self.mesh, |_, nodes, geometry| {
+            let local = self.places(x, nodes);
+            inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
+        });
+        inverted
     }
-}
 
-impl RegionsBody<'_> {
-    /// The number of cells with a quadrature point at which `det F ≤ 0`.
-    pub fn inverted(&self, x: &[f64]) -> usize {
-        inverted(self.mesh, x)
-    }
-}
-
-fn inverted(mesh: &Mesh, x: &[f64]) -> usize {
-    let mut inverted = 0;
-    system::each_cell(mesh, |_, nodes, geometry| {
-        let d = geometry.dimension;
-        let mut local = vec![0.0; nodes.len() * d];
-        gather(x, d, nodes, &mut local);
-        inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
-    });
-    inverted
-}
-
-/// Visits the cells until one has no answer.
-fn each_cell(mesh: &Mesh, mut visit: impl FnMut(CellIndex, &[usize], &Geometry) -> Option<()>) -> Option<()> {
-    let mut all = Some(());
-    system::each_cell(mesh, |cell, nodes, geometry| {
-        if all.is_some() {
-            all = visit(cell, nodes, geometry);
-        }
-    });
-    all
-}
-
-/// The response of the cells with their laws.
-fn respond<'l>(mesh: &Mesh, law: impl Fn(CellIndex) -> (&'l Energy, State), x: &[f64]) -> Option<Response> {
-    let d = mesh.dimension;
-    let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
-    each_cell(mesh, |index, nodes, geometry| {
-        let mut local = vec![0.0; nodes.len() * d];
-        gather(x, d, nodes, &mut local);
-        let (energy, state) = law(index);
-        let cell = geometry.respond(energy, state, &local)?;
-        total.energy += cell.energy;
-        for (i, row) in dofs(nodes, d).enumerate() {
-            total.force[row] += cell.force[i];
-            for (j, column) in dofs(nodes, d).enumerate().filter(|(_, column)| row >= *column) {
-                total.tangent.push(Triplet::new(row, column, cell.tangent[(i, j)]));
+    /// Visits the cells until one has no answer, with the positions of their nodes at x.
+    fn each_cell(
+        &self,
+        x: &[f64],
+        mut visit: impl FnMut(&[usize], &Geometry, (&Energy, State), &[f64]) -> Option<()>,
+    ) -> Option<()> {
+        let mut all = Some(());
+        system::each_cell(self.mesh, |cell, nodes, geometry| {
+            if all.is_some() {
+                all = visit(nodes, geometry, self.laws.at(cell.block, cell.cell), &self.places(x, nodes));
             }
-        }
-        Some(())
-    })?;
-    Some(total)
-}
+        });
+        all
+    }
 
-/// The forces of the cells with their laws.
-fn forces<'l>(mesh: &Mesh, law: impl Fn(CellIndex) -> (&'l Energy, State), x: &[f64], force: &mut [f64]) -> bool {
-    let d = mesh.dimension;
-    force.fill(0.0);
-    let all = each_cell(mesh, |index, nodes, geometry| {
-        let (mut local, mut own) = (vec![0.0; nodes.len() * d], vec![0.0; nodes.len() * d]);
+    fn places(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
+        let d = self.mesh.dimension;
+        let mut local = vec![0.0; nodes.len() * d];
         gather(x, d, nodes, &mut local);
-        let (energy, state) = law(index);
-        if !geometry.forces(energy, state, &local, f64::NEG_INFINITY, &mut own) {
-            return None;
-        }
-        dofs(nodes, d).zip(&own).for_each(|(dof, f)| force[dof] += f);
-        Some(())
-    });
-    all.is_some()
+        local
+    }
 }
 
 impl Elastic for Body<'_> {
     fn respond(&self, x: &[f64]) -> Option<Response> {
-        respond(self.mesh, |_| (self.energy, self.state), x)
+        let d = self.mesh.dimension;
+        let mut total = Response { energy: 0.0, force: vec![0.0; x.len()], tangent: Entries::new() };
+        self.each_cell(x, |nodes, geometry, (energy, state), local| {
+            let cell = geometry.respond(energy, state, local)?;
+            total.energy += cell.energy;
+            for (i, row) in dofs(nodes, d).enumerate() {
+                total.force[row] += cell.force[i];
+                for (j, column) in dofs(nodes, d).enumerate().filter(|(_, column)| row >= *column) {
+                    total.tangent.push(Triplet::new(row, column, cell.tangent[(i, j)]));
+                }
+            }
+            Some(())
+        })?;
+        Some(total)
     }
 
     fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
-        forces(self.mesh, |_| (self.energy, self.state), x, force)
-    }
-}
-
-impl Elastic for RegionsBody<'_> {
-    fn respond(&self, x: &[f64]) -> Option<Response> {
-        respond(self.mesh, |cell| self.laws.at(cell.block, cell.cell), x)
-    }
-
-    fn forces(&self, x: &[f64], force: &mut [f64]) -> bool {
-        forces(self.mesh, |cell| self.laws.at(cell.block, cell.cell), x, force)
+        force.fill(0.0);
+        let all = self.each_cell(x, |nodes, geometry, (energy, state), local| {
+            let mut own = vec![0.0; local.len()];
+            if !geometry.forces(energy, state, local, f64::NEG_INFINITY, &mut own) {
+                return None;
+            }
+            dofs(nodes, self.mesh.dimension).zip(&own).for_each(|(dof, f)| force[dof] += f);
+            Some(())
+        });
+        all.is_some()
     }
 }
 

@@ -41,7 +41,7 @@ pub use consistent::ConsistentMasses;
 pub use deformation::Deformation;
 pub(crate) use domains::{EdgeDomain, edge_domains, network_of, parts as domain_parts};
 pub use domains::{edge_springs, has_edge_springs};
-pub use elastic::{Body, Elastic, RegionsBody};
+pub use elastic::{Body, Elastic};
 pub use exact::exact_network;
 pub use fibres::{fibre_springs, fibre_springs_of_regions};
 pub use linear::LinearElastic;

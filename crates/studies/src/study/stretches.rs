@@ -96,8 +96,7 @@ pub fn compare_stretches(
     let recipes: Vec<NamedFit> = exact.into_iter().chain(recipes(element, sampled)).collect();
     let total = recipes.len() + 1;
     progress(Event::stage("finite elements", 0, total));
-    let body =
-        pulled.follow(&Body { mesh: &pulled.mesh, energy: pulled.large.laws.first(), state: material.state() })?;
+    let body = pulled.follow(&Body { mesh: &pulled.mesh, laws: &pulled.large.laws })?;
     let mut fits = Vec::new();
     for (done, named) in recipes.iter().enumerate() {
         progress(Event::stage(&named.name, done + 1, total));

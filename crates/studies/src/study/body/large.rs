@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Network;
-use crate::model::{Elastic, RegionsBody, check_body, displaced};
+use crate::model::{Body, Elastic, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton, System};
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
@@ -59,7 +59,7 @@ impl LargeBody {
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finite elements", done, cases.len()));
             let start = Instant::now();
-            let model = RegionsBody { mesh, laws: &body.laws };
+            let model = Body { mesh, laws: &body.laws };
             let pattern = pattern(&model, mesh, case)?;
             let found = newton.solve_with(&model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
             body.seconds.push(start.elapsed().as_secs_f64());
@@ -107,7 +107,7 @@ impl LargeBody {
             let pattern = pattern(model, mesh, case)?;
             let found = self.newton.solve_with(model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
             let seconds_lem = start.elapsed().as_secs_f64();
-            let followed = Followed::of(&found, &RegionsBody { mesh, laws: &self.laws });
+            let followed = Followed::of(&found, &Body { mesh, laws: &self.laws });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
             let known = case.measured.is_some() || complete(&self.followed[i]);
@@ -146,7 +146,7 @@ fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f
 
 impl Followed {
     /// `body` has the cells that may be inverted.
-    fn of(found: &Equilibrium, body: &RegionsBody) -> Followed {
+    fn of(found: &Equilibrium, body: &Body) -> Followed {
         Followed {
             ending: found.ending,
             load: found.load,

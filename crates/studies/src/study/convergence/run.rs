@@ -8,7 +8,7 @@ use super::reference::same_problem;
 use crate::analysis::metrics::{displacement_error, product, square};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Elastic, Entries, RegionsBody, displaced, finite_elements, masses};
+use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::outcome::{FitOutcome, Outcome};
@@ -240,7 +240,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<(Vec<bool>, Vec<Vec<Step>>)
     let energy = scene.laws(mesh, material)?;
     let stiffness =
         |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };
-    let body = energy.as_ref().map(|laws| RegionsBody { mesh, laws });
+    let body = energy.as_ref().map(|laws| Body { mesh, laws });
     let body_stiffness = stiffness(&|| finite_elements(mesh, material.moduli()));
     let mut steps: Vec<Vec<Step>> = Vec::new();
     let compliance = |quantity: &Quantities, u: &[f64], stiffness: &Entries, large: Option<&dyn Elastic>| {

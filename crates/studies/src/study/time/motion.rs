@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::{
-    BlockStiffness, Deformation, Elastic, LinearElastic, Network, RegionsBody, Support, check_body, finite_elements,
+    BlockStiffness, Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements,
     unheld_bodies,
 };
 use crate::scalar::{norm, scaled_norm};
@@ -65,7 +65,7 @@ pub fn move_models(
         let damping = planned.damping(None, mesh)?;
         let (mut made, states) = match energy {
             Some(laws) => {
-                let body = RegionsBody { mesh, laws };
+                let body = Body { mesh, laws };
                 run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
             None => {
