@@ -14,7 +14,6 @@ mod gradients;
 mod hierarchy;
 mod level;
 mod matrix;
-mod minres;
 mod parallel;
 mod pattern;
 mod prolongator;

@@ -98,14 +98,15 @@ pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
     (wide.unscaled(&k), rank)
 }
 
-/// What pivoting has found, or the optimum of least norm of singular equations.
+/// What pivoting has found, or the optimum of least norm of equations that are singular or whose exchanges did not end.
 fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f64>, Rank) {
     if let Some(k) = pivoted {
         return (k, Rank::Full);
     }
     let scaled = scaled();
+    let is_regular = scaled.clone().solve_regular();
     match least_nonnegative(&scaled) {
-        Some(k) => (k, Rank::Deficient),
+        Some(k) => (k, if is_regular { Rank::Full } else { Rank::Deficient }),
         None => (vec![0.0; scaled.size()], Rank::Unsolved),
     }
 }

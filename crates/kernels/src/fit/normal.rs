@@ -184,11 +184,6 @@ impl<T: Real> Normal<T> {
     }
 }
 
-/// Eigenvalues up to this count as zero.
-pub fn least_singular(eigenvalues: &DVector<f64>) -> f64 {
-    RANK * f64::epsilon() * eigenvalues.amax()
-}
-
 impl Normal {
     /// The largest |b|.
     pub fn largest(&self) -> f64 {
@@ -237,7 +232,7 @@ impl Normal {
         let (scaled, scale) = self.scaled();
         let m = self.size();
         let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
-        let least = least_singular(&eigen.eigenvalues);
+        let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
         let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));
         for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {
             *c = if value > least { *c / value } else { 0.0 };

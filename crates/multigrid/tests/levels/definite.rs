@@ -146,21 +146,3 @@ fn the_proof_is_not_dearer_than_two_solutions() {
     };
     assert!(iterations <= 2 * solution.iterations + 4, "{iterations} and {}", solution.iterations);
 }
-
-/// Shifted past many eigenvalues; the levels are those of the matrix without the shift. What is solved for comes back.
-#[test]
-fn an_indefinite_matrix_is_solved_with_the_levels_of_another() {
-    let body = Body::<3>::new([12, 8, 8], [1.0; 3], Shape::Cube, 0.4, 0.3);
-    let a = shifted(&body.matrix(), 30.0 * least(&body));
-    let levels = body.multigrid(&Settings { dense: 200, ..Settings::default() });
-    let mut random = random(3);
-    let wanted: Vec<f64> = body.is_held.iter().map(|held| if *held { 0.0 } else { random() }).collect();
-    let mut force = vec![[0.0; 3]; a.rows()];
-    a.apply(wanted.as_chunks::<3>().0, &mut force);
-    let found = levels.solve_indefinite(&a, force.as_flattened(), 1e-12, 500, &mut unwatched).unwrap();
-    let difference = found.displacement.iter().zip(&wanted).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-    assert!(difference < 1e-8, "{difference}");
-    assert!(found.iterations < 200);
-    let few = levels.solve_indefinite(&a, force.as_flattened(), 1e-12, 3, &mut unwatched);
-    assert!(matches!(few, Err(Fault::Stalled { iterations: 3, .. })));
-}
