@@ -10,8 +10,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 33] = [
+const LAYERS: [&str; 34] = [
     "shipped",
+    "numerics",
     "multigrid",
     "text",
     "page",
@@ -73,6 +74,7 @@ fn sources() -> Vec<Source> {
     };
     [
         "shipped",
+        "numerics",
         "multigrid",
         "page",
         "foundation",
@@ -95,7 +97,8 @@ fn layer<'a>(source: &'a Source, in_crate: &'a str) -> Option<&'a str> {
     match (in_crate, source.path.as_str()) {
         ("springfit_shipped", _) => Some("shipped"),
         ("springfit_page", _) => Some("page"),
-        ("springfit_multigrid", "lib.rs") => None,
+        ("springfit_multigrid" | "springfit_numerics", "lib.rs") => None,
+        ("springfit_numerics", _) => Some("numerics"),
         ("springfit_multigrid", _) => Some("multigrid"),
         (PROGRAM, _) => Some("program"),
         (_, "lib.rs") => None,

@@ -36,10 +36,6 @@ pub(crate) fn dot<T: Entry, const N: usize>(x: &[[T; N]], y: &[[T; N]]) -> T {
     parts.into_iter().fold(T::ZERO, T::add)
 }
 
-pub(crate) fn norm<const N: usize>(x: &[[f64; N]]) -> f64 {
-    dot(x, x).sqrt()
-}
-
 /// `y ← a y + b x`.
 pub(crate) fn combine<T: Entry, const N: usize>(y: &mut [[T; N]], a: T, x: &[[T; N]], b: T) {
     y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).for_each(|(y, x)| {
