@@ -5,10 +5,9 @@ use super::case::Case;
 use super::cases::{applied_cases, held};
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
-use crate::memory;
 use crate::mesh::{CellBlock, CellIndex, Embedding, Field, Mesh};
 use crate::model::{Lumping, Moments, Support, lumped_masses};
-use crate::solve::{Equations, StaticSolver};
+use crate::solve::{Equations, KnownEquations, StaticSolver};
 use crate::study::fits::{Answers, Finer, RegionFactors};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
@@ -35,15 +34,13 @@ pub struct FineBody {
     /// The squares of the frequencies so far, for each support.
     squares: Mutex<Vec<(Support, Vec<f64>)>>,
     /// The equations under the supports of the last questions.
-    equations: Mutex<Vec<(Support, Equations)>>,
+    equations: KnownEquations,
 }
 
 /// The ratio of the contents of two meshes from which on they are of different bodies. Coarse meshes of curved bodies lack a sixth.
 const OTHER: f64 = 1.4;
 /// The relative difference of the contents from which on it is reported.
 const ALIKE: f64 = 0.02;
-/// Bytes that are to be left when equations are kept for further questions under the same support.
-const ROOM: u64 = 4_000_000_000;
 /// Solutions for each frequency, about.
 const VIBRATING: usize = 8;
 /// Loads that whole-object fits ask for under a support, about: those that they fit, those that choose ρ and those that none has seen.
@@ -83,7 +80,7 @@ impl FineBody {
             cases: OnceLock::new(),
             known: Mutex::default(),
             squares: Mutex::default(),
-            equations: Mutex::default(),
+            equations: KnownEquations::default(),
         }))
     }
 
@@ -119,19 +116,14 @@ impl FineBody {
         Ok(found)
     }
 
+    fn solved(&self, moduli: &CellMap<Hooke>, support: &Support, loads: usize) -> Result<Equations> {
+        let found = Equations::of_body(&self.mesh, moduli, support, (self.solver, loads))?;
+        found.ok_or_else(|| not_definite(&self.mesh))
+    }
+
     /// The equations under a support, for about `loads` loads.
     fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
-        let mut known = self.equations.lock().expect("nothing panics while it holds the equations");
-        if let Some((_, equations)) = known.iter().find(|(own, _)| own == support) {
-            return Ok(equations.clone());
-        }
-        if memory::available().is_some_and(|left| left < ROOM) {
-            known.clear();
-        }
-        let found = Equations::of_body(&self.mesh, &self.material.moduli(), support, (self.solver, loads))?;
-        let equations = found.ok_or_else(|| not_definite(&self.mesh))?;
-        known.push((support.clone(), equations.clone()));
-        Ok(equations)
+        self.equations.under(support, || self.solved(&self.material.moduli(), support, loads))
     }
 }
 
@@ -237,16 +229,12 @@ impl Finer for FineBody {
         let blocks = self.mesh.blocks.iter().enumerate().map(block).collect::<Result<Vec<Vec<Hooke>>>>()?;
         let moduli = CellMap::of_blocks(blocks);
         let cases = self.cases.get().map_or(&[][..], |cases| cases);
-        let mut known: Vec<(&Support, Equations)> = Vec::new();
+        let known = KnownEquations::default();
         let mut found = Vec::new();
         for (done, &load) in loads.iter().enumerate() {
             progress(Event::stage("finer body", done, loads.len()));
             let case = &cases[load];
-            if !known.iter().any(|(support, _)| **support == case.support) {
-                let equations = Equations::of_body(&self.mesh, &moduli, &case.support, (self.solver, loads.len()))?;
-                known.push((&case.support, equations.ok_or_else(|| not_definite(&self.mesh))?));
-            }
-            let (_, equations) = known.iter().find(|(support, _)| **support == case.support).expect("it was added");
+            let equations = known.under(&case.support, || self.solved(&moduli, &case.support, loads.len()))?;
             let (u, residual) = equations.solve(&case.forces)?;
             check_residual(residual, largest_residual(&self.solver), case)?;
             found.push(self.sampling.interpolate(&u));

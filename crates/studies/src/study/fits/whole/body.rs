@@ -11,12 +11,11 @@ use crate::fit::CellFits;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network, Support, unheld_bodies};
-use crate::solve::{Equations, Newton, StaticSolver};
+use crate::solve::{Equations, KnownEquations, Newton, StaticSolver};
 use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Identity, Saved};
 use crate::study::progress::{Event, Progress};
 use crate::whole::{Snapshot, fit_whole};
-use std::sync::Mutex;
 
 /// The body to which the whole-object fits of a scene are fitted.
 pub struct WholeBody<'a> {
@@ -37,7 +36,7 @@ pub struct WholeBody<'a> {
     pub(in crate::study) fine: Option<&'a dyn Finer>,
     pub(super) controls: &'a Controls,
     /// The equations of the finite elements under the supports that were needed so far.
-    known: Mutex<Vec<(Support, Equations)>>,
+    known: KnownEquations,
 }
 
 /// As many loads are as dear as the solutions of a fit under a support, by which the way to solve equations is chosen: each step has some tens
@@ -59,7 +58,7 @@ impl<'a> WholeBody<'a> {
 
     /// Tells it equations of the finite elements that are solved already.
     pub(in crate::study) fn know(&self, solved: impl Iterator<Item = (Support, Equations)>) {
-        self.known.lock().expect("nothing panics while it holds the equations").extend(solved);
+        self.known.keep(solved);
     }
 
     /// The equations of the finite elements under a support; the key of errors is what requires them.
@@ -67,22 +66,18 @@ impl<'a> WholeBody<'a> {
     /// # Errors
     /// A body can move as a rigid body, some motion has no stiffness, or the equations do not fit into memory.
     pub(in crate::study) fn equations(&self, key: &str, support: &Support) -> Result<Equations> {
-        let known = || self.known.lock().expect("nothing panics while it holds the equations");
-        if let Some((_, equations)) = known().iter().find(|(own, _)| own == support) {
-            return Ok(equations.clone());
-        }
-        let expected = match support == self.support {
-            true => "supports in [[fix]] that hold every body, whatever the loads hold",
-            false => "supports that hold every body",
-        };
-        if let Some(body) = unheld_bodies(self.mesh, support).first() {
-            let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
-            return Err(Error::expected(key, expected, found));
-        }
-        let found = Equations::of_body(self.mesh, &self.material.moduli(), support, (self.solver, LOADS))?;
-        let equations = found.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))?;
-        known().push((support.clone(), equations.clone()));
-        Ok(equations)
+        self.known.under(support, || {
+            let expected = match support == self.support {
+                true => "supports in [[fix]] that hold every body, whatever the loads hold",
+                false => "supports that hold every body",
+            };
+            if let Some(body) = unheld_bodies(self.mesh, support).first() {
+                let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
+                return Err(Error::expected(key, expected, found));
+            }
+            let found = Equations::of_body(self.mesh, &self.material.moduli(), support, (self.solver, LOADS))?;
+            found.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))
+        })
     }
 
     /// How equations of networks are solved: by iterations, or with factors.
