@@ -103,12 +103,12 @@ pub use springfit_kernels::{element, fit, material, springs, stiffness};
 pub use springfit_mesh::mesh;
 pub use springfit_studies::study;
 
-#[cfg(feature = "cli")]
-use springfit_foundation::file;
 pub use springfit_foundation::file::{
     Edition, Sum, abandon, check_apart, check_file, check_folder, files_in, finish_edition, write_whole, write_with,
 };
 pub use springfit_foundation::named::{suggestion, unknown};
+#[cfg(feature = "cli")]
+use springfit_foundation::{file, number};
 #[cfg(feature = "cli")]
 use springfit_networks::network;
 

@@ -1,8 +1,8 @@
 //! What `check` found, as text and as JSON.
 
 use super::columns::Heading;
-use super::number::finite;
 use super::result_table::ResultTable;
+use crate::number::finite;
 use crate::study::{Inspection, Mark, Property};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -2,10 +2,10 @@
 
 use super::load_record::LoadRecord;
 use super::material_record::NetworkMaterialRecord;
-use super::number::finite;
+use crate::number::finite;
 use crate::study::{
     FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
-    WholeOutcomeRecord,
+    WholeOutcome,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ pub struct FitRecord {
     /// `unmet` has the assumptions of a published formula that the body violates; it is null with others.
     pub unmet: Option<PublishedOutcomeRecord>,
     /// `whole` has the outcome of a whole-object fit; it is null with others.
-    pub whole: Option<WholeOutcomeRecord>,
+    pub whole: Option<WholeOutcome>,
     /// `sampled` has the outcome of a sampled fit; it is null with others.
     pub sampled: Option<SampledOutcomeRecord>,
     /// `positive` has the outcome of an exact network that was to have no negative springs; it is null with others.
@@ -109,7 +109,7 @@ impl FitRecord {
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
             loads: outcome.loads.iter().map(LoadRecord::from).collect(),
             unmet: outcome.kind.published().map(|published| PublishedOutcomeRecord::of(&published.unmet)),
-            whole: outcome.kind.whole().map(WholeOutcomeRecord::of),
+            whole: outcome.kind.whole().cloned(),
             sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
             positive: outcome.kind.exact().and_then(|exact| exact.positive.as_ref()).map(PositiveRecord::of),
             tension: certificate.and_then(|outcome| outcome.tension.as_ref()).map(TensionRecord::from),

@@ -1,7 +1,7 @@
 //! Whether the linear theory holds for what the finite elements do.
 
-use super::number::finite;
 use crate::model::Deformation;
+use crate::number::finite;
 use crate::study::{BodyLoad, ModelMotion, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

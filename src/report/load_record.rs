@@ -1,6 +1,6 @@
 //! Loads and their answers in `report.json`.
 
-use super::number::finite;
+use crate::number::finite;
 use crate::solve::{Ending, Solved};
 use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
 use schemars::JsonSchema;

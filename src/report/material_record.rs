@@ -1,6 +1,6 @@
 //! What a network is as a material, in `report.json`.
 
-use super::number::finite;
+use crate::number::finite;
 use crate::study::NetworkMaterial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -26,7 +26,6 @@ mod motion;
 mod motion_record;
 mod names;
 mod network;
-mod number;
 mod outline;
 mod outputs;
 pub mod page;

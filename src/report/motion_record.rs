@@ -1,7 +1,7 @@
 //! Motions in `report.json`.
 
-use super::number::finite;
 use crate::dynamics::Integrator;
+use crate::number::finite;
 use crate::study::{DampingRecipe, ModelMotion, MotionEnding, MotionOutcome, Record};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

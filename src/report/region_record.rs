@@ -1,8 +1,8 @@
 //! The materials of a body, region by region.
 
-use super::number::finite;
 use crate::material::{Material, State};
 use crate::mesh::Mesh;
+use crate::number::finite;
 use crate::study::Outcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -6,6 +6,7 @@ use super::frequencies::FrequencyRecord;
 use super::json::Report;
 use super::load_record::LoadRecord;
 use super::motion_record::MotionRecord;
+use crate::number::finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -252,9 +253,9 @@ fn whole(report: &Report) -> ResultTable {
     let mut rows = Vec::new();
     for fit in &report.fits {
         let Some(whole) = &fit.whole else { continue };
-        let fitted = whole.relative_errors_fitted.iter().map(|load| (load, "fit"));
-        for (load, use_) in fitted.chain(whole.relative_errors_validated.iter().map(|load| (load, "validation"))) {
-            let percent = |share: Option<f64>| number(share.map(|share| 100.0 * share), Fixed(2));
+        let fitted = whole.fitted.iter().map(|load| (load, "fit"));
+        for (load, use_) in fitted.chain(whole.judged.iter().map(|load| (load, "validation"))) {
+            let percent = |share: f64| number(finite(share).map(|share| 100.0 * share), Fixed(2));
             rows.push(vec![text(&fit.name), text(&load.load), text(use_), percent(load.before), percent(load.after)]);
         }
     }

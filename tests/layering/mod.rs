@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 34] = [
+const LAYERS: [&str; 35] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -20,6 +20,7 @@ const LAYERS: [&str; 34] = [
     "bound",
     "range",
     "named",
+    "number",
     "quantity",
     "file",
     "memory",

@@ -7,6 +7,7 @@
 //! | [`error`] | the one error type, with kind, file, line and key |
 //! | [`mod@file`] | reading with named errors, writing a file whole or not at all, TOML |
 //! | [`range`], [`bound`], [`memory`] | the limits of quantities, of counts, and of memory |
+//! | [`number`] | numbers in JSON |
 //! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print, and to write in each grammar |
 //! | [`scalar`] | the numbers that kernels compute with: `f64`, SIMD lanes, `f32`, double-double, rationals |
 //! | [`symbolic`] | expressions: parsed, differentiated, evaluated, expanded; exact rational functions |
@@ -18,6 +19,7 @@ pub mod error;
 pub mod file;
 pub mod memory;
 pub mod named;
+pub mod number;
 pub mod quantity;
 pub mod range;
 pub mod scalar;

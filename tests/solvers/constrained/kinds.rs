@@ -3,7 +3,7 @@
 use springfit::fit::solvers::Normal;
 
 /// Numbers between −1 and 1.
-pub fn random(seed: u64) -> impl FnMut() -> f64 {
+fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(2) + 1;
     move || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -30,8 +30,33 @@ impl Kind {
     }
 
     /// The normal equations. Every third problem has a right-hand side that positive constants reach, and the columns of
-    /// every second have sizes from 1e-6 to 1e6.
+    /// half of them have sizes from 1e-6 to 1e6.
     pub fn problem(self, number: usize) -> Normal {
+        let Columns { columns, sizes, target } = self.columns(number);
+        let scaled = |(column, size): (&Vec<f64>, &f64)| column.iter().map(|a| a * size).collect::<Vec<f64>>();
+        let columns: Vec<Vec<f64>> = columns.iter().zip(&sizes).map(scaled).collect();
+        let (m, dot) = (columns.len(), |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>());
+        let gram = (0..m * m).map(|st| dot(&columns[st / m], &columns[st % m])).collect();
+        Normal::new(gram, columns.iter().map(|column| dot(column, &target)).collect())
+    }
+
+    /// The changes of the constants that change nothing, as far as they are known from how the columns are drawn.
+    pub fn flat_motions(self, number: usize) -> Vec<Vec<f64>> {
+        let Columns { columns, sizes, .. } = self.columns(number);
+        let motion = |of: &[(usize, f64)]| {
+            let mut motion = vec![0.0; columns.len()];
+            of.iter().for_each(|&(s, factor)| motion[s] = factor / sizes[s]);
+            motion
+        };
+        let every = |step: usize| (step - 1..columns.len()).step_by(step);
+        match self {
+            Kind::Regular | Kind::Flat => Vec::new(),
+            Kind::Repeated => every(2).map(|s| motion(&[(s - 1, 1.0), (s, -1.0)])).collect(),
+            Kind::Sums => every(3).map(|s| motion(&[(s - 2, 1.0), (s - 1, 1.0), (s, -1.0)])).collect(),
+        }
+    }
+
+    fn columns(self, number: usize) -> Columns {
         let mut random = random(number as u64);
         let m = 1 + number / 4 % 40;
         let rows = match self {
@@ -53,12 +78,15 @@ impl Kind {
             let constants: Vec<f64> = (0..m).map(|_| random().max(0.0)).collect();
             (0..rows).for_each(|i| target[i] = columns.iter().zip(&constants).map(|(column, k)| column[i] * k).sum());
         }
-        for column in &mut columns {
-            let size = if number / 160 % 2 == 0 { 1.0 } else { 10f64.powf(6.0 * random()) };
-            column.iter_mut().for_each(|a| *a *= size);
-        }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let gram = (0..m * m).map(|st| dot(&columns[st / m], &columns[st % m])).collect();
-        Normal::new(gram, columns.iter().map(|column| dot(column, &target)).collect())
+        let size = |_| if number / 160 % 2 == 0 { 1.0 } else { 10f64.powf(6.0 * random()) };
+        let sizes = (0..m).map(size).collect();
+        Columns { columns, sizes, target }
     }
+}
+
+/// A least-squares problem with the columns times their sizes.
+struct Columns {
+    columns: Vec<Vec<f64>>,
+    sizes: Vec<f64>,
+    target: Vec<f64>,
 }

@@ -9,6 +9,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Moments, Support};
 use crate::solve::Equations;
 use nalgebra::{DMatrix, DVector};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The frequencies that a network should have under a support.
 #[derive(Debug, Clone)]
@@ -36,14 +38,14 @@ pub struct MassFit {
 }
 
 /// The root mean square errors `½ ln ω²/ω̄²` with a ρ.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct MassStage {
-    /// The regularization ρ.
+    /// The stage has this regularization ρ.
     pub regularization: f64,
-    /// Of the frequencies that were fitted.
+    /// The frequencies that were fitted have this root mean square error.
     pub trained: f64,
-    /// Of those that choose ρ; `None` without.
+    /// The frequencies that chose ρ have this root mean square error; it is null where none choose.
     pub validated: Option<f64>,
 }
 

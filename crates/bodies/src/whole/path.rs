@@ -10,6 +10,7 @@ use super::linearized::LeastSquares;
 use super::object::Object;
 use super::settings::{DescentMethod, Residual, Validation, Wanted, Weighing, WholeSettings};
 use crate::error::{Error, Result};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The state of a fit at the beginning of a stage. A run that continues from it makes the same steps to the same end.
@@ -28,23 +29,25 @@ pub struct Snapshot {
 }
 
 /// A finished stage: a point of the curve of errors against ρ, and of the L-curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct Stage {
-    /// The regularization ρ.
+    /// The stage has this regularization ρ.
     pub regularization: f64,
-    /// The geometric mean of the relative errors on the validation; `None` without one, or if the network is unstable.
+    /// The relative errors on the loads of the validation, or on each load that was left out, have this geometric mean; with `discrepancy`
+    /// it is the residuals over the noise. It is null without validation, or if the network is not stable.
     pub validated: Option<f64>,
-    /// The root mean square of the relative errors on the loads of the fit; `None` if the network is unstable.
+    /// The relative errors on the loads of the fit have this root mean square; it is null if the network is not stable.
     pub trained: Option<f64>,
-    /// The root mean square of θ.
+    /// The logarithms of the factors on the constants have this root mean square.
     pub change: f64,
-    /// Whether it was rejected because of its range of constants.
+    /// The stage was left out because of the range of its constants.
     pub rejected: bool,
-    /// Whether its search ended by itself, and not at the largest number of steps.
-    #[serde(default)]
+    /// The search ended by itself, and not at `iterations`.
+    #[serde(rename = "finished", alias = "is_finished", default)]
     pub is_finished: bool,
-    /// The objective at its start and after each step, of the residuals that were minimised last.
+    /// The objective has these values at the start of the stage and after each step. With `forces-first` it is that of the displacements,
+    /// and with L-BFGS the list has each lower point.
     #[serde(default)]
     pub objective: Vec<f64>,
 }

@@ -4,13 +4,10 @@
 //! Theory: page *Least squares* of the book.
 
 use super::dense::at_rounding;
-use super::normal::{Normal, Rank};
+use super::normal::{Normal, OPTIMALITY, Rank, slope_tolerance};
 use super::singular::least_nonnegative;
 use super::wide::Wide;
 use crate::scalar::{Real, Scalar};
-
-/// The tolerance of the optimality conditions, as a fraction of the largest |b| in the scaling with a unit diagonal.
-const OPTIMALITY: f64 = 1e-10;
 
 /// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): assume which constants are positive,
 /// solve for them, and exchange those that violate `k ≥ 0` or `Mk − b ≥ 0`. If `M` is singular or the exchanges do not
@@ -61,11 +58,6 @@ pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Opti
     let is_optimal = k.iter().all(|k| k.rounded() >= 0.0)
         && slopes.iter().zip(near).all(|(slope, k)| *k > 0.0 || slope.rounded() >= -tolerance);
     Some(is_optimal.then(|| k.into_iter().zip(&scale).map(|(k, scale)| k * scale).collect()))
-}
-
-/// By how much `M k − b` may be below zero in the scaling with equal diagonal entries, where `largest` is the largest |b|.
-pub fn slope_tolerance(largest: f64) -> f64 {
-    at_rounding::<f64>(OPTIMALITY) * largest
 }
 
 /// Unknowns from which on sums are taken eight terms at a time.

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::dense::{eliminate_row, solve as substitute, tie};
+use super::dense::{at_rounding, eliminate_row, solve as substitute, tie};
 use crate::scalar::{Real, Scalar};
 use crate::springs::Springs;
 use nalgebra::{DMatrix, DVector};
@@ -10,6 +10,14 @@ use nalgebra::{DMatrix, DVector};
 /// A pivot below this many rounding errors of its diagonal entry counts as zero. Elimination leaves errors of about m
 /// roundings. Pivots above this limit are used, and the digits are lost that the condition costs.
 pub(super) const RANK: f64 = 1000.0;
+
+/// The tolerance of the optimality conditions under `k ≥ 0`, as a fraction of the largest |b| in the scaling with a unit diagonal.
+pub(super) const OPTIMALITY: f64 = 1e-10;
+
+/// By how much `M k − b` may be below zero in the scaling with equal diagonal entries, where `largest` is the largest |b|.
+pub fn slope_tolerance(largest: f64) -> f64 {
+    at_rounding::<f64>(OPTIMALITY) * largest
+}
 
 /// The equations of one element or one per lane.
 #[derive(Debug, Clone)]

@@ -6,8 +6,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::constrained::slope_tolerance;
-use super::normal::Normal;
+use super::normal::{Normal, slope_tolerance};
 
 /// The δ of each step, relative to the diagonal. Rounding of the equations moves k along what is flat by about a rounding error over δ, so that
 /// the first step decides it; the last ones reach equations that are nearly singular.

@@ -56,8 +56,8 @@ pub use fits::{
     ModelFrequencies, ModuliSearch, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord,
     PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
     Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task,
-    TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe,
-    WholeRecord, WorseLoad, fit_schema,
+    TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
+    fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};

@@ -11,7 +11,8 @@ mod gradients;
 pub use factors::Factors;
 pub use gradients::{Gradients, Product};
 
-use super::constrained::{Exchanges, slope_tolerance};
+use super::constrained::Exchanges;
+use super::normal::slope_tolerance;
 use crate::scalar::Packed;
 
 /// The residual at which the signs of constants are judged, and that of the result, relative to b.

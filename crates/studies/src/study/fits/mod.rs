@@ -33,5 +33,5 @@ pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRe
 pub use whole::{
     Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, ModelError,
     ModelFrequencies, ModuliSearch, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, SupportPart,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeOutcomeRecord, WholeRecipe, WholeRecord, WorseLoad,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
 };

@@ -99,11 +99,11 @@ impl WholeBody<'_> {
                 ("fitted masses", equations, Masses::from(&found.masses)),
                 ("mass matrix", equations, Masses::from(&matrix)),
             ];
-            let model = |(model, equations, masses): (&'static str, &Equations, Masses)| {
+            let model = |(model, equations, masses): (&str, &Equations, Masses)| {
                 let modes = equations.lowest_modes(masses, d, squares.len()).map_err(at)?;
                 let errors: Vec<f64> = modes.squares.iter().zip(squares).map(|(a, b)| (a / b).sqrt() - 1.0).collect();
                 let rms = |errors: &[f64]| (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-                Ok(ModelFrequencies { model, first: rms(&errors[..count]), next: rms(&errors[count..]) })
+                Ok(ModelFrequencies { model: model.into(), first: rms(&errors[..count]), next: rms(&errors[count..]) })
             };
             let models = models.into_iter().map(model).collect::<Result<_>>()?;
             Ok(SupportFrequencies { support: held.words(), part: *part, models })

@@ -30,4 +30,4 @@ pub use outcome::{
     WorseLoad,
 };
 pub use recipe::{LoadSelection, RESERVED, Sharing, Start, ValidationRecipe, WholeRecipe};
-pub use record::{WholeOutcomeRecord, WholeRecord};
+pub use record::WholeRecord;

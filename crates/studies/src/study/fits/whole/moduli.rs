@@ -1,19 +1,26 @@
 //! The moduli of the body or of its regions that a fit has found.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// Residuals of this multiple of the noise are more than noise.
 const MISFIT: f64 = 1.5;
 
 /// What displacements say of moduli.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FoundModuli {
-    /// The moduli.
+    /// Each entry is the factor on a modulus of the body or of its regions, if these are the unknowns.
+    #[serde(rename = "moduli")]
     pub all: Vec<FoundModulus>,
-    /// The moduli that the displacements hardly see, or not at all: one alone, or several whose combination they do not see.
+    /// These moduli have a 95 % interval that reaches beyond the factor 2: one alone, or several whose combination the displacements do not
+    /// see.
+    #[serde(rename = "hardly_seen")]
     pub weak: Vec<String>,
-    /// How many times as large as the stated noise the residuals are, where it is stated.
+    /// The residuals are this many times as large as the stated noise; it is null where no `sigma` is given.
     pub misfit: Option<f64>,
     /// How the search for them ended.
+    #[serde(skip)]
     pub search: ModuliSearch,
 }
 
@@ -30,16 +37,18 @@ pub enum ModuliSearch {
 }
 
 /// The factor on a modulus.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FoundModulus {
-    /// The modulus and the region, such as `mu of tumour`.
+    /// The modulus is `mu` or `lambda`, with its region, such as `mu of tumour`.
+    #[serde(rename = "modulus")]
     pub name: String,
-    /// The factor on that of the material.
+    /// The modulus of the material is multiplied by this factor.
     pub factor: f64,
-    /// The ends of the 95 % interval of the factor; `None` if the displacements do not determine it.
+    /// The factor is in this interval with 95 %; it is null if the displacements do not determine it, or if an end is beyond all numbers.
     pub interval: Option<[f64; 2]>,
-    /// The standard deviation of its logarithm that the meshes cause, which is in the interval; `None` without a finer body.
+    /// The meshes cause this standard deviation of the logarithm of the factor, which is in the interval; it is null without a finer body.
+    #[serde(rename = "mesh_deviation")]
     pub mesh: Option<f64>,
 }
 

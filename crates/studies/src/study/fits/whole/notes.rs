@@ -42,8 +42,8 @@ impl WholeOutcome {
             }
         };
         let largest = |errors: &[f64]| 100.0 * errors.iter().fold(0.0f64, |a, e| a.max(e.abs()));
-        let [before, after] = [0, 1].map(|i| largest(&self.frequencies[i]));
-        let done = match self.frequencies[0].len() {
+        let [before, after] = [&self.frequencies.before, &self.frequencies.after].map(|errors| largest(errors));
+        let done = match self.frequencies.before.len() {
             0 => done,
             count => format!("{done}, {count} frequencies off by up to {before:.1} -> {after:.1} %"),
         };

@@ -3,89 +3,128 @@
 use super::moduli::FoundModuli;
 use super::recipe::{Start, WholeRecipe};
 use crate::material::{CellMap, Hooke, Moduli};
+use crate::number::{each_or_nan, finite, or_nan};
 use crate::whole::{Errors, MassStage, Stage, Target, Validation, Wanted, WholeFit};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The loads of a whole-object fit, and its result.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct WholeOutcome {
-    /// The names of the loads that were fitted.
+    /// These loads were fitted.
     pub loads: Vec<String>,
-    /// The names of the loads that chose the regularization.
+    /// These loads chose the regularization.
     pub validated: Vec<String>,
-    /// The regularization ρ that was chosen; `None` if the start was best.
+    /// The regularization ρ was chosen; it is null if the start was best.
     pub regularization: Option<f64>,
-    /// The errors on the loads of the fit.
-    pub fitted: Vec<FittedLoad>,
-    /// The errors on the loads that chose the regularization.
-    pub judged: Vec<FittedLoad>,
-    /// The relative errors `ω_i/ω̄_i − 1` of the frequencies that were fitted, before and after.
-    pub frequencies: [Vec<f64>; 2],
-    /// The largest factor by which a constant changed.
+    /// A constant changed by at most this factor.
+    #[serde(rename = "largest_change", deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub change: f64,
-    /// The ratio of the largest to the least constant of the length springs.
+    /// The largest constant of the length springs is this many times the least.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub range: f64,
-    /// Whether a better ρ was rejected because this ratio would have been too large.
+    /// A better ρ was left out because the range would have been too large.
+    #[serde(rename = "limited_by_range")]
     pub limited: bool,
-    /// Whether the ratio is larger than the one that is allowed where ρ is chosen.
-    pub exceeds: bool,
-    /// The stages of the path, one for each ρ.
+    /// Each entry is a stage of the path: the curve of errors against ρ.
     pub curve: Vec<Stage>,
+    /// This number of steps was made.
+    pub steps: usize,
+    /// The fit was ended early.
+    pub cancelled: bool,
+    /// The starting network is stable under every load; otherwise it is returned unchanged.
+    pub stands: bool,
+    /// Each entry has the relative errors on a load of the fit.
+    #[serde(rename = "relative_errors_fitted")]
+    pub fitted: Vec<FittedLoad>,
+    /// Each entry has the relative errors on a load that chose the regularization.
+    #[serde(rename = "relative_errors_validated")]
+    pub judged: Vec<FittedLoad>,
+    /// The moduli of the body or of its regions are here, if these are the unknowns.
+    #[serde(flatten)]
+    pub moduli: FoundModuli,
+    /// Each entry has the errors of a support under loads that were neither fitted nor chose ρ. The list is empty without `[reference]` and
+    /// `supports`, and with measured displacements.
+    pub held_out: Vec<HeldOut>,
+    /// `relative_errors_of_frequencies` has the relative errors of the frequencies before and after.
+    #[serde(rename = "relative_errors_of_frequencies")]
+    pub frequencies: FrequencyErrors,
+    /// `masses` has the fit of the masses; it is null unless the scene asks for `masses`.
+    pub masses: Option<FittedMasses>,
+    /// Whether the ratio is larger than the one that is allowed where ρ is chosen.
+    #[serde(skip)]
+    pub exceeds: bool,
     /// Whether the noise chose ρ.
+    #[serde(skip)]
     pub is_by_noise: bool,
     /// How many times as large as the noise the residuals are, if the noise chose ρ.
+    #[serde(skip)]
     pub excess: Option<f64>,
-    /// With leave-one-out validation the geometric mean of the relative errors after each stage.
-    pub left_out: Vec<f64>,
-    /// The number of steps.
-    pub steps: usize,
-    /// Whether the network is stable under every load at the start; otherwise it is returned unchanged.
-    pub stands: bool,
-    /// Whether the fit was cancelled.
-    pub cancelled: bool,
     /// Whether the fit started from the exact network.
+    #[serde(skip)]
     pub is_exact: bool,
     /// Whether the displacements were measured, so that the moduli of the scene are a guess.
+    #[serde(skip)]
     pub is_measured: bool,
     /// The loads of the fit and of its validation whose displacements are those of finite elements with the moduli of the scene, where
     /// others are measured.
+    #[serde(skip)]
     pub guessed: Vec<String>,
     /// The loads of the scene without measured displacements, where moduli are found from measured ones.
+    #[serde(skip)]
     pub unmeasured: Vec<String>,
-    /// The moduli of the body or of its regions, if these are the unknowns.
-    pub moduli: FoundModuli,
-    /// The errors under loads that were neither fitted nor chose ρ, for each support, if they were computed.
-    pub held_out: Vec<HeldOut>,
-    /// The masses, if they were fitted.
-    pub masses: Option<FittedMasses>,
 }
 
-/// Masses that were fitted to the frequencies of the body, with its mass, centre and second moments.
-#[derive(Debug, Clone, PartialEq)]
+/// The relative errors `ω_i/ω̄_i − 1` of the frequencies.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct FrequencyErrors {
+    /// The frequencies have the relative errors `ω_i/ω̄_i − 1` before the fit.
+    #[serde(deserialize_with = "each_or_nan")]
+    #[schemars(with = "Vec<Option<f64>>")]
+    pub before: Vec<f64>,
+    /// The frequencies have the relative errors `ω_i/ω̄_i − 1` after the fit.
+    #[serde(deserialize_with = "each_or_nan")]
+    #[schemars(with = "Vec<Option<f64>>")]
+    pub after: Vec<f64>,
+}
+
+/// Masses that were fitted to the frequencies of the body, with its mass, centre and second moments. The masses themselves are in the file of
+/// the network.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FittedMasses {
-    /// The masses, `[points]`, kg.
-    pub masses: Vec<f64>,
-    /// The number of frequencies that were fitted under each support.
+    /// This number of frequencies was fitted under each support.
+    #[serde(rename = "frequencies")]
     pub count: usize,
-    /// The regularization ρ that was chosen.
+    /// The regularization ρ was chosen.
     pub regularization: f64,
-    /// The largest error of the second moments on the diagonal, relative to those of the body: none, or that of lumped masses.
+    /// The second moments `Σ m x_k²` about the centre have at most this error, relative to those of the body. It is none, or that of lumped
+    /// masses.
+    #[serde(rename = "second_moment_error")]
     pub second_error: f64,
-    /// The largest factor by which a mass changed.
+    /// A mass changed by at most this factor.
+    #[serde(rename = "largest_change")]
     pub change: f64,
-    /// Their sum, kg.
+    /// The sum of the masses is in kg.
     pub total: f64,
-    /// The share s of lumped masses in the mass matrix `(1 − s) M_c + s diag(m)` that was fitted to the same frequencies.
+    /// Lumped masses have this share s in the mass matrix `(1 − s) M_c + s diag(m)`; M_c is the consistent one.
+    #[serde(rename = "lumped_share", default)]
     pub share: f64,
-    /// The stages of its path.
+    /// Each entry has the errors of the frequencies with one ρ.
     pub curve: Vec<MassStage>,
-    /// The errors of frequencies under each support.
+    /// Each entry has the errors of the frequencies under a support.
     pub supports: Vec<SupportFrequencies>,
+    /// The masses, `[points]`, kg.
+    #[serde(skip)]
+    pub masses: Vec<f64>,
 }
 
 /// What loads and frequencies under a support are for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "PartFlags", into = "PartFlags")]
 pub enum SupportPart {
     /// They are fitted; others may choose ρ.
     Fitted,
@@ -95,17 +134,33 @@ pub enum SupportPart {
     Unseen,
 }
 
+/// A [`SupportPart`] in a report.
+#[derive(Serialize, Deserialize, JsonSchema)]
+struct PartFlags {
+    /// What is under this support was fitted.
+    trained: bool,
+    /// What is under this support chose the regularization without being fitted.
+    #[serde(default)]
+    chooses: bool,
+}
+
+impl From<SupportPart> for PartFlags {
+    fn from(part: SupportPart) -> PartFlags {
+        PartFlags { trained: part == SupportPart::Fitted, chooses: part == SupportPart::Consulted }
+    }
+}
+
+impl From<PartFlags> for SupportPart {
+    fn from(flags: PartFlags) -> SupportPart {
+        match (flags.trained, flags.chooses) {
+            (true, _) => SupportPart::Fitted,
+            (false, true) => SupportPart::Consulted,
+            (false, false) => SupportPart::Unseen,
+        }
+    }
+}
+
 impl SupportPart {
-    /// Whether they are fitted.
-    pub fn is_fitted(self) -> bool {
-        self == SupportPart::Fitted
-    }
-
-    /// Whether they choose ρ without being fitted.
-    pub fn is_consulted(self) -> bool {
-        self == SupportPart::Consulted
-    }
-
     /// For notes, after the support.
     pub(super) fn words(self) -> &'static str {
         match self {
@@ -117,84 +172,96 @@ impl SupportPart {
 }
 
 /// The errors of the frequencies of several models under a support.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct SupportFrequencies {
-    /// The groups that are held, in words.
+    /// These groups are held, in words.
     pub support: String,
-    /// What the first of its frequencies were for.
+    /// The first of the frequencies are for this.
+    #[serde(flatten)]
+    #[schemars(with = "PartFlags")]
     pub part: SupportPart,
-    /// The models.
+    /// The entries are the finite elements of the mesh and the fitted network with lumped masses, and the fitted network with fitted masses
+    /// and with the mass matrix.
     pub models: Vec<ModelFrequencies>,
 }
 
-/// The root mean squares of the errors `ω_i/ω̄_i − 1` of a model.
-#[derive(Debug, Clone, PartialEq)]
+/// The root mean squares of the relative errors `ω_i/ω̄_i − 1` of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct ModelFrequencies {
-    /// The model.
-    pub model: &'static str,
-    /// Of as many first frequencies as were fitted.
+    /// The model is `finite elements`, `fitted`, `fitted masses` or `mass matrix`.
+    pub model: String,
+    /// This is the root mean square of `ω_i/ω̄_i − 1` over as many first frequencies as were fitted.
     pub first: f64,
-    /// Of as many after these, which no fit has seen.
+    /// This is the root mean square of `ω_i/ω̄_i − 1` over as many frequencies after the first, which no fit has seen.
     pub next: f64,
 }
 
 /// The errors of several models under loads made from the mesh that were neither fitted nor chose ρ.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct HeldOut {
-    /// The groups that are held, in words.
+    /// These groups are held, in words.
     pub support: String,
-    /// What loads with this support were for.
+    /// Loads with this support were for this.
+    #[serde(flatten)]
+    #[schemars(with = "PartFlags")]
     pub part: SupportPart,
-    /// The number of loads.
+    /// The support has this number of loads, none of which was fitted or chose ρ.
     pub loads: usize,
-    /// The models.
+    /// The entries are the finite elements of the mesh, its exact networks, the network at the start, and the fitted one.
     pub models: Vec<ModelError>,
-    /// The loads whose errors the fitted network has more than a tenth larger than the finite elements of the mesh.
+    /// Each entry is a load whose error is more than a tenth larger with the fitted network than with the finite elements of the mesh.
+    #[serde(rename = "worse_than_finite_elements", default)]
     pub worse: Vec<WorseLoad>,
-    /// Seconds of the same step of the finer body, if there is one.
+    /// A linear implicit step of the finer body takes this time in s; it is null without one.
+    #[serde(rename = "seconds_per_step_fine")]
     pub seconds_fine: Option<f64>,
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` under a load.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct WorseLoad {
-    /// The name of the load.
+    /// The load has this name.
     pub load: String,
-    /// Of the finite elements of the mesh.
+    /// The finite elements of the mesh have this relative error `‖u − ū‖/‖ū‖`.
     pub finite_elements: f64,
-    /// Of the fitted network.
+    /// The fitted network has this relative error `‖u − ū‖/‖ū‖`.
     pub fitted: f64,
 }
 
-/// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads.
-#[derive(Debug, Clone, PartialEq)]
+/// The relative errors `‖u − ū‖/‖ū‖` of a model over some loads; null if it is not stable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct ModelError {
-    /// The model.
+    /// The model is `finite elements`; `exact`, `exact patches` and `exact edges patches` where the mesh has them; `start`, where the
+    /// moduli of the body are fitted already; or `fitted`.
     pub model: String,
-    /// The median; `None` if the model is not stable.
+    /// The relative errors `‖u − ū‖/‖ū‖` have this median; it is null if the model is not stable.
     pub median: Option<f64>,
-    /// The largest.
+    /// The largest relative error `‖u − ū‖/‖ū‖` is this; it is null if the model is not stable.
     pub worst: Option<f64>,
-    /// The load that has it.
+    /// The largest error is under this load.
     pub worst_load: Option<String>,
-    /// Seconds of a linear implicit step, which is one solution with a factor or levels that are there.
+    /// A linear implicit step takes this time in s: one solution with a factor or levels that are there.
     pub seconds_per_step: Option<f64>,
 }
 
-/// The relative error `‖u_l − ū_l‖/‖ū_l‖` under a load, before and after a whole-object fit.
-#[derive(Debug, Clone, PartialEq)]
+/// The relative error `‖u − ū‖/‖ū‖` under a load, before and after a whole-object fit; null if the network is not stable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FittedLoad {
-    /// The name of the load.
-    pub name: String,
-    /// The error at the start.
+    /// The load has this name.
+    pub load: String,
+    /// The displacements have this relative error before the fit.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub before: f64,
-    /// The error after the fit.
+    /// The displacements have this relative error after the fit.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub after: f64,
 }
 
@@ -204,11 +271,15 @@ impl WholeOutcome {
             let name = targets.iter().map(|target| target.name.clone());
             let before = before.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
             let after = after.loads.iter().copied().chain(std::iter::repeat(f64::NAN));
-            name.zip(before.zip(after)).map(|(name, (before, after))| FittedLoad { name, before, after }).collect()
+            name.zip(before.zip(after)).map(|(load, (before, after))| FittedLoad { load, before, after }).collect()
         };
         let chosen = found.curve.iter().find(|stage| Some(stage.regularization) == found.regularization);
         let is_by_noise = wanted.validation == Validation::Discrepancy;
         let excess = chosen.filter(|_| is_by_noise).and_then(|stage| stage.validated);
+        let [before, after] = found.trained.clone().map(|errors| errors.frequencies);
+        let mut curve = found.curve.clone();
+        // With leave-one-out validation each load has judged the fit of the others.
+        curve.iter_mut().zip(&found.left_out).for_each(|(stage, mean)| stage.validated = finite(*mean));
         WholeOutcome {
             is_by_noise,
             excess,
@@ -217,13 +288,12 @@ impl WholeOutcome {
             regularization: found.regularization,
             fitted: errors(&wanted.trained, &found.trained),
             judged: errors(wanted.validation.loads(), &found.validated),
-            frequencies: found.trained.clone().map(|errors| errors.frequencies),
+            frequencies: FrequencyErrors { before, after },
             change: found.change,
             range: found.range,
             limited: found.limited,
             exceeds: found.exceeds,
-            curve: found.curve.clone(),
-            left_out: found.left_out.clone(),
+            curve,
             steps: found.steps,
             stands: found.stands,
             cancelled: found.cancelled,

@@ -156,7 +156,7 @@ impl WholeBody<'_> {
             ("validate_supports", &recipe.validation_supports, SupportPart::Consulted),
             ("other_supports", &recipe.other_supports, SupportPart::Unseen),
         ] {
-            if groups.is_empty() && !part.is_fitted() {
+            if groups.is_empty() && part != SupportPart::Fitted {
                 continue;
             }
             for held in self.supports(key, groups)? {

@@ -1,0 +1,25 @@
+//! Numbers in JSON, which has neither infinities nor NaN: null stands for them.
+
+use serde::{Deserialize, Deserializer};
+
+/// The number where it is finite.
+pub fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
+/// Reads a number that may be null, which becomes NaN. Serde writes NaN as null.
+///
+/// # Errors
+/// It is neither a number nor null.
+pub fn or_nan<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(source)?.unwrap_or(f64::NAN))
+}
+
+/// Reads a list of numbers that may be null, as [`or_nan`] reads one.
+///
+/// # Errors
+/// An entry is neither a number nor null.
+pub fn each_or_nan<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
+    let all: Vec<Option<f64>> = Deserialize::deserialize(source)?;
+    Ok(all.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+}
