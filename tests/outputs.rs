@@ -56,7 +56,7 @@ fn files_have_the_masses_with_which_the_run_computes() {
         let system = springfit::solve::System::new(&entries, support).unwrap();
         let factor = system.cholesky().unwrap().unwrap();
         let modes = springfit::solve::lowest_modes(&system, &factor, file.masses().unwrap(), d, 1).unwrap();
-        let found = outcome.frequencies[1].found.as_ref().unwrap()[0];
+        let found = outcome.frequencies[1].frequencies.as_ref().unwrap()[0];
         assert!((modes.frequencies()[0] / found - 1.0).abs() < 1e-9, "{element}");
     }
 }

@@ -1,12 +1,11 @@
 //! Fits in `report.json`.
 
 use super::load_record::LoadRecord;
-use super::material_record::NetworkMaterialRecord;
+use crate::fit::Spread;
+use crate::fit::published::Unmet;
 use crate::number::finite;
-use crate::study::{
-    FitOutcome, KindRecord, PositiveRecord, PublishedOutcomeRecord, SampledOutcomeRecord, SpreadRecord, TensionRecord,
-    WholeOutcome,
-};
+use crate::positive::PositiveOutcome;
+use crate::study::{FitOutcome, KindRecord, NetworkMaterial, SampledOutcome, TensionOutcome, WholeOutcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -32,9 +31,9 @@ pub struct FitRecord {
     /// The sum of the springs of the cells into the network took this time in s.
     pub seconds_assembly: f64,
     /// The elements have these errors `‖R − K‖/‖R‖` in the Frobenius norm; they are null for whole-object fits.
-    pub relative_frobenius: SpreadRecord,
+    pub relative_frobenius: Spread,
     /// The elements have these errors `‖R − K‖/‖R‖` in the induced 2-norm; they are null for whole-object fits.
-    pub relative_spectral: SpreadRecord,
+    pub relative_spectral: Spread,
     /// This number of springs has a constant below zero.
     pub negative_springs: usize,
     /// This number of elements has springs that are linearly dependent; the optimum of least norm is used.
@@ -57,7 +56,7 @@ pub struct FitRecord {
     /// is no bound.
     pub energy_error_bound: Option<f64>,
     /// `as_material` has what the network is as a material, at rest.
-    pub as_material: NetworkMaterialRecord,
+    pub as_material: NetworkMaterial,
     /// The whole network has this Young's modulus in Pa, if the scene asks for `moduli`. In plane strain it is that of the solid.
     pub effective_young: Option<f64>,
     /// The whole network has this Poisson's ratio, if the scene asks for `moduli`. In plane strain it is that of the solid.
@@ -67,15 +66,15 @@ pub struct FitRecord {
     /// Each entry has the errors under a load.
     pub loads: Vec<LoadRecord>,
     /// `unmet` has the assumptions of a published formula that the body violates; it is null with others.
-    pub unmet: Option<PublishedOutcomeRecord>,
+    pub unmet: Option<Unmet>,
     /// `whole` has the outcome of a whole-object fit; it is null with others.
     pub whole: Option<WholeOutcome>,
     /// `sampled` has the outcome of a sampled fit; it is null with others.
-    pub sampled: Option<SampledOutcomeRecord>,
+    pub sampled: Option<SampledOutcome>,
     /// `positive` has the outcome of an exact network that was to have no negative springs; it is null with others.
-    pub positive: Option<PositiveRecord>,
+    pub positive: Option<PositiveOutcome>,
     /// `tension` has the outcome of a fit with rest measures of its own; it is null with others.
-    pub tension: Option<TensionRecord>,
+    pub tension: Option<TensionOutcome>,
 }
 
 impl FitRecord {
@@ -92,8 +91,8 @@ impl FitRecord {
             seconds: outcome.seconds,
             seconds_per_element: outcome.seconds / elements.max(1) as f64,
             seconds_assembly: outcome.seconds_assembly,
-            relative_frobenius: outcome.frobenius().into(),
-            relative_spectral: outcome.spectral().into(),
+            relative_frobenius: outcome.frobenius().unwrap_or(Spread::UNKNOWN),
+            relative_spectral: outcome.spectral().unwrap_or(Spread::UNKNOWN),
             negative_springs: outcome.network.negative(),
             undetermined_elements: outcome.deficient,
             energy_ratio: outcome.stability.as_ref().map(|stability| stability.energy_ratio.map(finite)),
@@ -103,16 +102,16 @@ impl FitRecord {
             ambiguous_elements: certificate.map_or(0, |certificate| certificate.ambiguous),
             unreached_elements: outcome.unreached,
             energy_error_bound: certificate.and_then(|certificate| certificate.energy_error),
-            as_material: NetworkMaterialRecord::of(&outcome.as_material),
+            as_material: outcome.as_material.clone(),
             effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness?)),
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
             loads: outcome.loads.iter().map(LoadRecord::from).collect(),
-            unmet: outcome.kind.published().map(|published| PublishedOutcomeRecord::of(&published.unmet)),
+            unmet: outcome.kind.published().map(|published| published.unmet),
             whole: outcome.kind.whole().cloned(),
-            sampled: outcome.kind.sampled().map(SampledOutcomeRecord::of),
-            positive: outcome.kind.exact().and_then(|exact| exact.positive.as_ref()).map(PositiveRecord::of),
-            tension: certificate.and_then(|outcome| outcome.tension.as_ref()).map(TensionRecord::from),
+            sampled: outcome.kind.sampled().cloned(),
+            positive: outcome.kind.exact().and_then(|exact| exact.positive),
+            tension: certificate.and_then(|outcome| outcome.tension),
         }
     }
 }

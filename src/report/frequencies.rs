@@ -2,25 +2,23 @@
 
 use super::columns::{Heading, aligned};
 use crate::study::{FrequencyOutcome, Outcome};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// One row per model, a network's frequencies with their distance from those of the finite elements; empty where none were asked for.
 pub(super) fn frequency_table(outcome: &Outcome) -> String {
-    let known = || outcome.frequencies.iter().filter_map(|model| model.found.as_ref().ok());
+    let known = || outcome.frequencies.iter().filter_map(|model| model.frequencies.as_ref());
     let Some(count) = known().map(Vec::len).max() else { return String::new() };
-    let finite = outcome.frequencies[0].found.as_ref().ok();
+    let finite = outcome.frequencies[0].frequencies.as_ref();
     let mut header = vec![Heading::words("frequencies")];
     header.extend((1..=count).map(|i| Heading::numbers(format!("{i}\nHz (%)"))));
     let row = |(place, model): (usize, &FrequencyOutcome)| {
         let mut row = vec![model.name.clone()];
-        match &model.found {
-            Ok(found) => row.extend(found.iter().enumerate().map(|(i, own)| {
+        match &model.frequencies {
+            Some(found) => row.extend(found.iter().enumerate().map(|(i, own)| {
                 let off = |body: &Vec<f64>| format!("({:+.1})", 100.0 * (own / body[i] - 1.0));
                 let off = finite.filter(|_| place > 0).map_or(String::new(), off);
                 format!("{own:.3} {off:>7}")
             })),
-            Err(_) => row.extend(std::iter::repeat_n("-".to_string(), count)),
+            None => row.extend(std::iter::repeat_n("-".to_string(), count)),
         }
         row
     };
@@ -38,34 +36,10 @@ fn rigid(outcome: &Outcome) -> String {
 
 pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
     let note = |model: &FrequencyOutcome| {
-        model.found.as_ref().err().map(|why| format!("{}: no natural frequencies: {why}", model.name))
+        model.reason.as_ref().map(|why| format!("{}: no natural frequencies: {why}", model.name))
     };
     let has_finer = outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.is_of_finer));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
     let compared = (has_finer && outcome.frequencies.len() > 1).then(|| words.to_string());
     outcome.frequencies.iter().filter_map(note).chain(compared).collect()
-}
-
-/// The natural frequencies of a model in `report.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FrequencyRecord {
-    /// The model is the fit of this name, or `finite elements`.
-    pub name: String,
-    /// The natural frequencies are in Hz, ascending.
-    pub frequencies: Option<Vec<f64>>,
-    /// This number of rigid motions is left out.
-    pub rigid_motions: usize,
-    /// A sentence says why there are no frequencies; it is null if there are.
-    pub reason: Option<String>,
-}
-
-impl From<&FrequencyOutcome> for FrequencyRecord {
-    fn from(model: &FrequencyOutcome) -> FrequencyRecord {
-        FrequencyRecord {
-            name: model.name.clone(),
-            frequencies: model.found.as_ref().ok().cloned(),
-            rigid_motions: model.rigid,
-            reason: model.found.as_ref().err().cloned(),
-        }
-    }
 }

@@ -2,15 +2,14 @@
 
 use super::agreement::{Agreement, SAME, agreements};
 use super::fit_record::FitRecord;
-use super::frequencies::FrequencyRecord;
 use super::linear_theory::DeformationRecord;
-use super::load_record::{FollowedRecord, MeasuredRecord, ReadingRecord};
+use super::load_record::MeasuredRecord;
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::region_record::RegionRecord;
 use super::table::notes;
 use crate::mesh::Mesh;
 use crate::number::finite;
-use crate::study::{BodyLoad, GaugeResult, Outcome, extent};
+use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, Outcome, Reading, extent};
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +52,7 @@ pub struct Report {
     /// The material's law has this title.
     pub law: Option<String>,
     /// Each entry says how far the finite elements followed a load; the list is empty at small deformation.
-    pub loads_followed: Vec<FollowedRecord>,
+    pub loads_followed: Vec<Followed>,
     /// Each entry says how far linear finite elements are deformed under a load.
     pub deformations: Vec<DeformationRecord>,
     /// The scene did not ask for these stages; each entry has the reason.
@@ -61,11 +60,11 @@ pub struct Report {
     /// Each entry is a load under which displacements were measured.
     pub measured: Vec<MeasuredRecord>,
     /// Each entry has what the tension test of the finite elements gives under a load; the list is empty without `[gauge]`.
-    pub gauge: Vec<Option<ReadingRecord>>,
+    pub gauge: Vec<Option<Reading>>,
     /// Each entry says whether whole-object fits that differ in their start alone agree.
     pub starts: Vec<AgreementRecord>,
     /// Each entry has the lowest natural frequencies of a model.
-    pub frequencies: Vec<FrequencyRecord>,
+    pub frequencies: Vec<FrequencyOutcome>,
     /// `motion_options` says how motions were computed; it is null without `[motion]`.
     pub motion_options: Option<MotionOptionsRecord>,
     /// Each entry is the motion of a model.
@@ -162,13 +161,13 @@ impl Report {
             poisson: same(|region| region.poisson),
             materials,
             law: outcome.law.clone(),
-            loads_followed: outcome.loads.iter().filter_map(|load| Some(load.followed.as_ref()?.into())).collect(),
+            loads_followed: outcome.loads.iter().filter_map(|load| load.followed).collect(),
             deformations: DeformationRecord::all(outcome),
             left_out: outcome.left_out.clone(),
             measured: outcome.loads.iter().filter_map(MeasuredRecord::of).collect(),
-            gauge: outcome.loads.iter().filter_map(gauge).map(|reading| reading.map(ReadingRecord::from)).collect(),
+            gauge: outcome.loads.iter().filter_map(gauge).collect(),
             starts: agreements(outcome).iter().map(AgreementRecord::from).collect(),
-            frequencies: outcome.frequencies.iter().map(FrequencyRecord::from).collect(),
+            frequencies: outcome.frequencies.clone(),
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),

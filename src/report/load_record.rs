@@ -1,19 +1,10 @@
 //! Loads and their answers in `report.json`.
 
 use crate::number::finite;
-use crate::solve::{Ending, Solved};
+use crate::solve::Solved;
 use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// Young's modulus, Pa, and Poisson's ratio as a gauge measures them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ReadingRecord {
-    /// Young's modulus is in Pa, as the tension test measures it.
-    pub young: f64,
-    /// Poisson's ratio is that which the tension test measures.
-    pub poisson: f64,
-}
 
 /// A load under which displacements were measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,25 +17,6 @@ pub struct MeasuredRecord {
     pub fem_e_rms: Option<f64>,
     /// The finite elements have this largest distance from the measured displacements, percent of the largest.
     pub fem_e_max: Option<f64>,
-}
-
-/// How far an equilibrium was followed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct FollowedRecord {
-    /// The whole load was reached.
-    pub converged: bool,
-    /// This share of the load was reached.
-    pub load: Option<f64>,
-    /// The residual is relative to the forces that act.
-    pub residual: Option<f64>,
-    /// All steps took this number of Newton's iterations.
-    pub iterations: usize,
-    /// This number of iterations had a tangent that was shifted.
-    pub shifted: usize,
-    /// The forces balance to their rounding only, which is more than the tolerance.
-    pub rounded: bool,
-    /// This number of elements is turned inside out at the end.
-    pub inverted_elements: usize,
 }
 
 /// The answer of a network to a load.
@@ -66,46 +38,13 @@ pub struct LoadRecord {
     /// The network took this time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_lem: f64,
     /// `solver_fem` says how the equations of the finite elements were solved; it is null at large deformation.
-    pub solver_fem: Option<SolvedRecord>,
+    pub solver_fem: Option<Solved>,
     /// `solver_lem` says how the equations of the network were solved; it is null at large deformation or without an answer.
-    pub solver_lem: Option<SolvedRecord>,
+    pub solver_lem: Option<Solved>,
     /// `followed` says how far the network followed the load at large deformation; it is null at small deformation.
-    pub followed: Option<FollowedRecord>,
+    pub followed: Option<Followed>,
     /// `gauge` has what the tension test of the network gives; it is null without `[gauge]`.
-    pub gauge: Option<ReadingRecord>,
-}
-
-/// How linear equations were solved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SolvedRecord {
-    /// The equations were solved by `cholesky`, `lu` or `multigrid`.
-    pub method: String,
-    /// This number of displacements is not held.
-    pub unknowns: usize,
-    /// Conjugate gradients took this number of iterations; it is null with a factor.
-    pub iterations: Option<usize>,
-    /// The share `‖f − K u‖/‖f‖` of the forces is left.
-    pub residual: Option<f64>,
-    /// The text has nodes and unknowns of each on all levels of the multigrid, the finest first; it is null with a factor.
-    pub levels: Option<String>,
-}
-
-impl From<&Solved> for SolvedRecord {
-    fn from(solved: &Solved) -> SolvedRecord {
-        SolvedRecord {
-            method: solved.method.into(),
-            unknowns: solved.unknowns,
-            iterations: solved.iterations,
-            residual: finite(solved.residual),
-            levels: solved.levels.clone(),
-        }
-    }
-}
-
-impl From<Reading> for ReadingRecord {
-    fn from(reading: Reading) -> ReadingRecord {
-        ReadingRecord { young: reading.young, poisson: reading.poisson }
-    }
+    pub gauge: Option<Reading>,
 }
 
 impl MeasuredRecord {
@@ -121,20 +60,6 @@ impl MeasuredRecord {
     }
 }
 
-impl From<&Followed> for FollowedRecord {
-    fn from(followed: &Followed) -> FollowedRecord {
-        FollowedRecord {
-            converged: followed.ending == Ending::Converged,
-            load: finite(followed.load),
-            residual: finite(followed.residual),
-            iterations: followed.iterations,
-            shifted: followed.shifted,
-            rounded: followed.is_rounded,
-            inverted_elements: followed.inverted,
-        }
-    }
-}
-
 impl From<&LoadOutcome> for LoadRecord {
     fn from(load: &LoadOutcome) -> LoadRecord {
         LoadRecord {
@@ -145,10 +70,10 @@ impl From<&LoadOutcome> for LoadRecord {
             e_energy: load.work_error.and_then(finite),
             seconds_fem: load.seconds_fem,
             seconds_lem: load.seconds_lem,
-            solver_fem: load.solved_fem.as_ref().map(SolvedRecord::from),
-            solver_lem: load.solved_lem.as_ref().map(SolvedRecord::from),
-            followed: load.followed.as_ref().map(FollowedRecord::from),
-            gauge: load.gauge.map(ReadingRecord::from),
+            solver_fem: load.solved_fem.clone(),
+            solver_lem: load.solved_lem.clone(),
+            followed: load.followed,
+            gauge: load.gauge,
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use super::columns::Heading;
 use super::fit_record::FitRecord;
-use super::frequencies::FrequencyRecord;
 use super::json::Report;
 use super::load_record::LoadRecord;
 use super::motion_record::MotionRecord;
 use crate::number::finite;
+use crate::study::FrequencyOutcome;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -138,7 +138,7 @@ fn fits(report: &Report) -> ResultTable {
         numbers("all", "ms"),
     ];
     let row = |fit: &FitRecord| {
-        let share = |value| number(value, Fixed(4));
+        let share = |value| number(finite(value), Fixed(4));
         vec![
             text(&fit.name),
             text(&fit.status),
@@ -198,9 +198,9 @@ fn materials(report: &Report) -> ResultTable {
             text(&fit.name),
             number(m.young, Significant(5)),
             number(m.poisson, Fixed(3)),
-            percent(m.tensor_distance),
-            percent(m.mean_tensor_distance),
-            percent(m.largest_tensor_distance),
+            percent(finite(m.distance)),
+            percent(finite(m.mean_distance)),
+            percent(finite(m.largest_distance)),
             number(fit.effective_young, Significant(5)),
             number(fit.effective_poisson, Fixed(3)),
             number(fit.zener, Fixed(3)),
@@ -240,7 +240,7 @@ fn times(report: &Report) -> ResultTable {
             text(solver.map_or(if followed.is_some() { "Newton" } else { "–" }, |solver| &solver.method)),
             known(solver.map(|solver| solver.unknowns)),
             known(solver.and_then(|solver| solver.iterations).or(followed.map(|followed| followed.iterations))),
-            number(solver.and_then(|s| s.residual).or(followed.and_then(|f| f.residual)), Significant(2)),
+            number(solver.map(|s| s.residual).or(followed.map(|f| f.residual)).and_then(finite), Significant(2)),
         ]
     };
     let rows = report.fits.iter().flat_map(|fit| fit.loads.iter().map(move |load| row(fit, load))).collect();
@@ -263,10 +263,10 @@ fn whole(report: &Report) -> ResultTable {
 }
 
 fn frequencies(report: &Report) -> ResultTable {
-    let known = |model: &FrequencyRecord| model.frequencies.clone().unwrap_or_default();
+    let known = |model: &FrequencyOutcome| model.frequencies.clone().unwrap_or_default();
     let most = report.frequencies.iter().map(|model| known(model).len()).max().unwrap_or(0);
     let columns = std::iter::once(words("model")).chain((1..=most).map(|i| numbers(format!("{i}"), "Hz"))).collect();
-    let row = |model: &FrequencyRecord| {
+    let row = |model: &FrequencyOutcome| {
         let values = known(model);
         let found = (0..most).map(|i| number(values.get(i).copied(), Significant(4)));
         std::iter::once(text(&model.name)).chain(found).collect()

@@ -187,10 +187,8 @@ fn around(moduli: &[f64], at: impl Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
 
 /// `None` if the tensor is not known, or some strain has no modulus.
 fn curve(fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<ModulusCurve> {
-    let rows: Option<Vec<f64>> = fit.as_material.stiffness.iter().flatten().copied().collect();
-    let size = fit.as_material.stiffness.len();
-    let compliance =
-        DMatrix::from_row_slice(size, size, &rows.filter(|c| c.len() == size * size)?).cholesky()?.inverse();
+    let stiffness = Some(&fit.as_material.stiffness).filter(|c| c.is_square() && c.iter().all(|c| c.is_finite()))?;
+    let (size, compliance) = (stiffness.nrows(), stiffness.clone().cholesky()?.inverse());
     let moduli = |plane: &[usize; 2]| -> Vec<f64> {
         let direction = |i: usize| {
             let angle = std::f64::consts::TAU * i as f64 / DIRECTIONS as f64;

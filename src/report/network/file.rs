@@ -10,6 +10,7 @@ use crate::network::{
     NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord,
     TimedForceRecord, TimedPullRecord,
 };
+use crate::number::finite;
 use crate::report::fit_record::FitRecord;
 use crate::report::load_record::LoadRecord;
 use crate::report::table::notes;
@@ -244,8 +245,8 @@ fn summary(fit: &FitRecord) -> FitSummaryRecord {
         settings,
         status: fit.status.clone(),
         negative_springs: fit.negative_springs,
-        relative_frobenius: frobenius.mean.zip(frobenius.max).map(|(mean, max)| [mean, max]),
-        relative_tensor: fit.as_material.tensor_distance,
+        relative_frobenius: finite(frobenius.mean).zip(finite(frobenius.max)).map(|(mean, max)| [mean, max]),
+        relative_tensor: finite(fit.as_material.distance),
         loads: fit.loads.iter().map(load_errors).collect(),
     }
 }

@@ -5,9 +5,9 @@ use super::{markdown, outcome, scene, signed};
 pub fn frequencies() -> String {
     let outcome = outcome(&scene("cube_hex_motion"));
     let motion = outcome.motion.unwrap();
-    let body = outcome.frequencies[0].found.clone().unwrap();
+    let body = outcome.frequencies[0].frequencies.clone().unwrap();
     let row = |(own, moved): (&springfit::study::FrequencyOutcome, &springfit::study::ModelMotion)| {
-        let found = own.found.clone().unwrap();
+        let found = own.frequencies.clone().unwrap();
         let off = found.iter().zip(&body).map(|(own, body)| match own == body {
             true => format!("{own:.2} Hz"),
             false => format!("{} %", signed(100.0 * (own / body - 1.0), 1)),

@@ -5,19 +5,22 @@ use super::network::Network;
 use crate::fit::Spread;
 use crate::springs::{distance, norm};
 use crate::stiffness::gather;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How far the rest lengths of a network differ from the lengths in the mesh, and how well the springs are in
 /// equilibrium there.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct RestTension {
-    /// `|L₀/ℓ − 1|` of the springs between two points.
+    /// Rest lengths deviate by the shares `|rest length / length in the mesh − 1|`, for springs between two points.
     pub rest_lengths: Spread,
-    /// The number of springs between two points with `L₀ < 0`.
+    /// This number of springs has a rest length below zero.
+    #[serde(rename = "negative_rest_lengths")]
     pub negative: usize,
-    /// The number of springs whose force is constant up to rounding, so that they have no rest measure.
+    /// This number of springs has a force that does not depend on what they measure, up to rounding.
+    #[serde(rename = "constant_forces")]
     pub steady: usize,
-    /// The largest resultant force on a point, relative to the largest force of a spring on one of its points; 0 if no
-    /// spring pulls.
+    /// The largest force on a node at rest is this share of the largest force of a spring; it is 0 if no spring pulls.
     pub unbalanced: f64,
 }
 

@@ -1,7 +1,11 @@
 //! The difference between a network without negative springs and the exact network.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// What was changed to remove negative springs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Route {
     /// Nothing: there are none.
     #[default]
@@ -22,27 +26,33 @@ crate::named!(Route {
 });
 
 /// The difference between the network and the exact one. Errors of energies are relative to the exact ones.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct PositiveOutcome {
-    /// What was changed.
+    /// The network is `unchanged`, or `springs`, springs `across` sides or `tensions` were changed.
+    #[schemars(with = "String")]
     pub route: Route,
-    /// The number of springs of the exact network with a negative constant.
+    /// The exact network has this number of negative springs.
+    #[serde(rename = "negative_springs")]
     pub negative: usize,
-    /// The number of springs of the exact network that were removed.
+    /// This number of springs of the exact network was removed.
+    #[serde(rename = "dropped_springs")]
     pub dropped: usize,
-    /// The number of springs across the sides of cells.
+    /// This number of springs was added across the sides of cells.
+    #[serde(rename = "springs_across")]
     pub across: usize,
-    /// The least and the largest tension of a spring on content, relative to the mean.
+    /// The tension of a spring on content is between these multiples of the exact one.
     pub tensions: [f64; 2],
-    /// The largest error of the energy of an affine displacement.
+    /// The energy of a homogeneous strain has at most this relative error.
+    #[serde(rename = "affine_energy_error")]
     pub affine: f64,
-    /// The number of lowest modes of the exact network, without supports, whose energies were to be kept.
+    /// The energies of this number of lowest modes, without supports, were to be kept.
     pub modes: usize,
-    /// The least and the largest error of their energies.
+    /// The energy of a mode has a relative error between these two.
+    #[serde(rename = "mode_energy_errors")]
     pub mode_errors: [f64; 2],
-    /// The largest force on a point at rest, relative to the largest force of a spring.
+    /// The largest force on a point at rest is this share of the largest force of a spring.
     pub rest_force: f64,
-    /// The iterations of the solver.
+    /// The quadratic programme took this number of iterations.
     pub iterations: u32,
 }

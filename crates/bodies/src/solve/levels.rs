@@ -7,6 +7,9 @@ use super::stability::{Stability, Standing, standing};
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory::available;
 use crate::model::{BlockStiffness, Support};
+use crate::number::or_nan;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use springfit_multigrid::{
     Definiteness, End, Event, Extreme, Fault, Multigrid, Settings, Solution, WIDTH, Watch, sizes,
 };
@@ -44,18 +47,20 @@ enum Hierarchy {
     Space(Multigrid<3, 6>),
 }
 
-/// How equations were solved.
-#[derive(Debug, Clone, PartialEq)]
+/// How linear equations were solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Solved {
-    /// `cholesky` or `lu`; `multigrid`.
-    pub method: &'static str,
-    /// Free degrees of freedom.
+    /// The equations were solved by `cholesky`, `lu` or `multigrid`.
+    pub method: String,
+    /// This number of displacements is not held.
     pub unknowns: usize,
-    /// None with a factor.
+    /// Conjugate gradients took this number of iterations; it is null with a factor.
     pub iterations: Option<usize>,
-    /// `‖f − K u‖/‖f‖`.
+    /// The share `‖f − K u‖/‖f‖` of the forces is left.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub residual: f64,
-    /// `nodes × unknowns of each` of all levels, the finest first.
+    /// The text has nodes and unknowns of each on all levels of the multigrid, the finest first; it is null with a factor.
     pub levels: Option<String>,
 }
 
@@ -203,13 +208,13 @@ impl Levels {
         (displacement, reaction)
     }
 
-    fn told(&self, method: &'static str, solution: &Solution) -> Solved {
+    fn told(&self, method: &str, solution: &Solution) -> Solved {
         let levels = match &self.hierarchy {
             Hierarchy::Plane(levels) => levels.levels(),
             Hierarchy::Space(levels) => levels.levels(),
         };
         Solved {
-            method,
+            method: method.into(),
             unknowns: self.size(),
             iterations: Some(solution.iterations),
             residual: solution.residual,

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::model::{Elastic, Entries, Support};
 use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
+use serde::{Deserialize, Serialize};
 
 /// How a load is applied.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,13 +28,26 @@ impl Default for Newton {
     }
 }
 
-/// How a solution ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How a solution ended. In JSON it is true or false.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "bool", into = "bool")]
 pub enum Ending {
     /// The whole load is in equilibrium.
     Converged,
     /// A load step failed even after it was halved as often as allowed.
     Stalled,
+}
+
+impl From<bool> for Ending {
+    fn from(converged: bool) -> Ending {
+        if converged { Ending::Converged } else { Ending::Stalled }
+    }
+}
+
+impl From<Ending> for bool {
+    fn from(ending: Ending) -> bool {
+        ending == Ending::Converged
+    }
 }
 
 /// An equilibrium, or the last one that was found.

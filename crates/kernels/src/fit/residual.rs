@@ -8,21 +8,27 @@ use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::{BlockValues, Hooke};
+use crate::number::or_nan;
 use crate::scalar::{Packed, PackedWork, widest};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A relative error below this is the rounding of R and K: an exact network on linear triangles and tetrahedra leaves 1e-16 to 1e-14. A
 /// bound takes the place of its 2-norm, without eigenvalues.
 const ROUNDED: f64 = 1e-13;
 
-/// Mean and maximum of a number over the elements.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+/// The mean and the maximum of a number over the elements; null if there is none.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
-    /// The mean.
+    /// The mean is taken over the elements.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub mean: f64,
-    /// The maximum.
+    /// The largest value is taken over the elements.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub max: f64,
 }
 
@@ -45,6 +51,9 @@ impl ElementErrors {
 }
 
 impl Spread {
+    /// Neither mean nor maximum.
+    pub const UNKNOWN: Spread = Spread { mean: f64::NAN, max: f64::NAN };
+
     /// Mean and maximum of the values.
     pub fn of(values: &[f64]) -> Spread {
         let mut all = SpreadSum::default();

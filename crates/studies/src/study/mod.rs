@@ -53,10 +53,9 @@ pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,
     FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
-    ModelFrequencies, ModuliSearch, NamedFit, PositiveRecord, PublishedOutcome, PublishedOutcomeRecord,
-    PublishedRecord, Recipe, Reference, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, SceneFacts,
-    Sharing, SpreadRecord, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task,
-    TensionOutcome, TensionRecord, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
+    ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
+    SampledRecipe, SampledRecord, SceneFacts, Sharing, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies,
+    SupportPart, Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
     fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};

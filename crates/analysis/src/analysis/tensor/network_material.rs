@@ -9,8 +9,11 @@ use super::sample::{Sample, Stars};
 use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Moments, Network, edge_springs};
+use crate::number::or_nan;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// The largest number of samples. On unstructured tetrahedra the distances of samples differ by a tenth.
@@ -32,34 +35,62 @@ const ROUNDING: f64 = 1e-9;
 /// find their equilibrium. The energies give the elasticity tensor C of the sample, with normal–shear coupling and
 /// anisotropy. An affine strain of every point would ignore that neighbours give way to each other; a single tensor of
 /// the whole network would ignore variations in space.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct NetworkMaterial {
-    /// The mean of the tensors of the samples in Kelvin's notation, `σ = C ε` with the strains xx, yy, (zz,) and √2
-    /// times xy, (xz, yz); Pa, in the plane multiplied by the thickness, for a rod by its cross-section. On surfaces in
-    /// space the axes are projections of coordinate axes onto the plane of each sample: x and y of a sheet in their plane.
-    pub stiffness: DMatrix<f64>,
-    /// Young's modulus of the mean tensor, Pa, the harmonic mean over all directions of tension; `None` if some strain
-    /// meets no resistance or releases energy.
+    /// The harmonic mean of Young's modulus of the mean tensor over all directions of tension is in Pa; it is null if some strain meets no
+    /// resistance.
     pub young: Option<f64>,
-    /// Poisson's ratio of the mean tensor, the mean over all directions; `None` as for `young`, and for a rod.
+    /// The mean of Poisson's ratio over all directions is null as `young` is, and for a rod.
     pub poisson: Option<f64>,
-    /// The relative distance `‖C − C₀‖/‖C₀‖` in the Frobenius norm, which does not depend on the axes; root mean square
-    /// over the samples. C₀ is the tensor of the material; in samples of several materials that of their finite elements,
-    /// strained in the same way.
-    pub distance: f64,
-    /// Young's modulus of the mean of the C₀, Pa, as `young`.
+    /// The material has this Young's modulus in Pa. Where it differs from cell to cell, it is that of the finite elements of the samples,
+    /// to which `young` belongs.
     pub asked_young: Option<f64>,
-    /// Poisson's ratio of the mean of the C₀, as `poisson`.
+    /// The material has this Poisson's ratio. Where it differs from cell to cell, it is that of the finite elements of the samples, to
+    /// which `poisson` belongs.
     pub asked_poisson: Option<f64>,
-    /// The relative distance of the mean tensor: the part that does not vary in space.
+    /// The elasticity tensors have the distance `‖C − C₀‖/‖C₀‖` in the Frobenius norm, which does not depend on the axes, root mean square over
+    /// the samples; it is null where it is not finite. C₀ is the tensor of the material; in samples of several materials it is that of their
+    /// finite elements, strained in the same way.
+    #[serde(rename = "tensor_distance", deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
+    pub distance: f64,
+    /// The mean of the samples' tensors has this distance, the part that does not vary in space.
+    #[serde(rename = "mean_tensor_distance", deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub mean_distance: f64,
-    /// The relative distance of the worst sample.
+    /// The worst sample has this distance.
+    #[serde(rename = "largest_tensor_distance", deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub largest_distance: f64,
-    /// The number of samples.
+    /// The mean of the samples' tensors is in Kelvin's notation, `σ = C ε`, Pa; it is times the thickness in the plane, and times the
+    /// cross-section for a rod. Rows are those of the stresses xx, yy, (zz,) √2 xy, (√2 xz, √2 yz). On surfaces in space the axes are
+    /// projections of coordinate axes onto the plane of each sample: x and y of a sheet in their plane.
+    #[serde(with = "rows")]
+    #[schemars(with = "Vec<Vec<Option<f64>>>")]
+    pub stiffness: DMatrix<f64>,
+    /// This number of cells or patches was measured.
     pub samples: usize,
-    /// The time of this measurement, s.
+    /// The computation took this time in s.
     pub seconds: f64,
+}
+
+/// A matrix as the list of its rows, null where an entry is not finite.
+mod rows {
+    use crate::number::finite;
+    use nalgebra::DMatrix;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, target: S) -> Result<S::Ok, S::Error> {
+        let row = |i: usize| matrix.row(i).iter().map(|c| finite(*c)).collect::<Vec<_>>();
+        (0..matrix.nrows()).map(row).collect::<Vec<_>>().serialize(target)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(source: D) -> Result<DMatrix<f64>, D::Error> {
+        let rows: Vec<Vec<Option<f64>>> = Deserialize::deserialize(source)?;
+        let entry = |i: usize, j: usize| rows[i].get(j).copied().flatten().unwrap_or(f64::NAN);
+        Ok(DMatrix::from_fn(rows.len(), rows.first().map_or(0, Vec::len), entry))
+    }
 }
 
 /// The number of samples that a mesh has room for.

@@ -8,17 +8,21 @@ use crate::error::Result;
 use crate::fit::visit::each_cell;
 use crate::material::{BlockValues, Material};
 use crate::springs::distance;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The assumptions of a method that cells and material do not meet; none if it equals `Unmet::default()`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct Unmet {
-    /// The Poisson's ratio for which the constants are made, if that of the material (in the plane, of the plane) is
-    /// different.
+    /// The formula has this Poisson's ratio, in the plane that of the plane; it is null if the material has it too.
+    #[serde(rename = "poisson_assumed")]
     pub poisson: Option<f64>,
-    /// The number of cells of another shape.
+    /// This number of elements has another shape than the formula assumes.
+    #[serde(rename = "elements_of_other_shape")]
     pub cells: usize,
-    /// The largest relative difference of two lengths that are equal in the assumed shape, over all cells.
+    /// Two lengths that are equal in the assumed shape have at most this relative difference.
+    #[serde(rename = "largest_deviation")]
     pub deviation: f64,
 }
 

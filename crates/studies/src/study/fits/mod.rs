@@ -11,25 +11,21 @@ mod recipe;
 mod record;
 mod sampled;
 mod schema;
-mod spread;
 mod stiffness;
 mod whole;
 
 pub use entry::FitEntry;
-pub use exact::{ExactOutcome, ExactRecipe, ExactRecord, PositiveRecord};
+pub use exact::{ExactOutcome, ExactRecipe, ExactRecord};
 pub use facts::SceneFacts;
 pub use fitted::{Fitted, FittedKind};
 pub use kind::{CellMethod, FitKind, Reference, Task};
 pub use named::NamedFit;
-pub use published::{PublishedOutcome, PublishedOutcomeRecord, PublishedRecord};
+pub use published::{PublishedOutcome, PublishedRecord};
 pub use recipe::Recipe;
 pub use record::KindRecord;
-pub use sampled::{
-    FitFunctions, ForceRecipe, SampledOutcome, SampledOutcomeRecord, SampledRecipe, SampledRecord, law_at,
-};
+pub use sampled::{FitFunctions, ForceRecipe, SampledOutcome, SampledRecipe, SampledRecord, law_at};
 pub use schema::fit_schema;
-pub use spread::SpreadRecord;
-pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome, TensionRecord};
+pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome};
 pub use whole::{
     Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, ModelError,
     ModelFrequencies, ModuliSearch, RESERVED, RegionFactors, Sharing, Start, SupportFrequencies, SupportPart,

@@ -1,13 +1,19 @@
-//! Natural frequencies of a model.
+//! Natural frequencies.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The lowest natural frequencies of one model, with masses lumped at its points.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FrequencyOutcome {
-    /// The name of the fit, or "finite elements".
+    /// The model is the fit of this name, or `finite elements`.
     pub name: String,
-    /// The number of motions without stiffness that are left out: the rigid motions that `[[fix]]` leaves free.
+    /// The natural frequencies are in Hz, ascending.
+    pub frequencies: Option<Vec<f64>>,
+    /// This number of rigid motions is left out, which `[[fix]]` leaves free.
+    #[serde(rename = "rigid_motions")]
     pub rigid: usize,
-    /// The frequencies, Hz, ascending; or the reason why there are none.
-    pub found: std::result::Result<Vec<f64>, String>,
+    /// A sentence says why there are no frequencies; it is null if there are.
+    pub reason: Option<String>,
 }

@@ -1,12 +1,15 @@
 //! The readings of a gauge.
 
-/// Young's modulus and Poisson's ratio of a specimen under a load.
-#[derive(Debug, Clone, Copy, PartialEq)]
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Young's modulus, Pa, and Poisson's ratio of a specimen under a load, as a gauge measures them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Reading {
-    /// `F/(A ε)`, Pa, with F the resultant of the load along the axis, A the cross-section and ε the strain along the
+    /// Young's modulus is `F/(A ε)` in Pa, with the resultant F of the load along the axis, the cross-section A and the strain ε along the
     /// axis.
     pub young: f64,
-    /// `−ε_across/ε`, the mean over the directions across.
+    /// Poisson's ratio is `−ε_across/ε`, the mean over the directions across.
     pub poisson: f64,
 }
 

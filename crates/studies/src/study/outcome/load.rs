@@ -3,7 +3,10 @@
 use super::gauge::{GaugeResult, Reading};
 use crate::analysis::metrics::DisplacementError;
 use crate::model::{Deformation, Support};
+use crate::number::or_nan;
 use crate::solve::{Ending, Solved};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// A load of a scene, and the response of the finite elements.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,23 +73,31 @@ pub struct LoadOutcome {
     pub gauge: Option<Reading>,
 }
 
-/// How a load was applied at large deformation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// How far a load was followed at large deformation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct Followed {
-    /// Whether the whole load was reached.
+    /// The whole load was reached.
+    #[serde(rename = "converged")]
+    #[schemars(with = "bool")]
     pub ending: Ending,
-    /// The share of the load that was reached.
+    /// This share of the load was reached.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub load: f64,
-    /// The last residual, relative to the forces that act.
+    /// The residual is relative to the forces that act.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub residual: f64,
-    /// The number of iterations.
+    /// All steps took this number of Newton's iterations.
     pub iterations: usize,
-    /// The number of iterations whose tangent was not positive definite and was shifted.
+    /// This number of iterations had a tangent that was not positive definite and was shifted.
     pub shifted: usize,
-    /// Whether the equilibrium is accurate only to the rounding of the forces, which exceeds the tolerance.
+    /// The forces balance to their rounding only, which is more than the tolerance.
+    #[serde(rename = "rounded")]
     pub is_rounded: bool,
-    /// The number of cells that are inverted at a quadrature point.
+    /// This number of elements is turned inside out at the end, at a quadrature point or more.
+    #[serde(rename = "inverted_elements")]
     pub inverted: usize,
 }
 

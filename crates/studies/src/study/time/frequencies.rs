@@ -54,7 +54,11 @@ pub fn natural_frequencies(
             Some(found) => Ok(found),
             None => vibrations.of(&entries()?).map_err(|e| e.problem().to_string()),
         };
-        Ok(FrequencyOutcome { name: name.into(), rigid, found })
+        let (frequencies, reason) = match found {
+            Ok(found) => (Some(found), None),
+            Err(why) => (None, Some(why)),
+        };
+        Ok(FrequencyOutcome { name: name.into(), frequencies, rigid, reason })
     };
     let entries = || {
         check_body(mesh)?;

@@ -11,6 +11,5 @@ mod record;
 
 pub use entry::{ExactEntry, without_groups};
 pub use outcome::ExactOutcome;
-pub use positive::PositiveRecord;
 pub use recipe::{ExactRecipe, spring_words};
 pub use record::ExactRecord;

@@ -7,4 +7,4 @@ mod record;
 
 pub use entry::PublishedEntry;
 pub use outcome::PublishedOutcome;
-pub use record::{PublishedOutcomeRecord, PublishedRecord};
+pub use record::PublishedRecord;

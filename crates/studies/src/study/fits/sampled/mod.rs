@@ -16,4 +16,4 @@ pub use force::ForceRecipe;
 pub use functions::FitFunctions;
 pub use outcome::SampledOutcome;
 pub use recipe::SampledRecipe;
-pub use record::{SampledOutcomeRecord, SampledRecord};
+pub use record::SampledRecord;

@@ -2,21 +2,25 @@
 
 use super::recipe::SampledRecipe;
 use crate::fit::{SampledFits, Spread};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The relative errors of the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` for each cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcome {
-    /// The number of shapes of the fit.
+    /// The springs are fitted to this number of shapes.
     pub shapes: usize,
     /// The shapes of a list that a fit of enough shapes would use; `None` if they are not from a list.
+    #[serde(skip)]
     pub listed: Option<usize>,
-    /// The errors on the shapes of the fit.
+    /// The forces have these relative errors on the shapes of the fit.
     pub trained: Spread,
-    /// The errors on the shapes that were held out; `None` if there are none.
+    /// The forces have these relative errors on the shapes that were held out; they are null if there are none.
     pub held_out: Option<Spread>,
-    /// The least share, over the cells, of starts that found the best parameters; `None` with a single start.
+    /// At least this share of starts found the best parameters; it is null with a single start.
+    #[serde(rename = "agreeing_starts")]
     pub agreeing: Option<f64>,
-    /// The loads of the scene whose shapes were sampled; errors under them are not held out.
+    /// The shapes of these loads of the scene were sampled; errors under them are not held out.
     pub loads: Vec<String>,
 }
 

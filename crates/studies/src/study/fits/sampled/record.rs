@@ -1,10 +1,8 @@
-//! The settings and errors of a sampled fit in a report.
+//! The settings of a sampled fit in a report.
 
 use super::force::ForceRecipe;
-use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use crate::fit::{DeformationFamily, Norm, Source};
-use crate::study::fits::spread::SpreadRecord;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -53,21 +51,6 @@ pub enum ForceRecord {
     Groups(BTreeMap<String, String>),
 }
 
-/// The relative errors of the forces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SampledOutcomeRecord {
-    /// The springs are fitted to this number of shapes.
-    pub shapes: usize,
-    /// The forces have these relative errors on the shapes of the fit.
-    pub trained: SpreadRecord,
-    /// The forces have these relative errors on the shapes that were held out.
-    pub held_out: Option<SpreadRecord>,
-    /// At least this share of starts found the best parameters.
-    pub agreeing_starts: Option<f64>,
-    /// The shapes of these loads of the scene were sampled.
-    pub loads: Vec<String>,
-}
-
 impl SampledRecord {
     /// The record of these settings.
     pub fn of(recipe: &SampledRecipe) -> SampledRecord {
@@ -100,19 +83,6 @@ impl SampledRecord {
             perturbation: fit.sampling.perturbation,
             seed: fit.sampling.seed,
             law: recipe.law.clone().or_else(|| recipe.energy.as_ref().map(|energy| energy.name().into())),
-        }
-    }
-}
-
-impl SampledOutcomeRecord {
-    /// The record of this outcome.
-    pub fn of(outcome: &SampledOutcome) -> SampledOutcomeRecord {
-        SampledOutcomeRecord {
-            shapes: outcome.shapes,
-            trained: Some(outcome.trained).into(),
-            held_out: outcome.held_out.map(|spread| Some(spread).into()),
-            agreeing_starts: outcome.agreeing,
-            loads: outcome.loads.clone(),
         }
     }
 }

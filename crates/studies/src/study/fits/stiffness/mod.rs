@@ -13,4 +13,4 @@ pub use entry::StiffnessEntry;
 pub use fitting::fit_at_rest;
 pub use outcome::StiffnessOutcome;
 pub use record::StiffnessRecord;
-pub use tension::{TensionOutcome, TensionRecord};
+pub use tension::TensionOutcome;

@@ -2,32 +2,18 @@
 
 use crate::fit::{CellFits, Spread};
 use crate::model::{Network, RestTension};
-use crate::study::fits::spread::SpreadRecord;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The tension of a network whose springs pull at rest.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct TensionOutcome {
     /// The rest lengths, and how well the springs are in equilibrium.
+    #[serde(flatten)]
     pub network: RestTension,
-    /// The number of cells in which only springs without a force satisfy the conditions of the fit.
+    /// This number of elements has no springs: only springs without a force satisfy the conditions of the fit.
+    #[serde(rename = "idle_elements")]
     pub idle: usize,
-}
-
-/// The record of the tension in a report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct TensionRecord {
-    /// Rest lengths deviate by the shares `|rest length / length in the mesh − 1|`, for springs between two points.
-    pub rest_lengths: SpreadRecord,
-    /// This number of springs has a rest length below zero.
-    pub negative_rest_lengths: usize,
-    /// This number of springs has a force that does not depend on what they measure.
-    pub constant_forces: usize,
-    /// The largest force on a node at rest is this share of the largest force of a spring.
-    pub unbalanced: f64,
-    /// This number of elements has no springs.
-    pub idle_elements: usize,
 }
 
 impl TensionOutcome {
@@ -58,18 +44,5 @@ impl TensionOutcome {
         count(steady, "springs pull with a constant force, by a law of force, and have no rest length");
         count(self.idle, "elements have no springs: only constants of zero satisfy the conditions of the fit");
         notes
-    }
-}
-
-impl From<&TensionOutcome> for TensionRecord {
-    fn from(outcome: &TensionOutcome) -> TensionRecord {
-        let TensionOutcome { network, idle } = outcome;
-        TensionRecord {
-            rest_lengths: Some(network.rest_lengths).into(),
-            negative_rest_lengths: network.negative,
-            constant_forces: network.steady,
-            unbalanced: network.unbalanced,
-            idle_elements: *idle,
-        }
     }
 }
