@@ -1,23 +1,30 @@
 //! Whether whole-object fits from several starts come to the same.
 
+use crate::number::or_nan;
 use crate::study::{FitOutcome, Outcome, Start, ValidationRecipe, WholeRecipe};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// Whole-object fits that differ in their start alone.
-#[derive(Debug, Clone, PartialEq)]
+/// Whether whole-object fits from several starts give the same errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Agreement {
-    /// The names of the fits that are compared.
+    /// These fits differ only in their start.
     pub fits: Vec<String>,
-    /// The held-out load under which the errors differ most.
+    /// The errors differ most under this held-out load.
     pub load: String,
-    /// By which share of the least of them, or of 0.1 % where that is less; infinite where a network does not stand.
+    /// The errors differ by this share of the least one, or of 0.1 % where that is less; it is null where a network does not stand.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
     pub difference: f64,
+    /// The errors differ by no more than a fifth.
+    pub agree: bool,
 }
 
 /// %e_rms below which errors are as good as none.
 const NONE: f64 = 0.1;
 
 /// Up to this share they are said to agree.
-pub const SAME: f64 = 0.2;
+const SAME: f64 = 0.2;
 
 /// The fits of a scene from several starts.
 pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
@@ -50,5 +57,6 @@ fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {
     };
     let differences = (0..fits[0].loads.len()).filter(held_out).map(difference);
     let (load, difference) = differences.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Agreement { fits: fits.iter().map(|fit| fit.fit.name.clone()).collect(), load, difference })
+    let fits = fits.iter().map(|fit| fit.fit.name.clone()).collect();
+    Some(Agreement { fits, load, difference, agree: difference <= SAME })
 }

@@ -1,6 +1,6 @@
 //! `report.json`: stable keys, numbers in SI units, errors of displacements in percent.
 
-use super::agreement::{Agreement, SAME, agreements};
+use super::agreement::{Agreement, agreements};
 use super::fit_record::FitRecord;
 use super::linear_theory::DeformationRecord;
 use super::load_record::MeasuredRecord;
@@ -62,7 +62,7 @@ pub struct Report {
     /// Each entry has what the tension test of the finite elements gives under a load; the list is empty without `[gauge]`.
     pub gauge: Vec<Option<Reading>>,
     /// Each entry says whether whole-object fits that differ in their start alone agree.
-    pub starts: Vec<AgreementRecord>,
+    pub starts: Vec<Agreement>,
     /// Each entry has the lowest natural frequencies of a model.
     pub frequencies: Vec<FrequencyOutcome>,
     /// `motion_options` says how motions were computed; it is null without `[motion]`.
@@ -101,19 +101,6 @@ pub struct QualityRecord {
     pub hanging_nodes: Option<usize>,
     /// The mesh has this number of parts that share no node; it is null if they were not counted.
     pub pieces: Option<usize>,
-}
-
-/// Whether whole-object fits from several starts give the same errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AgreementRecord {
-    /// These fits differ only in their start.
-    pub fits: Vec<String>,
-    /// The errors differ most under this held-out load.
-    pub load: String,
-    /// The errors differ by this share of the least one.
-    pub difference: Option<f64>,
-    /// The errors differ by no more than a fifth.
-    pub agree: bool,
 }
 
 /// The JSON Schema of reports.
@@ -166,7 +153,7 @@ impl Report {
             left_out: outcome.left_out.clone(),
             measured: outcome.loads.iter().filter_map(MeasuredRecord::of).collect(),
             gauge: outcome.loads.iter().filter_map(gauge).collect(),
-            starts: agreements(outcome).iter().map(AgreementRecord::from).collect(),
+            starts: agreements(outcome),
             frequencies: outcome.frequencies.clone(),
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),
@@ -190,17 +177,6 @@ impl QualityRecord {
             coincident_nodes: quality.coincident,
             hanging_nodes: quality.hanging,
             pieces: quality.pieces,
-        }
-    }
-}
-
-impl From<&Agreement> for AgreementRecord {
-    fn from(agreement: &Agreement) -> AgreementRecord {
-        AgreementRecord {
-            fits: agreement.fits.clone(),
-            load: agreement.load.clone(),
-            difference: finite(agreement.difference),
-            agree: agreement.difference <= SAME,
         }
     }
 }

@@ -60,7 +60,7 @@ pub use figure::{
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
 pub use groups::{CellsRecord, GroupRecord, MeshRecord};
-pub use json::{AgreementRecord, QualityRecord, Report, VERSION, report, schema};
+pub use json::{QualityRecord, Report, VERSION, report, schema};
 pub use key_tables::{KeyTable, default_words, key_tables, key_tables_text};
 pub use linear_theory::DeformationRecord;
 pub use load_record::{LoadRecord, MeasuredRecord};

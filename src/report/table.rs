@@ -1,6 +1,6 @@
 //! The table on the terminal.
 
-use super::agreement::{Agreement, SAME, agreements};
+use super::agreement::{Agreement, agreements};
 use super::columns::{Heading, aligned};
 use super::frequencies::{frequency_notes, frequency_table};
 use super::linear_theory::linear_notes;
@@ -344,7 +344,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
 
 fn agreed(agreement: &Agreement) -> String {
     let percent = 100.0 * agreement.difference;
-    let verdict = match agreement.difference <= SAME {
+    let verdict = match agreement.agree {
         true => format!("agree within {percent:.0} %"),
         false if percent.is_finite() => format!("do not agree: they differ by up to {percent:.0} %"),
         false => "cannot be compared: one of them is not known".into(),
