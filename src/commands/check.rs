@@ -5,7 +5,6 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::Element;
 use springfit::error::{Error, Result};
-use springfit::report::InspectionRecord;
 use springfit::study::{self, Event};
 use springfit::{files_in, report};
 use std::path::Path;
@@ -57,13 +56,13 @@ impl Check {
             }
             inspections.push(inspection);
         }
-        let failed = inspections.iter().filter(|i| !i.passes()).count();
+        let failed = inspections.iter().filter(|i| !i.passes).count();
         self.output.print(
             terminal,
-            || inspections.iter().map(InspectionRecord::from).collect::<Vec<_>>(),
+            || inspections.to_vec(),
             || vec![report::check_table(&inspections)],
             || format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()),
         )?;
-        Ok(if inspections.iter().all(|i| i.passes()) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+        Ok(if inspections.iter().all(|i| i.passes) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 }

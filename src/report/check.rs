@@ -1,11 +1,8 @@
-//! What `check` found, as text and as JSON.
+//! What `check` found, as text and as a table.
 
 use super::columns::Heading;
 use super::result_table::ResultTable;
-use crate::number::finite;
 use crate::study::{Inspection, Mark, Property};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// One line per property.
@@ -31,54 +28,6 @@ pub fn check_table(inspections: &[Inspection]) -> ResultTable {
     };
     let rows: Vec<Vec<String>> = inspections.iter().flat_map(of_file).collect();
     ResultTable::printed("check", "Properties of elements", &header, &rows)
-}
-
-/// A file in the JSON of `check`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct InspectionRecord {
-    /// The file, or the name of a shipped element.
-    pub file: String,
-    /// What was checked: a file, or a shipped element.
-    pub title: String,
-    /// Whether each property holds.
-    pub passes: bool,
-    /// The properties in the order in which they are checked.
-    pub properties: Vec<PropertyRecord>,
-}
-
-/// A property of a file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct PropertyRecord {
-    /// What is checked.
-    pub property: String,
-    /// `ok`, `FAIL` or `-`.
-    pub mark: String,
-    /// What was found, in words.
-    pub finding: String,
-    /// The number that decides, where there is one.
-    pub value: Option<f64>,
-}
-
-impl From<&Inspection> for InspectionRecord {
-    fn from(inspection: &Inspection) -> InspectionRecord {
-        InspectionRecord {
-            file: inspection.file.clone(),
-            title: inspection.title.clone(),
-            passes: inspection.passes(),
-            properties: inspection.properties.iter().map(PropertyRecord::from).collect(),
-        }
-    }
-}
-
-impl From<&Property> for PropertyRecord {
-    fn from(property: &Property) -> PropertyRecord {
-        PropertyRecord {
-            property: property.name.into(),
-            mark: word(property.mark).trim().into(),
-            finding: property.finding.clone(),
-            value: property.value.and_then(finite),
-        }
-    }
 }
 
 fn word(mark: Mark) -> &'static str {

@@ -48,7 +48,7 @@ mod typeset;
 pub use catalogue::{
     ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, elements_text, materials_table, materials_text,
 };
-pub use check::{InspectionRecord, PropertyRecord, check_table, check_text};
+pub use check::{check_table, check_text};
 pub use columns::{Heading, set_page_width};
 pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_tables, convergence_text, write_convergence};

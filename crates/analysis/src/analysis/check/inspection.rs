@@ -4,24 +4,27 @@ use super::property::{Mark, Property};
 use super::{integrals, shape, space, springs};
 use crate::element::Element;
 use crate::error::Error;
+use serde::Serialize;
 use std::sync::Arc;
 
 /// The properties of one file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Inspection {
     /// The path of the file, or the name of a shipped element.
     pub file: String,
     /// The title of the element.
     pub title: String,
-    /// The properties.
+    /// Whether no property fails.
+    pub passes: bool,
+    /// The properties, in the order in which they are checked.
     pub properties: Vec<Property>,
 }
 
 impl Inspection {
-    /// Whether no property fails.
-    pub fn passes(&self) -> bool {
-        self.properties.iter().all(|p| p.mark != Mark::Fails)
+    fn new(file: &str, title: &str, properties: Vec<Property>) -> Inspection {
+        let passes = properties.iter().all(|p| p.mark != Mark::Fails);
+        Inspection { file: file.into(), title: title.into(), passes, properties }
     }
 }
 
@@ -31,7 +34,7 @@ pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
         Ok(element) => Arc::new(element),
         Err(error) => {
             let properties = vec![Property::new("loads", false, error.to_string())];
-            return Inspection { file: file.into(), title: String::new(), properties };
+            return Inspection::new(file, "", properties);
         }
     };
     let springs: usize = element.springs.iter().map(|g| g.nodes.len().max(1)).sum();
@@ -46,5 +49,5 @@ pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
     properties.extend(shape::properties(&element));
     properties.extend(springs::properties(&element));
     properties.extend(integrals::properties(&element));
-    Inspection { file: file.into(), title: element.title.clone(), properties }
+    Inspection::new(file, &element.title, properties)
 }

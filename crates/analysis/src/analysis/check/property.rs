@@ -1,21 +1,27 @@
 //! A property of an element file.
 
+use serde::Serialize;
+
 /// The result of testing one property.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Mark {
     /// The property holds.
+    #[serde(rename = "ok")]
     Holds,
     /// The property does not hold: the file is wrong.
+    #[serde(rename = "FAIL")]
     Fails,
     /// The property cannot be decided, or is for information.
+    #[serde(rename = "-")]
     Noted,
 }
 
 /// One property of a file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Property {
     /// The name of the property.
+    #[serde(rename = "property")]
     pub name: &'static str,
     /// The result.
     pub mark: Mark,
