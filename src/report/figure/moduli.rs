@@ -59,7 +59,7 @@ impl Moduli {
             None => &report.fits[..],
             Some(_) => std::slice::from_ref(&report.fits[RunFolder::place(&report, fit)?]),
         };
-        let size = fits.first().map_or(0, |fit| fit.as_material.stiffness.len());
+        let size = fits.first().map_or(0, |fit| fit.as_material.stiffness.nrows());
         let planes: Vec<[usize; 2]> = match size {
             6 => vec![[0, 1], [0, 2], [1, 2]],
             3 => vec![[0, 1]],
