@@ -191,3 +191,73 @@ fn a_report_satisfies_its_schema() {
     let found = faults(&schema, &schema, &document, "");
     assert!(found.is_empty(), "{found:#?}");
 }
+
+/// What is added to a table for a key that has a place in some of its kinds alone.
+type Companions = &'static [(&'static str, &'static str)];
+
+/// Tables whose keys have defaults in the schema, the beginning of a scene with each, and what single keys need besides.
+const TABLES: [(&str, &str, Companions); 8] = [
+    (
+        "/$defs/FitEntry/oneOf/0",
+        "[[fit]]",
+        &[
+            ("higher", "objective = \"modal\""),
+            ("balance", "objective = \"divergence\""),
+            ("gap", "objective = \"spectral\""),
+            ("iterations", "objective = \"frobenius\"\nsolver = \"nelder-mead\""),
+            ("sparsity", "objective = \"frobenius\"\nsolver = \"particle-swarm\"\ntopology = true"),
+            ("", "objective = \"frobenius\""),
+        ],
+    ),
+    (
+        "/$defs/FitEntry/oneOf/1",
+        "law = \"neo-hookean\"\n[[fit]]\nobjective = \"sampled\"",
+        &[("huber", "norm = \"huber\""), ("starts", "force = \"k*(exp(a*s) - 1)\"")],
+    ),
+    ("/$defs/ShapesEntry", "law = \"neo-hookean\"\n[[fit]]\nobjective = \"sampled\"\n[fit.shapes]", &[]),
+    (
+        "/$defs/FitEntry/oneOf/2",
+        "[[fix]]\nwhere = \"x < 1e-9\"\n[[fit]]\nobjective = \"whole\"",
+        &[("shear", "start = \"exact\""), ("volume", "start = \"exact\"")],
+    ),
+    (
+        "/$defs/FitEntry/oneOf/4",
+        "[[fit]]\nobjective = \"exact\"",
+        &[("share", "energy = \"stable-mooney-rivlin\""), ("across", "nonnegative = true")],
+    ),
+    ("/$defs/NewtonEntry", "law = \"neo-hookean\"\n[[fit]]\nobjective = \"exact\"\n[newton]", &[]),
+    ("/$defs/SolverEntry", "[[fit]]\nobjective = \"exact\"\n[solver]", &[]),
+    (
+        "/$defs/MotionEntry",
+        "density = 1\n[[fit]]\nobjective = \"exact\"\n[motion]\nduration = 1\nstep = 0.1",
+        &[("remainder", "solver = \"conjugate-gradients\"")],
+    ),
+];
+
+/// A default is written beside a key for the schema, and another time where the key is read: a scene that gives it is that which does not.
+#[test]
+fn a_default_of_the_schema_is_that_of_the_reader() {
+    let schema = study::scene_schema();
+    let mut tried = 0;
+    for (table, head, companions) in TABLES {
+        let read = |text: String| {
+            let text = format!(
+                "[mesh]\nbox = {{ element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1\npoisson = 0.3\n{text}"
+            );
+            let scene = study::Scene::parse(&text, Path::new("s.toml")).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            format!("{:?} {:?} {:?} {:?}", scene.fits(), scene.newton(), scene.solver(), scene.motion())
+        };
+        for (key, property) in schema.pointer(table).unwrap()["properties"].as_object().unwrap() {
+            let default = &property["default"];
+            let is_given = !default.is_null() && property.get("x-of").is_none();
+            if !is_given || default.as_object().is_some() {
+                continue;
+            }
+            let more = companions.iter().find(|(own, _)| own == key || own.is_empty()).map_or("", |(_, more)| more);
+            let without = format!("{head}\n{more}\n");
+            assert_eq!(read(format!("{without}{key} = {default}\n")), read(without), "{table}: {key}");
+            tried += 1;
+        }
+    }
+    assert!(tried >= 45, "{tried}");
+}

@@ -19,7 +19,8 @@ pub const VERSION: u32 = 2;
 /// `report.json`. A value that does not exist or is not finite is null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Report {
-    /// The version of the format is 2; it changes when a key is removed or its meaning changes.
+    /// The version of the format changes when a key is removed or its meaning changes.
+    #[schemars(extend("const" = VERSION))]
     pub version: u32,
     /// The scene has this title.
     pub scene: String,

@@ -29,7 +29,7 @@ crate::named!(Route {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct PositiveOutcome {
-    /// The network is `unchanged`, or `springs`, springs `across` sides or `tensions` were changed.
+    /// The route says what was changed: `unchanged`, `springs`, `across` or `tensions`.
     #[schemars(with = "String")]
     pub route: Route,
     /// The exact network has this number of negative springs.

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
-    /// The name is short; fits and scenes name the element by it.
+    /// The name is a short one, which tables and files show.
     pub name: String,
     /// The title is a headline.
     pub title: String,
@@ -90,7 +90,7 @@ fn describe_tag(schema: &mut Schema) {
 pub struct SpringEntry {
     /// The springs are a group of this name.
     pub group: String,
-    /// The springs measure this.
+    /// The springs measure a length, an angle, or another of these kinds.
     pub kind: SpringKind,
     /// Each spring has one of these lists of nodes, from 0; `"complete"` takes all pairs of nodes that have no spring yet.
     #[schemars(extend("x-type" = "lists of indices, or `\"complete\"`", "x-default" = "the whole cell"))]

@@ -25,7 +25,7 @@ const MODULI: [&str; 5] = ["young", "poisson", "lambda", "mu", "kappa"];
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Definition {
-    /// The name is short.
+    /// The name is a short one, which errors show.
     name: String,
     /// The title is a headline.
     title: String,

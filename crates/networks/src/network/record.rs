@@ -15,9 +15,11 @@ pub const NETWORK_VERSION: u32 = 1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
-    /// The format is `springfit network`.
+    /// The format says that the file is a network.
+    #[schemars(extend("const" = FORMAT))]
     pub format: String,
-    /// The version of the format is 1; it changes when a key is removed or its meaning changes.
+    /// The version of the format changes when a key is removed or its meaning changes.
+    #[schemars(extend("const" = NETWORK_VERSION))]
     pub version: u32,
     /// `provenance` says where the network comes from.
     pub provenance: ProvenanceRecord,

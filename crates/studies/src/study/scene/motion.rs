@@ -31,10 +31,11 @@ pub struct MotionEntry {
     #[schemars(extend("enum" = Integrator::NAMES, "default" = Integrator::default().name()))]
     integrator: Option<String>,
     /// An implicit step takes at most this number of iterations of Newton's method, 1 or more; 1 is the linearised step of real-time
-    /// programs.
+    /// programs. The key does not go with `linear` and `symplectic-euler`.
     #[schemars(extend("default" = Options::default().iterations))]
     iterations: Option<usize>,
-    /// An implicit step ends when its residual is this share of the forces that act, above 0 and below 1.
+    /// An implicit step ends when its residual is this share of the forces that act, above 0 and below 1. The key does not go with `linear`
+    /// and `symplectic-euler`.
     #[schemars(extend("default" = Options::default().tolerance))]
     tolerance: Option<f64>,
     /// Networks keep their stiffness at rest, as the finite elements do, so that one factor serves all steps.
@@ -44,13 +45,14 @@ pub struct MotionEntry {
     #[schemars(extend("x-default" = "true; false with `precision = \"single\"`"))]
     account: Option<bool>,
     /// Networks compute the forces of explicit steps in these numbers. `single` rounds them to 6e-8 of the body, and without `account`
-    /// positions and velocities as well.
+    /// positions and velocities as well; it belongs to `symplectic-euler` without `linear`.
     #[schemars(extend("enum" = ForcePrecision::NAMES, "default" = ForcePrecision::default().name()))]
     precision: Option<String>,
-    /// The equations of implicit steps are solved by a Cholesky factor (`factor`) or by `conjugate-gradients`.
+    /// The equations of implicit steps are solved by a Cholesky factor (`factor`) or by `conjugate-gradients`. The key does not go with
+    /// `symplectic-euler`.
     #[schemars(extend("enum" = LinearSolver::NAMES, "default" = LinearSolver::default().name()))]
     solver: Option<String>,
-    /// Conjugate gradients stop at this relative residual, from 1e-15 to below 1.
+    /// Conjugate gradients stop at this relative residual, from 1e-15 to below 1. The key belongs to `solver = "conjugate-gradients"`.
     #[schemars(extend("default" = 1e-8))]
     remainder: Option<f64>,
     /// Masses are lumped by row sums (`row-sum`), or by `hrz`, which is above zero for every element.
