@@ -4,11 +4,10 @@
 
 use super::equations::{End, Equations};
 use super::resistance::Resistance;
+use springfit_numerics::newton::{falls_enough, shifts};
 
 /// The largest number of halvings of a Newton step.
 const HALVINGS: usize = 20;
-/// The share of the slope by which the potential must decrease along a Newton step (Armijo 1966).
-const DESCENT: f64 = 1e-4;
 /// A Newton step below this share of the model's coordinates is within their rounding: no better solution exists.
 const ROUNDING: f64 = 1e-14;
 
@@ -157,11 +156,13 @@ impl Trial {
             resistance.refill(&self.u, &mut self.force, &mut self.tangent, true);
             resistance.assemble(target.coefficients, &self.tangent, equations);
             end = self.solve(equations, None, made);
-            let mut shift = 0.0;
-            while end == End::Indefinite && shift <= 10.0 {
-                let next = if shift == 0.0 { 1e-4 } else { 10.0 * shift };
-                equations.shift(next - shift);
-                shift = next;
+            let mut last = 0.0;
+            for shift in shifts() {
+                if end != End::Indefinite {
+                    break;
+                }
+                equations.shift(shift - last);
+                last = shift;
                 end = self.solve(equations, None, made);
             }
         }
@@ -243,7 +244,7 @@ impl Trial {
                     target.delta[dof] = self.tried[dof] + length * s;
                 }
                 let is_known = self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
-                let falls = self.potential <= potential - DESCENT * length * slope;
+                let falls = falls_enough(potential, self.potential, -length * slope);
                 length /= 2.0;
                 // Near the solution the rounding of the potential hides its decrease.
                 is_known && (falls || is_rounding || self.size < 0.5 * size)

@@ -9,6 +9,7 @@ use crate::model::{Elastic, Entries, Support};
 use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
 use serde::{Deserialize, Serialize};
+use springfit_numerics::newton::{falls_enough, shifts};
 
 /// How a load is applied.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,8 +80,6 @@ const REACHED: f64 = 1e-14;
 const HALVINGS: u32 = 8;
 /// The largest number of halvings of a Newton step.
 const SHORTER: usize = 30;
-/// The share of the slope by which the energy must decrease along a step (Armijo 1966).
-const DESCENT: f64 = 1e-4;
 
 impl Newton {
     /// Applies the load from rest at `points`, `[points × dimension]`: `forces`, N, and the displacements that
@@ -268,7 +267,7 @@ impl<'a> Statics<'a> {
                 let tried: Vec<f64> = u.iter().zip(&step).map(|(u, s)| u + length * s).collect();
                 let internal = model.at(&tried, form);
                 let good = internal.as_ref().is_some_and(|r| {
-                    let falls = !hidden && potential(r, &tried) <= before + DESCENT * length * slope;
+                    let falls = !hidden && falls_enough(before, potential(r, &tried), length * slope);
                     // Near the solution the rounding of the energy hides its decrease.
                     !moved || falls || model.free(&left(&r.force)) < 0.5 * size
                 });
@@ -300,8 +299,7 @@ fn direction(
 ) -> Result<Option<(Vec<f64>, bool)>> {
     let support = Support { prescribed: moves };
     let diagonal = tangent.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
-    let mut shift = 0.0;
-    loop {
+    for shift in std::iter::once(0.0).chain(shifts()) {
         let shifted = raised(tangent, rest.len(), shift * diagonal);
         let system = match known.take() {
             Some(known) => known.renewed(&shifted, &support)?,
@@ -312,9 +310,6 @@ fn direction(
             let (step, _) = system.solve(&factor, rest);
             return Ok(step.iter().all(|s| s.is_finite()).then_some((step, shift > 0.0)));
         }
-        shift = if shift == 0.0 { 1e-4 } else { 10.0 * shift };
-        if shift > 10.0 {
-            return Ok(None);
-        }
     }
+    Ok(None)
 }

@@ -11,6 +11,7 @@
 use super::dense::{add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace};
 use super::objective::Balance;
 use crate::scalar::Real;
+use springfit_numerics::newton::falls_enough;
 
 /// The largest number of Newton steps.
 const STEPS: usize = 200;
@@ -18,8 +19,6 @@ const STEPS: usize = 200;
 const HALVINGS: usize = 40;
 /// Relative pivots below this are rounding errors.
 const FLOOR: f64 = 1e-14;
-/// The share of the slope by which a step must decrease the objective (Armijo's condition).
-const DESCENT: f64 = 1e-4;
 /// If the squared Newton decrement is below this, rounding hides a further decrease of the objective.
 const CLOSE: f64 = 1e-10;
 /// The largest slope at the optimum, relative to the terms of which it is a sum. Rounding leaves less unless the
@@ -86,7 +85,7 @@ pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, 
             let is_close = decrement < CLOSE * size && length == 1.0;
             length /= 2.0;
             let next = at(&to)?;
-            (is_close || next.value <= point.value + DESCENT * falls).then_some((to, next))
+            (is_close || falls_enough(point.value, next.value, falls)).then_some((to, next))
         });
         let Some((to, next)) = next else { break };
         (from, point) = (to, next);
