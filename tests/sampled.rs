@@ -438,3 +438,22 @@ fn springs_are_named_once() {
         );
     }
 }
+
+/// One shape leaves many optima. The smallest constants of all of them are above zero, so that the bound changes nothing: 55.26 N/m in the norm.
+#[test]
+fn a_bound_that_the_smallest_optimum_satisfies_changes_nothing() {
+    let constants = |nonnegative: bool| -> Vec<f64> {
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"hex8\", size = [0.01, 0.01, 0.01], cells = [1, 1, 1] }}\n[material]\nyoung = 10e3\npoisson = 0.2\n\
+             law = \"neo-hookean\"\n[[fit]]\nobjective = \"sampled\"\nnonnegative = {nonnegative}\n\
+             shapes = {{ count = 1, held_out = 5, families = [\"volumetric\"], perturbation = 0 }}\n"
+        );
+        let outcome = run(&Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+        assert_eq!(outcome.fits[0].deficient, 1);
+        outcome.fits[0].network.lengths.iter().map(|spring| spring.constant).collect()
+    };
+    let (free, bounded) = (constants(false), constants(true));
+    let norm = |k: &[f64]| k.iter().map(|k| k * k).sum::<f64>().sqrt();
+    assert!((norm(&free) - 55.26).abs() < 0.01 && free.iter().all(|k| *k > 0.0), "{free:?}");
+    assert!(free.iter().zip(&bounded).all(|(a, b)| (a - b).abs() < 1e-6 * norm(&free)), "{free:?} {bounded:?}");
+}
