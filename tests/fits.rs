@@ -71,16 +71,29 @@ impl Case {
         fit_element(&self.element, &self.springs, &self.x, self.moduli, &fit).unwrap()
     }
 
-    /// `W A W`, or A without its diagonal blocks; the constant-strain motions here from an orthonormal basis.
+    /// `W A W`, or A without its diagonal blocks.
     pub fn weighted(&self, weight: Weight, a: &DMatrix<f64>) -> DMatrix<f64> {
-        let d = self.springs.dimension();
-        match weight {
-            Weight::None => a.clone(),
-            Weight::OffDiagonal => {
+        self.seen_by(weight)(a)
+    }
+
+    /// The same of many matrices with one W.
+    pub fn seen_by(&self, weight: Weight) -> impl Fn(&DMatrix<f64>) -> DMatrix<f64> + use<> {
+        let (d, w) = (self.springs.dimension(), self.weighing(weight));
+        move |a| match &w {
+            Some(w) => w * a * w,
+            None if weight == Weight::OffDiagonal => {
                 DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| if i / d == j / d { 0.0 } else { a[(i, j)] })
             }
+            None => a.clone(),
+        }
+    }
+
+    /// W; the constant-strain motions here from an orthonormal basis.
+    fn weighing(&self, weight: Weight) -> Option<DMatrix<f64>> {
+        let (d, n) = (self.springs.dimension(), self.springs.nodes());
+        match weight {
+            Weight::None | Weight::OffDiagonal => None,
             Weight::Modal(higher) => {
-                let n = self.springs.nodes();
                 // All linear motions u_a = e_k x_al, translations among them: C Cᵀ is their projection on a matrix that
                 // vanishes on the rigid ones.
                 let linear = DMatrix::from_fn(n * d, d * (d + 1), |row, column| {
@@ -91,28 +104,33 @@ impl Case {
                 let basis = linear.qr().q();
                 let projection = &basis * basis.transpose();
                 let identity = DMatrix::identity(n * d, n * d);
-                let w = &projection + higher.value() * (identity - &projection);
-                &w * a * &w
+                Some(&projection + higher.value() * (identity - &projection))
             }
             Weight::Relative => {
                 let eigen = self.r.clone().symmetric_eigen();
                 let root = |e: f64| if e > 1e-9 * self.r.norm() { 1.0 / e.sqrt() } else { 0.0 };
-                let w = &eigen.eigenvectors
-                    * DMatrix::from_diagonal(&eigen.eigenvalues.map(root))
-                    * eigen.eigenvectors.transpose();
-                &w * a * &w
+                let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(root));
+                Some(&eigen.eigenvectors * roots * eigen.eigenvectors.transpose())
             }
         }
     }
 
     /// The gradient of `½‖R − K(k)‖²` in k: `−⟨g_s g_sᵀ, R − K⟩`, and its scale.
     fn slopes(&self, weight: Weight, k: &[f64]) -> (Vec<f64>, f64) {
-        let mut difference = self.r.clone();
-        self.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
+        let g = DMatrix::from_columns(&self.g);
+        let difference = &self.r - &g * DMatrix::from_fn(k.len(), g.nrows(), |s, i| k[s] * g[(i, s)]);
         let seen = self.weighted(weight, &difference);
-        let matrices: Vec<DMatrix<f64>> = self.g.iter().map(|g| self.weighted(weight, &(g * g.transpose()))).collect();
-        // In the scaling where every spring's matrix has norm one.
-        let slopes = matrices.iter().map(|a| -a.dot(&seen) / a.norm()).collect();
+        let rows = self.weighing(weight).map_or_else(|| g.clone(), |w| w * &g);
+        let images = &seen * &rows;
+        // In the scaling where every spring's matrix has norm one; without the diagonal blocks some of it is missing.
+        let d = self.springs.dimension();
+        let norm = |s: usize| {
+            let blocks: Vec<f64> =
+                (0..rows.nrows() / d).map(|a| rows.view((a * d, s), (d, 1)).norm_squared()).collect();
+            let missing = if weight == Weight::OffDiagonal { blocks.iter().map(|b| b * b).sum() } else { 0.0 };
+            (blocks.iter().sum::<f64>().powi(2) - missing).sqrt()
+        };
+        let slopes = (0..k.len()).map(|s| -rows.column(s).dot(&images.column(s)) / norm(s)).collect();
         (slopes, self.weighted(weight, &self.r).norm())
     }
 

@@ -85,7 +85,8 @@ impl Pulling {
 
     /// `‖W (R − K) W‖` and `‖W R W‖`.
     fn error(&self, weight: Weight, k: &[f64], t: &[f64]) -> (f64, f64) {
-        let seen = |a: &DMatrix<f64>| self.case.weighted(weight, a).norm();
+        let by = self.case.seen_by(weight);
+        let seen = |a: &DMatrix<f64>| by(a).norm();
         (seen(&self.residual(k, t)), seen(&self.case.r))
     }
 
@@ -127,6 +128,7 @@ impl Pulling {
         let size = self.case.x.len();
         let mut a = DMatrix::zeros(size * size, unknowns.len());
         let mut c = DMatrix::zeros(size, unknowns.len());
+        let by = self.case.seen_by(weight);
         for (j, unknown) in unknowns.iter().enumerate() {
             let mut matrix = DMatrix::zeros(size, size);
             let mut force = DVector::zeros(size);
@@ -136,7 +138,7 @@ impl Pulling {
                 matrix += t * &self.bends[s];
                 force += t * g;
             }
-            let seen = self.case.weighted(weight, &matrix);
+            let seen = by(&matrix);
             let scale = if seen.norm() > 0.0 { 1.0 / seen.norm() } else { 1.0 };
             a.set_column(j, &(scale * DVector::from_column_slice(seen.as_slice())));
             c.set_column(j, &(scale * force));
