@@ -74,11 +74,11 @@ impl Kind {
             }
         }
         let mut target: Vec<f64> = (0..rows).map(|_| random()).collect();
-        if number % 3 == 0 {
+        if number.is_multiple_of(3) {
             let constants: Vec<f64> = (0..m).map(|_| random().max(0.0)).collect();
             (0..rows).for_each(|i| target[i] = columns.iter().zip(&constants).map(|(column, k)| column[i] * k).sum());
         }
-        let size = |_| if number / 160 % 2 == 0 { 1.0 } else { 10f64.powf(6.0 * random()) };
+        let size = |_| if (number / 160).is_multiple_of(2) { 1.0 } else { 10f64.powf(6.0 * random()) };
         let sizes = (0..m).map(size).collect();
         Columns { columns, sizes, target }
     }
