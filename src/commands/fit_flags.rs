@@ -116,6 +116,7 @@ fn help(kind: &str, key: &str) -> String {
 impl FitFlags {
     /// The entry of a fit with this objective and the values that are given.
     pub fn entry(&self, objective: String) -> FitEntry {
+        // The groups are a field of the entry; the other values are keys of its kind.
         let mut entry = FitEntry::new(objective).with_springs(self.springs.clone());
         let mut inner = toml::Table::new();
         for (key, value) in self.given() {
@@ -130,16 +131,10 @@ impl FitFlags {
 
     /// The flag that stands for a key, as its path in a scene ends.
     pub fn flag(&self, key: &str) -> Option<&'static str> {
-        let is_count = self.shapes.is_some();
         let last = |path: &'static str| path.rsplit('.').next().unwrap_or(path);
         let named = match key {
-            "shapes" => {
-                if is_count {
-                    "count"
-                } else {
-                    "stretch"
-                }
-            }
+            "shapes" if self.shapes.is_some() => "count",
+            "shapes" => "stretch",
             key => key,
         };
         Self::KEYS.iter().find(|(_, path)| last(path) == named).map(|(flag, _)| *flag)

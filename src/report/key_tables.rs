@@ -36,11 +36,9 @@ pub fn key_tables(schema: &Value, name: &str, is_written: bool) -> Vec<KeyTable>
 impl KeyTable {
     /// The table in Markdown, without its title.
     pub fn markdown(&self) -> String {
-        let columns = self.rows.first().map_or(0, Vec::len);
-        let rule = vec!["---".to_string(); columns];
+        let rule = format!("|{}\n", "---|".repeat(self.rows.first().map_or(0, Vec::len)));
         let line = |cells: &Vec<String>| format!("| {} |\n", cells.join(" | "));
         let (head, rows) = self.rows.split_at(1.min(self.rows.len()));
-        let rule = line(&rule).replace("| --- ", "|---").replace(" |", "|");
         head.iter().map(line).chain([rule]).chain(rows.iter().map(line)).collect()
     }
 }

@@ -1,15 +1,7 @@
 //! Random problems with bounds, of kinds whose optima are unique or not.
 
+use crate::shapes::Random;
 use springfit::fit::solvers::Normal;
-
-/// Numbers between −1 and 1.
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(2) + 1;
-    move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// How the columns of the least-squares problem `|A k − r|²` are drawn.
 #[derive(Clone, Copy)]
@@ -57,13 +49,13 @@ impl Kind {
     }
 
     fn columns(self, number: usize) -> Columns {
-        let mut random = random(number as u64);
+        let mut random = Random(2 * number as u64 + 1);
         let m = 1 + number / 4 % 40;
         let rows = match self {
             Kind::Flat => m.div_ceil(2),
             Kind::Regular | Kind::Repeated | Kind::Sums => m + 2,
         };
-        let mut columns: Vec<Vec<f64>> = (0..m).map(|_| (0..rows).map(|_| random()).collect()).collect();
+        let mut columns: Vec<Vec<f64>> = (0..m).map(|_| (0..rows).map(|_| random.next()).collect()).collect();
         for s in 0..m {
             match self {
                 Kind::Repeated if s % 2 == 1 => columns[s] = columns[s - 1].clone(),
@@ -73,12 +65,12 @@ impl Kind {
                 _ => {}
             }
         }
-        let mut target: Vec<f64> = (0..rows).map(|_| random()).collect();
+        let mut target: Vec<f64> = (0..rows).map(|_| random.next()).collect();
         if number.is_multiple_of(3) {
-            let constants: Vec<f64> = (0..m).map(|_| random().max(0.0)).collect();
+            let constants: Vec<f64> = (0..m).map(|_| random.next().max(0.0)).collect();
             (0..rows).for_each(|i| target[i] = columns.iter().zip(&constants).map(|(column, k)| column[i] * k).sum());
         }
-        let size = |_| if (number / 160).is_multiple_of(2) { 1.0 } else { 10f64.powf(6.0 * random()) };
+        let size = |_| if (number / 160).is_multiple_of(2) { 1.0 } else { 10f64.powf(6.0 * random.next()) };
         let sizes = (0..m).map(size).collect();
         Columns { columns, sizes, target }
     }

@@ -3,7 +3,6 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::dense::at_rounding;
 use super::normal::{Normal, OPTIMALITY, Rank, slope_tolerance};
 use super::singular::least_nonnegative;
 use super::wide::Wide;
@@ -53,7 +52,7 @@ pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Opti
     }
     let mut k = vec![scaled.rhs[0].zero(); near.len()];
     set.iter().zip(&free.rhs).for_each(|(&s, value)| k[s] = value.clone());
-    let tolerance = OPTIMALITY * scaled.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
+    let tolerance = OPTIMALITY * scaled.largest();
     let slopes = scaled.gradient(&k);
     let is_optimal = k.iter().all(|k| k.rounded() >= 0.0)
         && slopes.iter().zip(near).all(|(slope, k)| *k > 0.0 || slope.rounded() >= -tolerance);
@@ -76,7 +75,7 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
 /// The optimum of many unknowns, from their values without bounds if these are known.
 pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
     let positive = free.map_or(vec![true; wide.size()], |free| free.iter().map(|k| *k >= 0.0).collect());
-    let tolerance = slope_tolerance(wide.largest());
+    let tolerance = slope_tolerance::<f64>(wide.largest());
     let ended = exchange(positive, |positive| {
         let set: Vec<usize> = (0..positive.len()).filter(|&s| positive[s]).collect();
         if !wide.solve(&set, f64::given()) {
@@ -106,7 +105,7 @@ fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f
 /// Pivoting for input data with the relative error `rounding`.
 fn pivot_to<T: Real>(normal: &Normal<T>, rounding: f64) -> Option<Vec<T>> {
     let m = normal.size();
-    let tolerance = at_rounding::<T>(OPTIMALITY) * normal.rhs.iter().fold(0.0f64, |a, b| a.max(b.rounded().abs()));
+    let tolerance = slope_tolerance::<T>(normal.largest());
     let mut k = Vec::new();
     exchange(vec![true; m], |positive| {
         let set: Vec<usize> = (0..m).filter(|&s| positive[s]).collect();

@@ -15,8 +15,8 @@ pub(super) const RANK: f64 = 1000.0;
 pub(super) const OPTIMALITY: f64 = 1e-10;
 
 /// By how much `M k − b` may be below zero in the scaling with equal diagonal entries, where `largest` is the largest |b|.
-pub fn slope_tolerance(largest: f64) -> f64 {
-    at_rounding::<f64>(OPTIMALITY) * largest
+pub fn slope_tolerance<T: Real>(largest: f64) -> f64 {
+    at_rounding::<T>(OPTIMALITY) * largest
 }
 
 /// The equations of one element or one per lane.
@@ -157,6 +157,11 @@ impl<T: Clone> Normal<T> {
 }
 
 impl<T: Real> Normal<T> {
+    /// The largest |b|.
+    pub fn largest(&self) -> f64 {
+        self.rhs.iter().fold(0.0, |largest, b| largest.max(b.rounded().abs()))
+    }
+
     /// `M_st`.
     pub fn entry(&self, s: usize, t: usize) -> T {
         self.gram[s.max(t) * self.size() + s.min(t)].clone()
@@ -193,11 +198,6 @@ impl<T: Real> Normal<T> {
 }
 
 impl Normal {
-    /// The largest |b|.
-    pub fn largest(&self) -> f64 {
-        self.rhs.iter().fold(0.0, |largest, b| largest.max(b.abs()))
-    }
-
     /// `2 bᵀd − dᵀ M d`: the decrease of `‖r − J d‖²` from `‖r‖²`, with `M = JᵀJ` and `b = Jᵀr`.
     pub fn fall(&self, d: &[f64]) -> f64 {
         let along = |v: &[f64]| v.iter().zip(d).map(|(v, d)| v * d).sum::<f64>();

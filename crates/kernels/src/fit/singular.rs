@@ -19,7 +19,7 @@ const ROUNDING: f64 = 1e-14;
 /// The optimum of least norm, in the scaling of the equations; `None` if rounding leaves no point that satisfies the
 /// conditions of optimality.
 pub fn least_nonnegative(normal: &Normal) -> Option<Vec<f64>> {
-    let tolerance = slope_tolerance(normal.largest());
+    let tolerance = slope_tolerance::<f64>(normal.largest());
     let free = normal.least_norm();
     if free.iter().all(|k| *k >= 0.0) && violation(normal, &free) <= tolerance {
         return Some(free);

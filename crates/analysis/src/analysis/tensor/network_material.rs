@@ -77,12 +77,11 @@ pub struct NetworkMaterial {
 
 /// A matrix as the list of its rows, null where an entry is not finite.
 mod rows {
-    use crate::number::finite;
     use nalgebra::DMatrix;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub fn serialize<S: Serializer>(matrix: &DMatrix<f64>, target: S) -> Result<S::Ok, S::Error> {
-        let row = |i: usize| matrix.row(i).iter().map(|c| finite(*c)).collect::<Vec<_>>();
+        let row = |i: usize| matrix.row(i).iter().copied().collect::<Vec<f64>>();
         (0..matrix.nrows()).map(row).collect::<Vec<_>>().serialize(target)
     }
 

@@ -124,7 +124,7 @@ impl<T: Packed, E: Equations<T>> Search<'_, T, E> {
             self.state.constants[s].as_mut_slice()[lane] = k.as_slice()[lane] / scale.as_slice()[lane];
         }
         let b = || self.state.rhs.iter().map(|b| b.as_slice()[lane]);
-        let tolerance = slope_tolerance(b().fold(0.0f64, |largest, b| largest.max(b.abs())));
+        let tolerance = slope_tolerance::<f64>(b().fold(0.0f64, |largest, b| largest.max(b.abs())));
         Own {
             lane,
             stage: Stage::Judging,
