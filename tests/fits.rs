@@ -76,7 +76,7 @@ impl Case {
         self.seen_by(weight)(a)
     }
 
-    /// The same of many matrices with one W.
+    /// The function that gives [`Case::weighted`] of any matrix. It forms W once.
     pub fn seen_by(&self, weight: Weight) -> impl Fn(&DMatrix<f64>) -> DMatrix<f64> + use<> {
         let (d, w) = (self.springs.dimension(), self.weighing(weight));
         move |a| match &w {

@@ -15,7 +15,7 @@ pub struct FitRecord {
     /// The kind of fit with its settings.
     #[serde(flatten)]
     pub kind: KindRecord,
-    /// Tables and files name the fit so.
+    /// Tables and files call the fit by this name.
     pub name: String,
     /// These spring groups are used; the list is null if they are all that are not optional.
     pub groups: Option<Vec<String>>,

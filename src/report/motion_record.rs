@@ -29,7 +29,7 @@ pub struct MotionOptionsRecord {
     pub gravity: Vec<f64>,
     /// Rayleigh's damping has these α in 1/s and β in s; it is null where a damping ratio is given.
     pub rayleigh: Option<[f64; 2]>,
-    /// The dampers beside springs have this damping ratio; it is null where none is given.
+    /// The damper parallel to each spring has this damping ratio. It is null if the scene gives no ratio.
     pub damping_ratio: Option<f64>,
     /// The mean displacement of this number of points is written.
     pub watched_points: usize,

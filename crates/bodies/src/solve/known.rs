@@ -17,7 +17,7 @@ impl KnownEquations {
     /// The equations under a support, which `solve` finds where they are not known.
     ///
     /// # Errors
-    /// As those of `solve`.
+    /// `solve` fails; its error is passed on.
     pub fn under(&self, support: &Support, solve: impl FnOnce() -> Result<Equations>) -> Result<Equations> {
         if let Some((_, equations)) = self.kept().iter().find(|(own, _)| own == support) {
             return Ok(equations.clone());

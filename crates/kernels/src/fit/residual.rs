@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// bound takes the place of its 2-norm, without eigenvalues.
 const ROUNDED: f64 = 1e-13;
 
-/// The mean and the maximum of a number over the elements; null if there is none.
+/// The mean and the maximum of a number over the elements. Both are null where no element has this number.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Spread {
     /// The mean is taken over the elements.

@@ -56,7 +56,7 @@ fn common(kind: Kind) -> [(String, Value); COMMON.len()] {
     let [name, objective, springs] = COMMON.map(String::from);
     let names = json!({
         "type": "string",
-        "description": "Tables and files name the fit so. Each fit has a name of its own, and none is `finite elements`.",
+        "description": "Tables and files call the fit by this name. No two fits have the same name, and no fit is called `finite elements`.",
         "x-default": "made from the settings",
     });
     let objectives = json!({

@@ -25,7 +25,7 @@ pub struct MotionRecipe {
     pub every: f64,
     /// How masses are lumped.
     pub lumping: Lumping,
-    /// The acceleration of gravity, m/s²; empty if there is none.
+    /// The acceleration of gravity, m/s², `[dimension]`. The list is empty without gravity.
     pub gravity: Vec<f64>,
     /// The damping.
     pub damping: DampingRecipe,

@@ -101,8 +101,8 @@ pub struct FittedMasses {
     pub count: usize,
     /// The regularization ρ was chosen.
     pub regularization: f64,
-    /// The second moments `Σ m x_k²` about the centre have at most this error, relative to those of the body. It is none, or that of lumped
-    /// masses.
+    /// The second moments `Σ m x_k²` about the centre have at most this error, relative to those of the body. The error is zero, or as large as that
+    /// of lumped masses.
     #[serde(rename = "second_moment_error")]
     pub second_error: f64,
     /// A mass changed by at most this factor.
