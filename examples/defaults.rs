@@ -1,6 +1,6 @@
 //! The study behind the default objective: every linear scene of the folder `scenes`, fitted in 64 ways.
 //!
-//! `cargo run --release --example defaults` prints, for each element type, the geometric mean of %e_rms over the loads
+//! `cargo run --release --example defaults` prints, for each element type, the geometric mean of e_rms in percent over the loads
 //! of its scenes, the worst of them, and how many networks are not stable. Scenes can be named:
 //! `cargo run --release --example defaults -- scenes/square_quad.toml`.
 
@@ -41,7 +41,7 @@ fn main() -> Result<()> {
             row.unstable += usize::from(!stable);
         }
     }
-    println!("{:8} {:28} {:>12} {:>8} {:>8}", "element", "fit", "mean %e_rms", "worst", "unstable");
+    println!("{:8} {:28} {:>12} {:>8} {:>8}", "element", "fit", "mean e_rms, %", "worst", "unstable");
     for ((element, _), (fit, row)) in rows {
         let mean = (row.errors.iter().map(|e| e.ln()).sum::<f64>() / row.errors.len() as f64).exp();
         let worst = row.errors.iter().copied().fold(0.0, f64::max);

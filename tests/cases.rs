@@ -1,4 +1,4 @@
-//! The reference figures of whole bodies, %e_rms / %e_max, and how networks that do not stand are told.
+//! The reference figures of whole bodies, e_rms / e_max, and how networks that do not stand are told.
 
 use springfit::element::Element;
 use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
@@ -194,7 +194,7 @@ fn comparisons_show_every_method() {
     let comparison = Comparison::of_element("three".into(), &outcomes, 1e4);
     let plot = comparison.plot().unwrap();
     for outcome in &outcomes {
-        assert!(comparison.csv().contains(&outcome.name) && comparison.table().contains(&outcome.name));
+        assert!(comparison.table.csv().contains(&outcome.name) && comparison.text().contains(&outcome.name));
         assert!(plot.contains(&outcome.name), "{} is not in the plot", outcome.name);
     }
     assert!(plot.starts_with("<svg") && plot.trim_end().ends_with("</svg>"));

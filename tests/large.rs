@@ -114,7 +114,7 @@ fn a_load_that_is_not_reached_is_told() {
     assert!(told("finite elements: ") && told("frobenius: "), "{notes:?}");
     assert!(outcome.fits[0].loads.iter().all(|load| load.error.is_none() && load.displacement.is_none()));
     assert!(report::report(&outcome).contains("\"converged\": false"));
-    assert!(report::table(&outcome).contains("stalled"));
+    assert!(report::tables(&outcome).contains("stalled"));
 }
 
 /// The study of one element: a triangle in plane strain is met exactly by springs that pull as their length.
@@ -128,7 +128,7 @@ fn the_study_of_stretches_has_all_its_parts() {
     assert!(exact.errors.iter().chain(&exact.excess).all(|e| e.unwrap().abs() < 1e-5), "{exact:?}");
     let others = study.fits.iter().filter(|fit| fit.name != exact.name && fit.name != "exact");
     assert!(others.flat_map(|fit| &fit.errors).all(|e| e.unwrap() > 0.1));
-    let text = report::stretches_text(&study);
+    let text = report::stretches_tables(&study).map(|table| table.titled_text()).concat();
     assert!(text.contains("sampled cubic") && text.contains("100000") && text.contains("Force at the pulled end"));
     let folder = TempDir::new().unwrap();
     let written =
@@ -166,6 +166,6 @@ fn a_load_that_is_reached_in_part_is_not_shown_as_the_whole() {
             "{names:?}"
         );
     }
-    let table = report::table(&outcome);
+    let table = report::tables(&outcome);
     assert!(table.contains("Largest displacement of the finite elements: push aside"), "{table}");
 }

@@ -84,7 +84,7 @@ fn finite_elements_and_springs_move_alike() {
     assert_eq!(motion.models[0].error(), None);
     let [mean, largest] = motion.models[1].error().unwrap();
     assert!(0.0 < mean && mean < 2.0 && largest < 4.0, "{mean} {largest}");
-    assert!(report::table(&outcome).contains("complete"));
+    assert!(report::tables(&outcome).contains("complete"));
 }
 
 /// `u = −g t²/2`, to the last digits with Newmark's average acceleration; nothing deforms, so nothing differs.
@@ -143,7 +143,7 @@ frequencies = 3
             let angle = PI * (i as f64 + 1.0 - place) / 20.0;
             assert_near(*f, speed * angle.sin() / (PI * 0.1), 1e-6 * f);
         }
-        let table = report::table(&outcome);
+        let table = report::tables(&outcome);
         assert!(table.contains("Natural frequencies") && table.contains("rigid motion") == (rigid > 0), "{table}");
         let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
         assert_eq!(json["frequencies"][0]["frequencies"].as_array().unwrap().len(), 3);
@@ -248,7 +248,7 @@ fn a_scene_without_motion_does_none() {
         run(&scene, &mut |event| assert!(!matches!(event, Event::Stage { name, .. } if name.contains("motion"))))
             .unwrap();
     assert!(outcome.motion.is_none() && outcome.frequencies.is_empty());
-    assert!(!report::table(&outcome).contains("otion"));
+    assert!(!report::tables(&outcome).contains("otion"));
     let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
     assert!(json["motion"].as_array().unwrap().is_empty() && json["motion_options"].is_null());
     let (_folder, path) = written(BLOCK);
@@ -301,7 +301,7 @@ fn a_motion_with_unsolved_steps_is_not_complete() {
     let springs = &outcome.motion.as_ref().unwrap().models[1];
     assert!(springs.unsolved > 0 && springs.steps == 50, "{}", springs.unsolved);
     assert_eq!(springs.ending, MotionEnding::Unsolved);
-    assert!(report::table(&outcome).contains(&format!("not solved in {} steps", springs.unsolved)));
+    assert!(report::tables(&outcome).contains(&format!("not solved in {} steps", springs.unsolved)));
     assert_eq!(report::Report::of(&outcome).motion[1].ended, "not solved");
 }
 
@@ -544,7 +544,7 @@ fn an_indefinite_network_is_told() {
     {
         assert!(notes.contains(part), "{notes}");
     }
-    assert!(report::table(&outcome).contains("not begun"));
+    assert!(report::tables(&outcome).contains("not begun"));
     assert!(report::motion_csv(indefinite).lines().count() == 1);
     // However far the steps are solved, what is definite is decided alike.
     for remainder in ["0.9", "1e-15"] {

@@ -1,7 +1,7 @@
 //! The files that a run writes.
 
 use springfit::model::{Lumping, lumped_masses};
-use springfit::report::{NetworkFile, notes, open_scene_outputs, table, write_outputs};
+use springfit::report::{NetworkFile, notes, open_scene_outputs, tables, write_outputs};
 use springfit::study::{Scene, run};
 use std::path::Path;
 
@@ -102,7 +102,7 @@ fn errors_that_are_not_asked_for_are_not_computed() {
     assert_eq!(fits[0].network.lengths, fits[1].network.lengths);
     assert!(fits[0].frobenius().is_none() && fits[0].spectral().is_none());
     assert!(fits[1].frobenius().unwrap().max > 0.0 && fits[1].spectral().unwrap().max > 0.0);
-    let row = |outcome| table(outcome).lines().find(|line| line.trim_start().starts_with("one")).unwrap().to_string();
+    let row = |outcome| tables(outcome).lines().find(|line| line.trim_start().starts_with("one")).unwrap().to_string();
     let words = |outcome| row(outcome).split_whitespace().map(String::from).collect::<Vec<_>>();
     assert_eq!(words(&without)[3..5], ["-", "-"]);
     assert_eq!(words(&with)[4], "/");

@@ -121,7 +121,7 @@ fn a_gauge_measures_the_material() {
         let frobenius = outcome.fits[0].loads[0].gauge.unwrap();
         assert!((frobenius.young / 2e4 - 1.0).abs() > 0.05, "{frobenius:?}");
         assert!(
-            report::table(&outcome)
+            report::tables(&outcome)
                 .contains("Gauge reading of the finite elements under pull: E = 2.0000e4 Pa, nu = 0.300.")
         );
         assert!(report::report(&outcome).contains("\"gauge\""));
@@ -231,7 +231,7 @@ fn an_index_of_ones_own_is_run_and_written() {
     assert_eq!((lloyd.printed.as_deref(), lloyd.why.as_deref()), (Some(&[1.0, 2.0][..]), Some("made up")));
     assert!(lloyd.differs() && lloyd.published);
     assert!(row(&paper, "triangle", "offdiag").found[0].unwrap() > 0.0);
-    let text = report::paper_text(&paper.tables[0]);
+    let text = report::paper_table(&paper.tables[0]).titled_text();
     assert!(text.contains("1.00 / 2.00") && text.contains("Differs from print, lloyd: made up"), "{text}");
     let out = folder.path().join("out");
     let written = report::write_paper(&paper, report::open_outputs(&out, &report::PAPER_FILES, &[]).unwrap()).unwrap();
@@ -254,7 +254,7 @@ fn columns_come_as_they_are_asked_for() {
         let path = folder.path().join("index.toml");
         fs::write(&path, INDEX.replace("[\"e_rms\", \"e_max\"]", columns).replace("[1, 2]", printed)).unwrap();
         let paper = run_paper(&Index::load(&path).unwrap(), &["A".into()], &path, &mut quiet).unwrap();
-        let text = report::paper_text(&paper.tables[0]);
+        let text = report::paper_table(&paper.tables[0]).titled_text();
         assert!(text.contains("the best printed is lloyd") && text.contains(best), "{text}");
     }
 }
@@ -264,7 +264,7 @@ fn errors_of_an_index_say_what_was_expected_and_found() {
     for (from, to, message) in [
         ("name = \"B\"", "name = \"A\"", "table[1].name: … found \"A\" again"),
         ("load = \"pull\"\n", "", "table[0].load: is missing"),
-        ("[\"seconds\"]", "[\"e_rms\"]", "table[1].columns: … found %e_rms"),
+        ("[\"seconds\"]", "[\"e_rms\"]", "table[1].columns: … found e_rms"),
         ("scene = \"scene.toml\"\n", "", "table[0].row[0].scene: is missing"),
         ("element = \"tri3\"\n", "element = \"tri3\"\nscene = \"a\"\n", "table[1].row[0].scene: … belong …"),
         ("[1, 2]", "[1]", "table[0].row[0].printed.lloyd: … 2 figures, … found 1"),
@@ -275,7 +275,7 @@ fn errors_of_an_index_say_what_was_expected_and_found() {
         ("name = \"B\"", "name = \"a\"", "table[1].name: … found \"a\" …"),
         ("name = \"B\"", "name = \"-\"", "table[1].name: … found \"-\""),
         ("[1, 2]", "[1, inf]", "table[0].row[0].printed.lloyd: expected figures up to 1e30, found inf"),
-        ("[\"e_rms\", \"e_max\"]", "[\"e_rms\", \"e_rms\"]", "table[0].columns: … found %e_rms, %e_rms"),
+        ("[\"e_rms\", \"e_max\"]", "[\"e_rms\", \"e_rms\"]", "table[0].columns: … found e_rms, e_rms"),
         (
             "[[table.row]]\nobject = \"triangle\"",
             "[[table.fit]]\nobjective = \"offdiag\"\n[[table.row]]\nobject = \"triangle\"",

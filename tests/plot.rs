@@ -1,8 +1,8 @@
 //! Figures and tables for a paper, from the folder of a run.
 
 use springfit::report::{
-    CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, ResultTable,
-    RunFolder, Shape, open_outputs, open_scene_outputs, write_convergence, write_outputs,
+    CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder, Shape,
+    Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
 };
 use springfit::study::{Scene, converge, run};
 use std::path::Path;
@@ -82,7 +82,7 @@ fn the_constants_of_a_network_are_all_counted() {
 #[test]
 fn tables_are_latex_and_markdown() {
     let cube = folder("cube_tet.toml");
-    let tables = ResultTable::all(&RunFolder::at(cube.path()).report().unwrap());
+    let tables = Table::all(&RunFolder::at(cube.path()).report().unwrap());
     for table in &tables {
         let markdown = Markup::Markdown.table(table);
         let rows: Vec<&str> = markdown.lines().filter(|line| line.starts_with('|')).collect();

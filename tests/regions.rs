@@ -544,8 +544,8 @@ fn the_material_of_samples_is_told_from_that_of_the_body() {
     assert_close(record.young.unwrap(), young, 1e-9);
     assert_close(record.poisson.unwrap(), poisson, 1e-9);
     let told = format!("not of the body; finite elements have E = {young:.4e} Pa, nu = {poisson:.3} there.");
-    assert!(springfit::report::table(&found).contains(&told), "{}", springfit::report::table(&found));
+    assert!(springfit::report::tables(&found).contains(&told), "{}", springfit::report::tables(&found));
     let one = outcome(&bar("hex8", [1, 1, 3], "[material]\nyoung = 2e3\npoisson = 0.3\n", EXACT));
-    assert!(!springfit::report::table(&one).contains("differ from cell to cell"));
+    assert!(!springfit::report::tables(&one).contains("differ from cell to cell"));
     assert_eq!(Report::of(&one).fits[0].as_material.asked_young, Some(2e3));
 }

@@ -608,7 +608,7 @@ fn made_tractions_are_in_balance() {
 /// The figures of docs/src/studies/whole-object.md: loads that no fit has seen, the range of the constants, and starts that agree or are said not to.
 #[test]
 fn held_out_errors_fall() {
-    // %e_rms under bending and gravity to the side that a prototype reached, and what is reached with volume springs.
+    // e_rms under bending and gravity to the side that a prototype reached, and what is reached with volume springs.
     type Limits<'a> = (&'a str, [&'a str; 2], [f64; 2], Option<[f64; 2]>);
     let limits: [Limits; 4] = [
         ("cube_tet", ["bending x", "gravity x"], [2.79, 1.73], Some([1.9, 1.2])),
@@ -618,7 +618,7 @@ fn held_out_errors_fall() {
     ];
     for (name, held_out, limit, with_volume) in limits {
         let outcome = run(&load(&format!("{name}_whole")), &mut |_| {}).unwrap();
-        print!("{}", report::table(&outcome));
+        print!("{}", report::tables(&outcome));
         let fit = |name: &str| outcome.fits.iter().find(|fit| fit.fit.name == name).unwrap();
         let error = |name: &str, load: &str| rms(&fit(name).loads, load);
         let start = if name == "cube_hex" { "whole from offdiag" } else { "whole from frobenius" };

@@ -205,7 +205,7 @@ def main():
         return
     print(f"{body['title']}\n{found['springs']} springs, {found['negative']} of them negative; "
           f"{'positive definite' if found['definite'] else 'NOT positive definite'}\n")
-    print(f"{'load':10} {'%e_rms':>10} {'%e_max':>10} {'%e_tip':>10} {'%e_energy':>10}")
+    print(f"{'load':10} {'e_rms %':>10} {'e_max %':>10} {'e_tip %':>10} {'e_energy %':>10}")
     for name, errors in found["loads"].items():
         print(f"{name:10} " + " ".join(f"{errors[key]:10.4f}" for key in ("e_rms", "e_max", "e_tip", "e_energy")))
 

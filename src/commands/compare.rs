@@ -11,7 +11,7 @@ use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::Solver;
 use springfit::material::Material;
-use springfit::report::{self, Comparison};
+use springfit::report::{self, Comparison, Table};
 use springfit::study::{self, Event, Forecast, stages};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -99,8 +99,9 @@ impl Compare {
                 let law = |e: Error| if e.key() == Some("energy") { e.at_key("--law") } else { e.of_option() };
                 let study = study.map_err(|e| e.placed(law))?;
                 let paths = report::write_stretches(&study, edition);
-                let tables = || report::stretches_tables(&study);
-                self.output.print(terminal, || &study, tables, || report::stretches_text(&study))?;
+                let tables = report::stretches_tables(&study);
+                let text = tables.each_ref().map(Table::titled_text).join("\n");
+                self.output.print(terminal, || &study, || tables.to_vec(), || text)?;
                 terminal.written(&paths?)?;
                 return Ok(ExitCode::SUCCESS);
             }
@@ -151,7 +152,7 @@ impl Compare {
         edition: Edition,
     ) -> Result<ExitCode> {
         let paths = comparison.write(edition);
-        self.output.print(terminal, record, || vec![comparison.result_table()], || comparison.table())?;
+        self.output.print(terminal, record, || vec![comparison.table.clone()], || comparison.text())?;
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }

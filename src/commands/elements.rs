@@ -38,7 +38,7 @@ impl Elements {
         let record = |file| Ok(ElementRecord::of(&Outline::shipped(file)?, file));
         let elements = SHIPPED.iter().map(record).collect::<Result<Vec<_>>>()?;
         let tables = || vec![report::elements_table(&elements)];
-        self.output.print(terminal, || &elements, tables, || report::elements_text(&elements))?;
+        self.output.print(terminal, || &elements, tables, || report::elements_table(&elements).text())?;
         Ok(ExitCode::SUCCESS)
     }
 }

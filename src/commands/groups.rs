@@ -44,7 +44,7 @@ impl Groups {
             (self.mesh.display().to_string(), self.options.mesh(&self.mesh)?)
         };
         let record = MeshRecord::of(name, &mesh);
-        self.output.print(terminal, || &record, || vec![record.result_table()], || record.text())?;
+        self.output.print(terminal, || &record, || vec![record.table()], || record.text())?;
         Ok(ExitCode::SUCCESS)
     }
 }

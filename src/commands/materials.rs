@@ -37,7 +37,7 @@ impl Materials {
         }
         let materials: Vec<MaterialRecord> = Energy::shipped()?.iter().map(MaterialRecord::from).collect();
         let tables = || vec![report::materials_table(&materials)];
-        self.output.print(terminal, || &materials, tables, || report::materials_text(&materials))?;
+        self.output.print(terminal, || &materials, tables, || report::materials_table(&materials).text())?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -4,7 +4,7 @@ use crate::terminal::{Terminal, json_text};
 use clap::Args;
 use serde::Serialize;
 use springfit::error::{Error, Result};
-use springfit::report::{self, Markup, Report, ResultTable};
+use springfit::report::{self, Markup, Report, Table};
 use springfit::study::Outcome;
 use springfit::text::printable_lines;
 
@@ -34,7 +34,7 @@ impl OutputOptions {
         &self,
         terminal: &mut Terminal,
         record: impl FnOnce() -> R,
-        tables: impl FnOnce() -> Vec<ResultTable>,
+        tables: impl FnOnce() -> Vec<Table>,
         text: impl FnOnce() -> String,
     ) -> Result<()> {
         self.print_text(terminal, &self.text(record, tables, text))
@@ -52,7 +52,7 @@ impl OutputOptions {
     pub fn text<R: Serialize>(
         &self,
         record: impl FnOnce() -> R,
-        tables: impl FnOnce() -> Vec<ResultTable>,
+        tables: impl FnOnce() -> Vec<Table>,
         text: impl FnOnce() -> String,
     ) -> String {
         let text = match (self.json, self.table) {
@@ -69,8 +69,8 @@ impl OutputOptions {
     /// Standard output cannot be written.
     pub fn print_outcome(&self, terminal: &mut Terminal, outcome: &Outcome) -> Result<()> {
         let record = || Report::of(outcome);
-        let text = || format!("{}\n{}", report::summary(outcome), report::table(outcome));
-        self.print(terminal, record, || ResultTable::all(&record()), text)?;
+        let text = || format!("{}\n{}", report::summary(outcome), report::tables(outcome));
+        self.print(terminal, record, || Table::all(&record()), text)?;
         if !self.json {
             let notes = if self.is_text() { report::notes_beside_summary } else { report::notes };
             notes(outcome).iter().for_each(|note| terminal.note(note));

@@ -57,8 +57,8 @@ impl Paper {
         self.output.print(
             terminal,
             || &paper.tables,
-            || paper.tables.iter().map(report::paper_result_table).collect(),
-            || paper.tables.iter().map(|table| report::paper_text(table) + "\n").collect(),
+            || paper.tables.iter().map(report::paper_table).collect(),
+            || paper.tables.iter().map(|table| report::paper_table(table).titled_text() + "\n").collect(),
         )?;
         // The experiments are in a folder of their own.
         let written: Vec<PathBuf> = written?.into_iter().filter(|path| path.parent() == Some(&folder)).collect();

@@ -3,7 +3,7 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::report::{Columns, Figure, Markup, PictureFormat, ResultTable, RunFolder};
+use springfit::report::{Columns, Figure, Markup, PictureFormat, RunFolder, Table};
 use springfit::{check_apart, check_file, write_whole};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -78,8 +78,8 @@ impl Plot {
     }
 
     fn tables(&self, run: &RunFolder, markup: Markup) -> Result<String> {
-        let tables = ResultTable::all(&run.report()?);
-        let chosen: Vec<&ResultTable> =
+        let tables = Table::all(&run.report()?);
+        let chosen: Vec<&Table> =
             tables.iter().filter(|table| self.of.as_ref().is_none_or(|name| table.name == *name)).collect();
         if let (Some(name), true) = (&self.of, chosen.is_empty()) {
             let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();

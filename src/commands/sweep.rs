@@ -103,12 +103,8 @@ impl Sweep {
         let failed = records.iter().filter(|record| record.error.is_some()).count();
         let title = format!("{}: {} of {} studies", sweep.title(), records.len(), marks.len());
         let (keys, studies) = (sweep.keys(), sweep.studies());
-        self.output.print(
-            terminal,
-            || table.json(),
-            || vec![report::studies_table(&title, keys, studies, |mark| lines.record(mark))],
-            || format!("{title}\n\n{}", report::studies_text(keys, studies, |mark| lines.record(mark))),
-        )?;
+        let found = || report::studies_table(&title, keys, studies, |mark| lines.record(mark));
+        self.output.print(terminal, || table.json(), || vec![found()], || report::studies_text(found()))?;
         if failed > 0 {
             terminal.note(&format!(
                 "{failed} of {} studies failed; the column \"error\" of the table says why",
@@ -126,7 +122,7 @@ impl Sweep {
             terminal,
             || studies.iter().map(|study| study.values()).collect::<Vec<_>>(),
             || vec![report::planned_table(&title, keys, studies)],
-            || format!("{title}\n\n{}", report::planned_text(keys, studies)),
+            || report::studies_text(report::planned_table(&title, keys, studies)),
         )?;
         Ok(ExitCode::SUCCESS)
     }

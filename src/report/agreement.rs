@@ -20,7 +20,7 @@ pub struct Agreement {
     pub agree: bool,
 }
 
-/// %e_rms below which errors are as good as none.
+/// An error e_rms, in percent, below this is as good as none.
 const NONE: f64 = 0.1;
 
 /// Up to this share they are said to agree.

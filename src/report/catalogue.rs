@@ -1,7 +1,6 @@
 //! The shipped elements and materials, one line each.
 
-use super::columns::{Heading, aligned};
-use super::result_table::ResultTable;
+use super::table::{Column, Table};
 use crate::element::{Cell, ElementFile, Outline};
 use crate::material::Energy;
 use serde::Serialize;
@@ -91,23 +90,12 @@ impl From<&Energy> for MaterialRecord {
 }
 
 /// The elements as a table; groups in parentheses are optional.
-pub fn elements_text(elements: &[ElementRecord]) -> String {
-    let (header, rows) = element_rows(elements);
-    aligned(&header, &rows) + "\nA fit uses the groups in parentheses only where its \"springs\" name them.\n"
-}
-
-/// The same table, to be typeset.
-pub fn elements_table(elements: &[ElementRecord]) -> ResultTable {
-    let (header, rows) = element_rows(elements);
-    ResultTable::printed("elements", "Elements; groups in parentheses are optional", &header, &rows)
-}
-
-fn element_rows(elements: &[ElementRecord]) -> ([Heading; 4], Vec<Vec<String>>) {
-    let header = [
-        Heading::words("element"),
-        Heading::numbers("nodes"),
-        Heading::words("title"),
-        Heading::sentences("spring groups"),
+pub fn elements_table(elements: &[ElementRecord]) -> Table {
+    let columns = vec![
+        Column::words("element"),
+        Column::numbers("nodes"),
+        Column::words("title"),
+        Column::sentences("spring groups"),
     ];
     let group = |group: &SpringGroupRecord| match group.optional {
         true => format!("({})", group.name),
@@ -117,27 +105,18 @@ fn element_rows(elements: &[ElementRecord]) -> ([Heading; 4], Vec<Vec<String>>) 
         let groups: Vec<String> = element.springs.iter().map(group).collect();
         vec![element.name.clone(), element.nodes.to_string(), element.title.clone(), groups.join(", ")]
     };
-    (header, elements.iter().map(row).collect())
+    let note = "A fit uses the groups in parentheses only where its \"springs\" name them.";
+    Table::new("elements", "Elements", columns, elements.iter().map(row)).with_notes([note.to_string()])
 }
 
 /// The materials as a table.
-pub fn materials_text(materials: &[MaterialRecord]) -> String {
-    let (header, rows) = material_rows(materials);
-    aligned(&header, &rows) + "\nThe moduli of every energy follow from \"young\" and \"poisson\" of the scene.\n"
-}
-
-/// The same table, to be typeset.
-pub fn materials_table(materials: &[MaterialRecord]) -> ResultTable {
-    let (header, rows) = material_rows(materials);
-    ResultTable::printed("materials", "Hyperelastic materials", &header, &rows)
-}
-
-fn material_rows(materials: &[MaterialRecord]) -> ([Heading; 3], Vec<Vec<String>>) {
-    let header = [Heading::words("material"), Heading::words("title"), Heading::sentences("parameters")];
+pub fn materials_table(materials: &[MaterialRecord]) -> Table {
+    let columns = vec![Column::words("material"), Column::words("title"), Column::sentences("parameters")];
     let row = |material: &MaterialRecord| {
         let parameters: Vec<String> =
             material.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         vec![material.name.clone(), material.title.clone(), parameters.join(", ")]
     };
-    (header, materials.iter().map(row).collect())
+    let note = "The moduli of every energy follow from \"young\" and \"poisson\" of the scene.";
+    Table::new("materials", "Hyperelastic materials", columns, materials.iter().map(row)).with_notes([note.to_string()])
 }

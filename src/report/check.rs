@@ -1,7 +1,6 @@
 //! What `check` found, as text and as a table.
 
-use super::columns::Heading;
-use super::result_table::ResultTable;
+use super::table::{Column, Table};
 use crate::study::{Inspection, Mark, Property};
 use std::fmt::Write;
 
@@ -16,9 +15,9 @@ pub fn check_text(inspection: &Inspection) -> String {
     text
 }
 
-/// All properties of all files, to be typeset.
-pub fn check_table(inspections: &[Inspection]) -> ResultTable {
-    let header = ["file", "property", "mark", "finding"].map(Heading::words);
+/// All properties of all files.
+pub fn check_table(inspections: &[Inspection]) -> Table {
+    let columns = ["file", "property", "mark", "finding"].map(Column::words).to_vec();
     let row = |inspection: &Inspection, property: &Property| {
         let mark = word(property.mark).trim().to_string();
         vec![inspection.file.clone(), property.name.into(), mark, property.finding.clone()]
@@ -26,8 +25,7 @@ pub fn check_table(inspections: &[Inspection]) -> ResultTable {
     let of_file = |inspection: &Inspection| -> Vec<Vec<String>> {
         inspection.properties.iter().map(|property| row(inspection, property)).collect()
     };
-    let rows: Vec<Vec<String>> = inspections.iter().flat_map(of_file).collect();
-    ResultTable::printed("check", "Properties of elements", &header, &rows)
+    Table::new("check", "Properties of elements", columns, inspections.iter().flat_map(of_file))
 }
 
 fn word(mark: Mark) -> &'static str {

@@ -1,10 +1,8 @@
 //! Tables, CSV and a work-precision plot of a comparison.
 
-use super::columns::{Heading, aligned, texts};
 use super::figure::{Columns, precision_chart};
-use super::result_table::ResultTable;
-use super::rows::csv;
-use super::table::summary_line;
+use super::summary::summary_line;
+use super::table::{Column, Table};
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::file::Edition;
@@ -15,17 +13,13 @@ use std::path::PathBuf;
 /// What [`Comparison::write`] writes.
 pub const COMPARISON_FILES: [&str; 2] = ["table.csv", "plot.svg"];
 
-/// Rows of text under headings: those of a table and of its CSV file.
+/// A table with one row per fit and solver, and its plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// The element, the shapes and the material.
-    pub title: String,
+    /// The title names the element, the shapes and the material.
+    pub table: Table,
     /// What is compared, under the title of the table.
     pub about: Option<String>,
-    /// The headings.
-    pub columns: Vec<Heading>,
-    /// The cells of the table, one row per fit and solver.
-    pub rows: Vec<Vec<String>>,
     /// What the plot shows: a name per point, seconds per element, and the error.
     pub points: Vec<(String, f64, f64)>,
     /// What the error is.
@@ -36,21 +30,22 @@ impl Comparison {
     /// Every method on random shapes of one element, with the moduli of its springs beside `young` that was asked for; the plot
     /// has the relative 2-norm error.
     pub fn of_element(title: String, outcomes: &[MethodOutcome], young: f64) -> Comparison {
-        let columns = [
-            Heading::words("objective"),
-            Heading::words("solver"),
-            Heading::numbers("us/element median"),
-            Heading::numbers("us/element least"),
-            Heading::numbers("us/element largest"),
-            Heading::numbers("Frobenius mean"),
-            Heading::numbers("Frobenius max"),
-            Heading::numbers("2-norm mean"),
-            Heading::numbers("2-norm max"),
-            Heading::numbers("gap max"),
-            Heading::numbers("% k < 0"),
-            Heading::numbers("E / material"),
-            Heading::numbers("nu"),
-            Heading::numbers("Zener"),
+        let time = |title| Column::numbers(title).unit("µs/element");
+        let columns = vec![
+            Column::words("objective"),
+            Column::words("solver"),
+            time("median"),
+            time("least"),
+            time("largest"),
+            Column::numbers("mean").group("Frobenius"),
+            Column::numbers("max").group("Frobenius"),
+            Column::numbers("mean").group("2-norm"),
+            Column::numbers("max").group("2-norm"),
+            Column::numbers("gap max"),
+            Column::numbers("k < 0").unit("%"),
+            Column::numbers("E / material"),
+            Column::numbers("ν"),
+            Column::numbers("Zener"),
         ];
         let row = |o: &MethodOutcome| {
             let [least, median, largest] = o.seconds.map(|s| format!("{:.3}", 1e6 * s));
@@ -85,25 +80,23 @@ impl Comparison {
             }
         };
         Comparison {
-            title,
+            table: Table::new("comparison", title, columns, outcomes.iter().map(row)),
             about: None,
-            columns: columns.into(),
-            rows: outcomes.iter().map(row).collect(),
             points: outcomes.iter().map(|o| (name(o), o.seconds[1], o.spectral.mean)).collect(),
             error: "mean |R-K|/|R|, 2-norm".into(),
         }
     }
 
-    /// Every fit of a scene; the plot has the geometric mean of %e_rms over the loads. Networks that do not stand have no
+    /// Every fit of a scene; the plot has the geometric mean of e_rms over the loads. Networks that do not stand have no
     /// point.
     pub fn of_scene(outcome: &Outcome) -> Comparison {
         let elements = outcome.mesh.cell_count().max(1) as f64;
-        let mut columns = vec![Heading::words("fit"), Heading::numbers("us/element")];
+        let mut columns = vec![Column::words("fit"), Column::numbers("time").unit("µs/element")];
         for load in &outcome.loads {
-            columns.extend(["rms", "max"].map(|error| Heading::numbers(format!("{} %e_{error}", load.name))));
+            columns.extend(["e_rms", "e_max"].map(|error| Column::numbers(error).unit("%").group(&*load.name)));
         }
-        columns.extend(["springs", "k < 0", "tensor % off"].map(Heading::numbers));
-        columns.push(Heading::words("network"));
+        columns.extend(["springs", "k < 0"].map(Column::numbers));
+        columns.extend([Column::numbers("error of C").unit("%"), Column::words("network")]);
         let (mut rows, mut points) = (Vec::new(), Vec::new());
         for fit in &outcome.fits {
             let seconds = fit.seconds / elements;
@@ -123,26 +116,15 @@ impl Comparison {
                 points.push((fit.fit.name.clone(), seconds, mean.exp()));
             }
         }
-        let error = "%e_rms, geometric mean of the loads".into();
-        let title = printable(&outcome.scene).into_owned();
-        let about = Some(summary_line(outcome));
-        Comparison { title, about, columns, rows, points, error }
+        let error = "e_rms in %, geometric mean of the loads".into();
+        let table = Table::new("comparison", printable(&outcome.scene), columns, rows);
+        Comparison { table, about: Some(summary_line(outcome)), points, error }
     }
 
     /// The table as text.
-    pub fn table(&self) -> String {
+    pub fn text(&self) -> String {
         let about = self.about.as_ref().map_or(String::new(), |about| format!("{about}\n"));
-        format!("{}\n{about}\n{}", self.title, aligned(&self.columns, &self.rows))
-    }
-
-    /// The table, to be typeset.
-    pub fn result_table(&self) -> ResultTable {
-        ResultTable::printed("comparison", &self.title, &self.columns, &self.rows)
-    }
-
-    /// The table as CSV.
-    pub fn csv(&self) -> String {
-        csv(&texts(&self.columns), &self.rows)
+        format!("{}\n{about}\n{}", self.table.title, self.table.text())
     }
 
     /// Writes `table.csv` and `plot.svg`, and returns the paths.
@@ -151,7 +133,7 @@ impl Comparison {
     /// Nothing can be plotted; a file cannot be written, and the folder is as it was.
     pub fn write(&self, edition: Edition) -> Result<Vec<PathBuf>> {
         let [table, plot] = COMPARISON_FILES;
-        let files = [(table, self.csv()), (plot, self.plot()?)];
+        let files = [(table, self.table.csv()), (plot, self.plot()?)];
         write_files(edition, &files)
     }
 
@@ -164,6 +146,6 @@ impl Comparison {
         if known.is_empty() {
             return Err(Error::new("nothing to plot: no fit has an error above zero"));
         }
-        precision_chart(self.title.clone(), self.error.clone(), &known).svg(Columns::Two)
+        precision_chart(self.table.title.clone(), self.error.clone(), &known).svg(Columns::Two)
     }
 }

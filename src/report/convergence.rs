@@ -1,10 +1,8 @@
 //! A convergence study as tables, as CSV and as a plot of errors against cell size.
 
-use super::columns::{Heading, aligned};
 use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
-use super::result_table::ResultTable;
-use super::rows::csv;
-use super::table::size;
+use super::summary::size;
+use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
@@ -13,37 +11,36 @@ use crate::text::printable;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-fn headings() -> [Heading; 11] {
-    [
-        Heading::words("model"),
-        Heading::words("level"),
-        Heading::numbers("h\nmm"),
-        Heading::numbers("cells"),
-        Heading::numbers("unknowns"),
-        Heading::numbers("compliance\nJ"),
-        Heading::numbers("of finite\nelements %"),
-        Heading::numbers("of the\ntruth %"),
-        Heading::numbers("rate"),
-        Heading::numbers("displacements\n%e_rms"),
-        Heading::words("network"),
+fn columns() -> Vec<Column> {
+    vec![
+        Column::words("model"),
+        Column::words("level"),
+        Column::numbers("h").unit("mm"),
+        Column::numbers("cells"),
+        Column::numbers("unknowns"),
+        Column::numbers("compliance").unit("J"),
+        Column::numbers("of finite\nelements").unit("%"),
+        Column::numbers("of the\ntruth").unit("%"),
+        Column::numbers("rate"),
+        Column::numbers("displacements\ne_rms").unit("%"),
+        Column::words("network"),
     ]
 }
 
-/// One table for each load, with what its errors refer to.
+/// The tables under the title of the scene.
 pub fn convergence_text(convergence: &Convergence) -> String {
     let mut text = format!("{}\n{} on every level\n", printable(&convergence.scene), size(&convergence.extent));
-    for load in &convergence.loads {
-        let table = aligned(&headings(), &load_rows(convergence, load));
-        write!(text, "\n{}\n\n{table}", load_title(convergence, load)).expect("a String grows");
+    for table in convergence_tables(convergence) {
+        write!(text, "\n{}", table.titled_text()).expect("a String grows");
     }
     text
 }
 
-/// The same tables, to be typeset.
-pub fn convergence_tables(convergence: &Convergence) -> Vec<ResultTable> {
+/// One table for each load.
+pub fn convergence_tables(convergence: &Convergence) -> Vec<Table> {
     let table = |load: &LoadConvergence| {
         let name = format!("convergence {}", load.name);
-        ResultTable::printed(&name, &load_title(convergence, load), &headings(), &load_rows(convergence, load))
+        Table::new(&name, load_title(convergence, load), columns(), load_rows(convergence, load))
     };
     convergence.loads.iter().map(table).collect()
 }

@@ -75,7 +75,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
                 .set("text-anchor", "middle")
                 .set("font-size", size)
         };
-        let error = error.map_or(String::new(), |e| format!("%e_rms {:.2}, %e_max {:.2}", e.rms, e.max));
+        let error = error.map_or(String::new(), |e| format!("e_rms {:.2} %, e_max {:.2} %", e.rms, e.max));
         document = document
             .add(path(&rest, "#999", "0.6 2.4", 0.8))
             .add(path(&body, "#0072b2", "5 3", 1.1))

@@ -1,6 +1,6 @@
 //! What would be done, with estimates of time and memory.
 
-use super::columns::{Heading, aligned};
+use super::table::{Column, Table};
 use crate::study::Forecast;
 use crate::text::{memory_in_words, printable, time_in_words};
 
@@ -20,7 +20,7 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
             Some(why) => format!("left out  {}: {why}\n", printable(stage)),
         };
     }
-    let header = [Heading::words("expected"), Heading::numbers("time"), Heading::numbers("memory")];
+    let columns = vec![Column::words("expected"), Column::numbers("time"), Column::numbers("memory")];
     let words = |value: Option<f64>, words: fn(f64) -> String| value.map_or("unknown".into(), words);
     let mut rows: Vec<Vec<String>> = forecast
         .stages
@@ -32,6 +32,6 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
     let gap = if stages.is_empty() { "" } else { "\n" };
     format!(
         "{text}{gap}{}\nTimes and memory are estimates for this machine{unknown}. Nothing was run.\n",
-        aligned(&header, &rows)
+        Table::new("expected", "", columns, rows).text()
     )
 }

@@ -1,33 +1,35 @@
 //! Natural frequencies side by side.
 
-use super::columns::{Heading, aligned};
+use super::table::Digits::{Signed, Significant};
+use super::table::{Cell, Column, Table};
 use crate::study::{FrequencyOutcome, Outcome};
 
-/// One row per model, a network's frequencies with their distance from those of the finite elements; empty where none were asked for.
-pub(super) fn frequency_table(outcome: &Outcome) -> String {
-    let known = || outcome.frequencies.iter().filter_map(|model| model.frequencies.as_ref());
-    let Some(count) = known().map(Vec::len).max() else { return String::new() };
-    let finite = outcome.frequencies[0].frequencies.as_ref();
-    let mut header = vec![Heading::words("frequencies")];
-    header.extend((1..=count).map(|i| Heading::numbers(format!("{i}\nHz (%)"))));
-    let row = |(place, model): (usize, &FrequencyOutcome)| {
-        let mut row = vec![model.name.clone()];
-        match &model.frequencies {
-            Some(found) => row.extend(found.iter().enumerate().map(|(i, own)| {
-                let off = |body: &Vec<f64>| format!("({:+.1})", 100.0 * (own / body[i] - 1.0));
-                let off = finite.filter(|_| place > 0).map_or(String::new(), off);
-                format!("{own:.3} {off:>7}")
-            })),
-            None => row.extend(std::iter::repeat_n("-".to_string(), count)),
-        }
-        row
+/// One row per model, a network's frequencies with their distance from those of the finite elements.
+pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
+    let known = |model: &FrequencyOutcome| model.frequencies.clone().unwrap_or_default();
+    let most = models.iter().map(|model| known(model).len()).max().unwrap_or(0);
+    let finite = models.first().map(known).unwrap_or_default();
+    let pair = |i: usize| {
+        let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string());
+        [column("f", "Hz"), column("off", "%")]
     };
-    let rows: Vec<_> = outcome.frequencies.iter().enumerate().map(row).collect();
-    format!("\nNatural frequencies{}\n{}", rigid(outcome), aligned(&header, &rows))
+    let columns = std::iter::once(Column::words("model")).chain((1..=most).flat_map(pair)).collect();
+    let row = |(place, model): (usize, &FrequencyOutcome)| {
+        let values = known(model);
+        let cells = |i: usize| {
+            let value = values.get(i).copied();
+            let body = finite.get(i).filter(|_| place > 0);
+            let off = value.zip(body).map(|(value, body)| value / body - 1.0);
+            [Cell::number(value, Significant(4)), Cell::percent(off, Signed(1))]
+        };
+        std::iter::once(Cell::from(&*model.name)).chain((0..most).flat_map(cells)).collect::<Vec<_>>()
+    };
+    let rows: Vec<_> = if most > 0 { models.iter().enumerate().map(row).collect() } else { Vec::new() };
+    Table::new("frequencies", format!("Natural frequencies{}", rigid(models)), columns, rows)
 }
 
-fn rigid(outcome: &Outcome) -> String {
-    match outcome.frequencies[0].rigid {
+fn rigid(models: &[FrequencyOutcome]) -> String {
+    match models.first().map_or(0, |model| model.rigid) {
         0 => String::new(),
         1 => ", without those of one rigid motion that no support prevents".into(),
         count => format!(", without those of {count} rigid motions that no support prevents"),

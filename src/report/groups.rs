@@ -1,8 +1,7 @@
 //! The named parts of a mesh.
 
-use super::columns::{Heading, aligned};
-use super::result_table::ResultTable;
-use super::table::size;
+use super::summary::size;
+use super::table::{Column, Table};
 use crate::mesh::{ListedSides, Mesh};
 use crate::study::extent;
 use serde::Serialize;
@@ -89,19 +88,14 @@ impl MeshRecord {
         if self.groups.is_empty() {
             return head + "\nThe mesh has no groups; a condition such as where = \"z < 0.01\" selects a part of it.\n";
         }
-        let (header, rows) = self.rows();
-        format!("{head}\n{}", aligned(&header, &rows))
+        format!("{head}\n{}", self.table().text())
     }
 
-    /// The same table, to be typeset.
-    pub fn result_table(&self) -> ResultTable {
-        let (header, rows) = self.rows();
-        ResultTable::printed("groups", &format!("Groups of {}", self.mesh), &header, &rows)
-    }
-
-    fn rows(&self) -> (Vec<Heading>, Vec<Vec<String>>) {
-        let mut header = vec![Heading::words("group")];
-        header.extend(["cells", "sides", "edges", "points", "from m", "to m"].map(Heading::numbers));
+    /// The groups as a table.
+    pub fn table(&self) -> Table {
+        let mut columns = vec![Column::words("group")];
+        columns.extend(["cells", "sides", "edges", "points"].map(Column::numbers));
+        columns.extend(["from", "to"].map(|corner| Column::numbers(corner).unit("m")));
         let corner = |x: &[f64]| match x {
             [] => "-".into(),
             _ => x.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", "),
@@ -112,6 +106,6 @@ impl MeshRecord {
             row.extend(counts.into_iter().chain([corner(&group.from), corner(&group.to)]));
             row
         };
-        (header, self.groups.iter().map(row).collect())
+        Table::new("groups", format!("Groups of {}", self.mesh), columns, self.groups.iter().map(row))
     }
 }

@@ -78,8 +78,8 @@ pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>, is_bu
     let rotation = body?.rotation;
     let law = if is_bulk { ", a law in [material] compares both at large deformation" } else { "" };
     Some(format!(
-        "{}: the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear. Of the %e_rms \
-         {mean:.2} / {max:.2} the fit's is {own_mean:.2} / {own_max:.2}: that of two linear models. linear = true in [motion] \
+        "{}: the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear. Of the e_rms \
+         of {mean:.2} / {max:.2} % the fit's is {own_mean:.2} / {own_max:.2} %: that of two linear models. linear = true in [motion] \
          compares linear models{law}",
         model.name
     ))

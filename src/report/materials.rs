@@ -1,49 +1,9 @@
 //! What the networks are as materials, in words.
 
-use super::columns::{Heading, aligned};
-use crate::material::CellMap;
 use crate::study::{FitOutcome, Outcome};
 
 /// The share by which a tensor or Young's modulus may be off before a network is warned of.
 const FAR: f64 = 0.1;
-
-/// One row per fit.
-pub(super) fn material_table(outcome: &Outcome) -> String {
-    let header = [
-        Heading::words("network as a material"),
-        Heading::numbers("E Pa"),
-        Heading::numbers("nu"),
-        Heading::numbers("error of C\n%"),
-    ];
-    let row = |fit: &FitOutcome| {
-        let m = &fit.as_material;
-        vec![
-            fit.fit.name.clone(),
-            m.young.map_or("-".into(), |young| format!("{young:.4e}")),
-            m.poisson.map_or("-".into(), |poisson| format!("{poisson:.3}")),
-            percent(m.distance).unwrap_or("-".into()),
-        ]
-    };
-    let rows: Vec<_> = outcome.fits.iter().map(row).collect();
-    if rows.is_empty() { String::new() } else { format!("\n{}{}", aligned(&header, &rows), of_samples(outcome)) }
-}
-
-/// Of what a body of several materials the rows speak: the mean of its samples, which is not that of the body.
-fn of_samples(outcome: &Outcome) -> String {
-    let Some(m) = outcome.fits.first().map(|fit| &fit.as_material) else { return String::new() };
-    if matches!(outcome.material.moduli(), CellMap::Uniform(_)) {
-        return String::new();
-    }
-    let asked = match (m.asked_young, m.asked_poisson) {
-        (Some(young), Some(poisson)) => format!("; finite elements have E = {young:.4e} Pa, nu = {poisson:.3} there"),
-        (Some(young), None) => format!("; finite elements have E = {young:.4e} Pa there"),
-        (None, _) => String::new(),
-    };
-    let samples = if m.samples == 1 { "one sample".into() } else { format!("{} samples", m.samples) };
-    format!(
-        "The materials differ from cell to cell: E and nu are those of {samples} of cells, not of the body{asked}.\n"
-    )
-}
 
 /// A warning of a network that is far from the material.
 pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {

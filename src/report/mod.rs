@@ -3,7 +3,6 @@
 mod agreement;
 mod catalogue;
 mod check;
-mod columns;
 mod comparison;
 mod convergence;
 mod deformed;
@@ -18,13 +17,13 @@ mod json;
 mod key_tables;
 mod key_types;
 mod linear_theory;
-mod load_errors;
 mod load_record;
 mod materials;
 mod motion;
 mod motion_record;
 mod names;
 mod network;
+mod notes;
 mod outline;
 mod outputs;
 pub mod page;
@@ -33,23 +32,19 @@ mod pictures;
 mod quality;
 mod referee;
 mod region_record;
-mod result_table;
-mod rows;
+mod run_tables;
 mod series;
 mod stability;
 mod stretches;
 mod study_lines;
 mod study_record;
 mod study_table;
+mod summary;
 mod surface;
 mod table;
-mod typeset;
 
-pub use catalogue::{
-    ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, elements_text, materials_table, materials_text,
-};
+pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, materials_table};
 pub use check::{check_table, check_text};
-pub use columns::{Heading, set_page_width};
 pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_tables, convergence_text, write_convergence};
 pub use deformed::deformed;
@@ -67,9 +62,10 @@ pub use load_record::{LoadRecord, MeasuredRecord};
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
+pub use notes::{notes, notes_beside_summary};
 pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
-pub use paper::{PAPER_FILES, paper_result_table, paper_text, write_paper};
+pub use paper::{PAPER_FILES, paper_table, write_paper};
 pub use pictures::{displacement_grid, network_grid};
 pub use quality::mesh_notes;
 pub use referee::{
@@ -77,15 +73,14 @@ pub use referee::{
     referee_tables, referee_text, write_referee,
 };
 pub use region_record::RegionRecord;
-pub use result_table::{CellRecord, ColumnRecord, ResultTable};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
-pub use stretches::{STRETCHES_FILES, stretches_tables, stretches_text, write_stretches};
+pub use stretches::{STRETCHES_FILES, stretches_tables, write_stretches};
 pub use study_lines::StudyLines;
 pub use study_record::StudyRecord;
-pub use study_table::{StudyTable, check_study_table, planned_table, planned_text, studies_table, studies_text};
-pub use table::{notes, notes_beside_summary, summary, table};
-pub use typeset::Markup;
+pub use study_table::{StudyTable, check_study_table, planned_table, studies_table, studies_text};
+pub use summary::{summary, tables};
+pub use table::{Cell, Column, Markup, Table, set_page_width};
 
 use crate::error::Result;
 use crate::file::{Edition, write_whole, write_with};

@@ -1,67 +1,74 @@
 //! How a scene's models moved: a table, notes and a file over time for each.
 
-use super::columns::{Heading, aligned};
 use super::linear_theory::turning_note;
-use super::rows::csv;
+use super::motion_record::{MotionOptionsRecord, MotionRecord};
+use super::quality::counted;
+use super::table::Digits::{Fixed, Significant};
+use super::table::{Cell, Column, Table, csv};
 use crate::scalar::norm;
-use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record};
+use crate::study::{ModelMotion, MotionEnding, MotionRecipe, Outcome, Record, motion_title};
 
-/// One row per model; empty without a motion.
-pub(super) fn motion_table(outcome: &Outcome) -> String {
-    let Some(motion) = &outcome.motion else { return String::new() };
-    let mut header = vec![Heading::words("motion")];
-    header.extend(
-        [
-            "steps",
-            "steps/s",
-            "kinetic (J)\nat the end",
-            "elastic (J)\nstart / end",
-            "work (J)\nat the end",
-            "dissipated (J)\nat the end",
-            "drift %",
-            "momentum (kg m/s)\nat the end",
-            "%e_rms\nmean / max",
+/// One row per model.
+pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRecord]) -> Table {
+    let energy = |title| Column::numbers(title).unit("J");
+    let columns = vec![
+        Column::words("model"),
+        Column::words("ended"),
+        Column::numbers("steps"),
+        Column::numbers("speed").unit("steps/s"),
+        energy("kinetic").group("at the end"),
+        energy("work").group("at the end"),
+        energy("dissipated").group("at the end"),
+        energy("start").group("elastic energy"),
+        energy("end").group("elastic energy"),
+        Column::numbers("drift of\nthe energy").unit("%"),
+        Column::numbers("momentum\nat the end").unit("kg m/s"),
+        Column::numbers("mean").unit("%").group("e_rms"),
+        Column::numbers("max").unit("%").group("e_rms"),
+    ];
+    let row = |model: &MotionRecord| {
+        // The state at the start says nothing of the end.
+        let end = |values: &[Option<f64>]| if values.len() > 1 { values.last().copied().flatten() } else { None };
+        let start = |values: &[Option<f64>]| values.first().copied().flatten().filter(|_| values.len() > 1);
+        let momentum = model.momentum.last().filter(|_| model.momentum.len() > 1);
+        let momentum = momentum.and_then(|axes| axes.iter().copied().collect::<Option<Vec<f64>>>());
+        let energy = |value| Cell::number(value, Significant(4));
+        vec![
+            Cell::from(&*model.name),
+            ended(model).into(),
+            model.steps.into(),
+            Cell::number(model.steps_per_second, Significant(3)),
+            energy(end(&model.kinetic)),
+            energy(end(&model.work)),
+            energy(end(&model.dissipated)),
+            energy(start(&model.elastic)),
+            energy(end(&model.elastic)),
+            Cell::percent(end(&model.drift), Fixed(2)),
+            energy(momentum.map(|axes| norm(&axes))),
+            Cell::number(model.e_rms_mean, Fixed(2)),
+            Cell::number(model.e_rms_max, Fixed(2)),
         ]
-        .map(Heading::numbers),
-    );
-    header.push(Heading::words("ended"));
-    let rows: Vec<_> = motion.models.iter().map(row).collect();
-    format!("\n{}\n{}", setting(motion), aligned(&header, &rows))
-}
-
-fn setting(motion: &MotionOutcome) -> String {
-    let states = motion.models.iter().map(|model| model.records.len()).max().unwrap_or(0);
-    format!("Motion of {}, {states} states written", motion.recipe.title())
-}
-
-fn row(model: &ModelMotion) -> Vec<String> {
-    let ended = match &model.ending {
-        MotionEnding::Complete | MotionEnding::Refused(_) => model.ending.name().into(),
-        MotionEnding::Unsolved => format!("{} in {}", model.ending.name(), steps(model.unsolved)),
-        MotionEnding::NoResponse | MotionEnding::RanAway => {
-            format!("{} after {} steps", model.ending.name(), model.steps)
-        }
     };
-    let none = || "-".to_string();
-    let speed = if model.steps > 0 { format!("{:.0}", model.steps_per_second()) } else { none() };
-    let mut row = vec![model.name.clone(), model.steps.to_string(), speed];
-    // The state at the start says nothing of the end.
-    match (model.records.first(), model.records.last().filter(|_| model.has_moved())) {
-        (Some(first), Some(last)) => {
-            let momentum = norm(&last.account.momentum);
-            let balance = last.account.balance;
-            row.push(format!("{:.3e}", last.account.kinetic));
-            row.push(format!("{:.3e} / {:.3e}", first.account.elastic, last.account.elastic));
-            row.push(balance.map_or_else(none, |b| format!("{:.3e}", b.work)));
-            row.push(balance.map_or_else(none, |b| format!("{:.3e}", b.dissipated)));
-            row.push(balance.map_or_else(none, |b| format!("{:.2}", 100.0 * b.drift)));
-            row.push(format!("{momentum:.3e}"));
-        }
-        _ => row.extend(std::iter::repeat_n(none(), 6)),
+    let title = options.map_or(String::new(), |options| setting(options, models));
+    Table::new("motion", title, columns, models.iter().map(row))
+}
+
+fn setting(options: &MotionOptionsRecord, models: &[MotionRecord]) -> String {
+    let states = models.iter().map(|model| model.time.len()).max().unwrap_or(0);
+    let MotionOptionsRecord { duration, step, steps, integrator, precision, .. } = options;
+    let title = motion_title(*duration, *steps, *step, integrator, precision);
+    format!("Motion of {title}, {states} states written")
+}
+
+/// How the motion ended, and when.
+fn ended(model: &MotionRecord) -> String {
+    if model.ended == MotionEnding::Unsolved.name() {
+        format!("{} in {}", model.ended, counted(model.unsolved_steps, "step"))
+    } else if [MotionEnding::NoResponse, MotionEnding::RanAway].iter().any(|ending| ending.name() == model.ended) {
+        format!("{} after {}", model.ended, counted(model.steps, "step"))
+    } else {
+        model.ended.clone()
     }
-    row.push(model.error().map_or_else(none, |[mean, max]| format!("{mean:.2} / {max:5.2}")));
-    row.push(ended);
-    row
 }
 
 /// Where steps do not divide the times that are asked for.
@@ -89,10 +96,6 @@ fn step_notes(recipe: &MotionRecipe) -> Vec<String> {
 /// Without the last digits, which are rounding errors of products.
 fn short(seconds: f64) -> f64 {
     format!("{seconds:.12e}").parse().unwrap_or(seconds)
-}
-
-fn steps(count: usize) -> String {
-    format!("{count} {}", if count == 1 { "step" } else { "steps" })
 }
 
 /// What a reader must know of a motion before trusting it.
@@ -127,7 +130,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
             )),
         }
         if model.unsolved > 0 {
-            let many = steps(model.unsolved);
+            let many = counted(model.unsolved, "step");
             notes.push(format!("{name}: in {many} the equations were not solved to the tolerance"));
         }
     }

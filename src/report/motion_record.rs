@@ -2,7 +2,7 @@
 
 use crate::dynamics::Integrator;
 use crate::number::finite;
-use crate::study::{DampingRecipe, ModelMotion, MotionEnding, MotionOutcome, Record};
+use crate::study::{DampingRecipe, ForcePrecision, ModelMotion, MotionEnding, MotionOutcome, Record};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,9 @@ pub struct MotionOptionsRecord {
     pub steps: usize,
     /// The integrator has this name.
     pub integrator: String,
+    /// The forces of springs are computed in this precision: `double` or `single`.
+    #[serde(default = "double")]
+    pub precision: String,
     /// Networks keep their stiffness at rest.
     pub linear: bool,
     /// A step takes at most this number of Newton's iterations; it is null where Newton's method is not used.
@@ -87,6 +90,11 @@ pub struct MotionRecord {
     pub linear_e_rms_max: Option<f64>,
 }
 
+/// Of reports without the key.
+fn double() -> String {
+    ForcePrecision::Double.name().into()
+}
+
 impl From<&MotionOutcome> for MotionOptionsRecord {
     fn from(motion: &MotionOutcome) -> MotionOptionsRecord {
         let recipe = &motion.recipe;
@@ -101,6 +109,7 @@ impl From<&MotionOutcome> for MotionOptionsRecord {
             step: options.step,
             steps: recipe.steps,
             integrator: options.integrator.name().into(),
+            precision: recipe.precision.name().into(),
             linear: options.linear,
             iterations: is_newton.then_some(options.iterations),
             tolerance: is_newton.then_some(options.tolerance),

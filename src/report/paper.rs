@@ -1,11 +1,9 @@
 //! The tables of a paper beside ours, and its figures.
 
-use super::columns::{Heading, aligned, texts};
 use super::comparison::Comparison;
 use super::deformed::deformed;
-use super::result_table::ResultTable;
-use super::rows::csv;
 use super::surface::surface_figure;
+use super::table::{self, Cell, Table, csv, markdown_body};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
@@ -16,46 +14,45 @@ use std::path::PathBuf;
 /// What marks a network that does not stand.
 const FALLS: &str = "†";
 
-/// A table as text for the terminal.
-pub fn paper_text(table: &PaperTable) -> String {
-    let (header, rows) = cells(table);
-    let mut text = format!("{}: {}\n\n{}", heading(&table.name), table.title, aligned(&header, &rows));
-    for line in remarks(table) {
-        writeln!(text, "{line}").expect("a String grows");
+/// A table of a paper: the object once, then a row for each fit, the printed figures beside the found ones.
+pub fn paper_table<'a>(table: &'a PaperTable) -> Table {
+    let printed = table.rows.iter().any(|row| row.printed.is_some());
+    let mut columns = ["object", "fit"].map(table::Column::words).to_vec();
+    for group in ["printed", "found"].into_iter().filter(|group| printed || *group == "found") {
+        let column = |column: &Column| table::Column::numbers(column.name()).unit(column.unit()).group(group);
+        columns.extend(table.columns.iter().map(column));
     }
-    text
-}
-
-/// A table of a paper, to be typeset.
-pub fn paper_result_table(table: &PaperTable) -> ResultTable {
-    let (header, rows) = cells(table);
-    ResultTable::printed(&table.name, &format!("{}: {}", heading(&table.name), table.title), &header, &rows)
+    let cells = |values: &[Option<f64>]| -> Vec<Cell> {
+        table.columns.iter().zip(values).map(|(column, value)| text(*column, *value).into()).collect()
+    };
+    let mut object = "";
+    let row = |row: &'a PaperRow| {
+        let first = row.object != object;
+        object = &row.object;
+        let mut all = vec![Cell::from(if first { &*row.object } else { "" }), Cell::from(&*row.fit)];
+        if printed {
+            let none = || vec![Cell::from(""); table.columns.len()];
+            let values = |printed: &Vec<f64>| cells(&printed.iter().map(|v| Some(*v)).collect::<Vec<_>>());
+            all.extend(row.printed.as_ref().map_or_else(none, values));
+        }
+        let mut found = cells(&row.found);
+        if let (Some(last), false) = (found.last_mut(), row.stands) {
+            *last = last.clone().marked(&format!(" {FALLS}"));
+        }
+        all.append(&mut found);
+        all
+    };
+    let rows: Vec<Vec<Cell>> = table.rows.iter().map(row).collect();
+    let title = format!("{}: {}", heading(&table.name), table.title);
+    Table::new(&table.name, title, columns, rows).with_notes(remarks(table))
 }
 
 /// All tables as Markdown, with their figures; `figures` are the names of files beside it.
 fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
     let mut text = format!("# {}\n", paper.title);
     for table in &paper.tables {
-        let (header, rows) = cells(table);
-        // A bar in a name would end its cell.
-        let line = |cells: &[String]| {
-            format!("| {} |\n", cells.iter().map(|c| c.replace('|', "\\|")).collect::<Vec<_>>().join(" | "))
-        };
-        let rule: Vec<String> =
-            header.iter().enumerate().map(|(i, _)| if i < 2 { "---" } else { "---:" }.to_string()).collect();
-        write!(
-            text,
-            "\n## {}: {}\n\n{}{}",
-            heading(&table.name),
-            table.title,
-            line(&texts(&header).into_iter().map(String::from).collect::<Vec<_>>()),
-            line(&rule)
-        )
-        .expect("a String grows");
-        rows.iter().for_each(|row| text.push_str(&line(row)));
-        for line in remarks(table) {
-            write!(text, "\n{line}\n").expect("a String grows");
-        }
+        text += &format!("\n## {}: {}\n\n", heading(&table.name), table.title);
+        text += &markdown_body(&paper_table(table));
     }
     for (title, file) in figures {
         write!(text, "\n![{title}](<{file}>)\n").expect("a String grows");
@@ -120,36 +117,8 @@ fn figure(column: Column, value: f64) -> String {
     }
 }
 
-fn joined<'a>(figures: impl Iterator<Item = (&'a Column, &'a Option<f64>)>) -> String {
-    let text = |(column, value): (&Column, &Option<f64>)| value.map_or("-".into(), |v| figure(*column, v));
-    figures.map(text).collect::<Vec<_>>().join(" / ")
-}
-
-/// The rows as they are read: the object once, then a row for each fit, the printed figures beside the found ones.
-fn cells(table: &PaperTable) -> (Vec<Heading>, Vec<Vec<String>>) {
-    let columns: Vec<&str> = table.columns.iter().map(|column| column.name()).collect();
-    let mut header = ["object", "fit"].map(Heading::words).to_vec();
-    let printed = table.rows.iter().any(|row| row.printed.is_some());
-    if printed {
-        header.push(Heading::numbers(format!("printed {}", columns.join(" / "))));
-    }
-    header.push(Heading::numbers(format!("found {}", columns.join(" / "))));
-    let mut rows = Vec::new();
-    let mut object = "";
-    for row in &table.rows {
-        let first = row.object != object;
-        object = &row.object;
-        let join = |values: &[Option<f64>]| joined(table.columns.iter().zip(values));
-        let mut cells = vec![if first { row.object.clone() } else { String::new() }, row.fit.clone()];
-        if printed {
-            let values = |printed: &Vec<f64>| join(&printed.iter().map(|v| Some(*v)).collect::<Vec<_>>());
-            cells.push(row.printed.as_ref().map_or(String::new(), values));
-        }
-        let mark = if row.stands { String::new() } else { format!(" {FALLS}") };
-        cells.push(join(&row.found) + &mark);
-        rows.push(cells);
-    }
-    (header, rows)
+fn text(column: Column, value: Option<f64>) -> String {
+    value.map_or("-".into(), |value| figure(column, value))
 }
 
 /// The lines below a table: the best of both, why figures differ, and its note.
@@ -157,7 +126,7 @@ fn remarks(table: &PaperTable) -> Vec<String> {
     let mut lines = Vec::new();
     let errors = |values: &[Option<f64>]| {
         let shown = table.columns.iter().zip(values).filter(|(c, _)| matches!(c, Column::ERms | Column::EMax));
-        joined(shown)
+        shown.map(|(column, value)| text(*column, *value)).collect::<Vec<_>>().join(" / ")
     };
     for object in table.objects() {
         let (printed, found) = table.best(object);
@@ -190,7 +159,10 @@ fn remarks(table: &PaperTable) -> Vec<String> {
 fn raw(table: &PaperTable) -> String {
     let mut header = vec!["object".to_string(), "fit".into(), "stands".into()];
     for column in &table.columns {
-        header.extend([format!("printed {}", column.name()), format!("found {}", column.name())]);
+        header.extend(
+            ["printed", "found"]
+                .map(|group| table::Column::numbers(column.name()).unit(column.unit()).group(group).plain_heading()),
+        );
     }
     header.push("why".into());
     let row = |row: &PaperRow| {

@@ -1,8 +1,6 @@
 //! A sweep as a table, as CSV, and as maps of its errors.
 
-use super::columns::{Heading, aligned};
-use super::result_table::ResultTable;
-use super::rows::csv;
+use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
@@ -21,23 +19,20 @@ const SHADES: [&str; 8] = ["#fbf1c2", "#f8dc8c", "#f2c25c", "#e99f51", "#dd7350"
 const REFUSED: &str = "#c8ccd4";
 const TOLD: &str = "#9db8d9";
 
-/// What came of each family and method, to be typeset.
-pub fn stability_table(outcome: &StabilityOutcome) -> ResultTable {
-    ResultTable::printed("stability", &outcome.title, &headings(), &families(outcome))
-}
-
-fn headings() -> Vec<Heading> {
-    let mut header = ["family", "of"].map(Heading::words).to_vec();
-    header.push(Heading::numbers("cases"));
-    header.extend(Verdict::NAMES.map(|name| Heading::numbers(name.replace('-', "-\n"))));
-    let figures = ["worst\nerror", "worst error\nin f32", "largest\ncondition", "k < 0"];
-    header.extend(figures.map(Heading::numbers));
-    header
+/// What came of each family and method.
+pub fn stability_table(outcome: &StabilityOutcome) -> Table {
+    let mut columns = ["family", "of"].map(Column::words).to_vec();
+    columns.push(Column::numbers("cases"));
+    columns.extend(Verdict::NAMES.map(|name| Column::numbers(name.replace('-', "-\n"))));
+    let figures = ["worst\nerror", "worst error\nin f32", "largest\ncondition"];
+    columns.extend(figures.map(Column::numbers));
+    columns.push(Column::numbers("k < 0").unit("%"));
+    Table::new("stability", &*outcome.title, columns, families(outcome))
 }
 
 /// What came of each family and method, worst first to see, then what is lost and why cases were refused.
 pub fn stability_text(outcome: &StabilityOutcome) -> String {
-    let mut text = format!("{}\n\n{}", outcome.title, aligned(&headings(), &families(outcome)));
+    let mut text = stability_table(outcome).titled_text();
     let reasons = reasons(outcome);
     if !reasons.is_empty() {
         text += "\nCases without an answer, and cases with a remark\n";
@@ -75,7 +70,7 @@ fn families(outcome: &StabilityOutcome) -> Vec<Vec<String>> {
             cells.push(if count == 0 { "-".into() } else { count.to_string() });
         }
         cells.extend([number(worst), number(single), number(condition)]);
-        let share = |[n, m]: [usize; 2]| format!("{:.0} %", 100.0 * n as f64 / m as f64);
+        let share = |[n, m]: [usize; 2]| format!("{:.0}", 100.0 * n as f64 / m as f64);
         cells.push(if negative[1] == 0 { "-".into() } else { share(negative) });
         cells
     };

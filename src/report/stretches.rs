@@ -1,9 +1,7 @@
 //! Tables and figures of springs at large deformation.
 
-use super::columns::{Heading, aligned, texts};
 use super::figure::COLORS;
-use super::result_table::ResultTable;
-use super::rows::csv;
+use super::table::{Column, Table};
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::file::Edition;
@@ -14,31 +12,12 @@ use std::path::PathBuf;
 /// Names and points of the lines of a figure.
 type Lines = Vec<(String, Vec<(f64, f64)>)>;
 
-/// The tables as text.
-pub fn stretches_text(study: &Stretches) -> String {
-    let (header, rows) = of_fits(study, |fit| &fit.errors);
-    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
-    let (sampled_header, sampled_rows) = runs(study);
-    format!(
-        "{}; %e_rms\n\n{}\nForce at the pulled end, % above the body's\n\n{}\n{}, one element on one thread\n\n{}",
-        title(study),
-        aligned(&header, &rows),
-        aligned(&forces_header, &forces),
-        study.element,
-        aligned(&sampled_header, &sampled_rows)
-    )
-}
-
-/// The same tables, to be typeset.
-pub fn stretches_tables(study: &Stretches) -> Vec<ResultTable> {
-    let (header, rows) = of_fits(study, |fit| &fit.errors);
-    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
-    let (sampled_header, sampled_rows) = runs(study);
-    let sampled = format!("{}, one element on one thread", study.element);
-    vec![
-        ResultTable::printed("stretch", &format!("{}; %e_rms", title(study)), &header, &rows),
-        ResultTable::printed("force", "Force at the pulled end, % above the body's", &forces_header, &forces),
-        ResultTable::printed("samples", &sampled, &sampled_header, &sampled_rows),
+/// The errors of the displacements, those of the force, and fits of more and more shapes.
+pub fn stretches_tables(study: &Stretches) -> [Table; 3] {
+    [
+        of_fits(study, "stretch", format!("{}; e_rms in %", title(study)), |fit| &fit.errors),
+        of_fits(study, "force", "Force at the pulled end, % above the body's".into(), |fit| &fit.excess),
+        samples(study),
     ]
 }
 
@@ -51,9 +30,7 @@ pub const STRETCHES_FILES: [&str; 6] =
 /// # Errors
 /// A figure cannot be drawn; a file cannot be written, and the folder is as it was.
 pub fn write_stretches(study: &Stretches, edition: Edition) -> Result<Vec<PathBuf>> {
-    let (header, rows) = of_fits(study, |fit| &fit.errors);
-    let (forces_header, forces) = of_fits(study, |fit| &fit.excess);
-    let (sampled_header, sampled_rows) = runs(study);
+    let [errors, forces, samples] = stretches_tables(study);
     let against_stretch = |values: fn(&StretchedFit) -> &Vec<Option<f64>>| -> Lines {
         let line = |fit: &StretchedFit| {
             let points = STRETCHES.iter().zip(values(fit)).filter_map(|(s, e)| Some((100.0 * s, (*e)?.abs())));
@@ -70,10 +47,10 @@ pub fn write_stretches(study: &Stretches, edition: Edition) -> Result<Vec<PathBu
         }
     }
     let files = [
-        (STRETCHES_FILES[0], csv(&texts(&header), &rows)),
-        (STRETCHES_FILES[1], csv(&texts(&sampled_header), &sampled_rows)),
-        (STRETCHES_FILES[2], csv(&texts(&forces_header), &forces)),
-        (STRETCHES_FILES[3], figure(&title(study), ["stretch, %", "%e_rms"], &against_stretch(|fit| &fit.errors))?),
+        (STRETCHES_FILES[0], errors.csv()),
+        (STRETCHES_FILES[1], samples.csv()),
+        (STRETCHES_FILES[2], forces.csv()),
+        (STRETCHES_FILES[3], figure(&title(study), ["stretch, %", "e_rms, %"], &against_stretch(|fit| &fit.errors))?),
         (
             STRETCHES_FILES[4],
             figure(
@@ -98,26 +75,26 @@ fn title(study: &Stretches) -> String {
     format!("{}: a box held at both ends and stretched, {}", study.element, study.law.to_lowercase())
 }
 
-fn of_fits(study: &Stretches, values: fn(&StretchedFit) -> &Vec<Option<f64>>) -> (Vec<Heading>, Vec<Vec<String>>) {
-    let mut header = vec![Heading::words("fit"), Heading::numbers("us/element")];
-    header.extend(STRETCHES.map(|s| Heading::numbers(format!("{} %", 100.0 * s))));
-    let rows = study.fits.iter().map(|fit| {
+fn of_fits(study: &Stretches, name: &str, title: String, values: fn(&StretchedFit) -> &Vec<Option<f64>>) -> Table {
+    let mut columns = vec![Column::words("fit"), Column::numbers("time").unit("µs/element")];
+    columns.extend(STRETCHES.map(|s| Column::numbers(format!("{} %", 100.0 * s))));
+    let row = |fit: &StretchedFit| {
         let mut row = vec![fit.name.clone(), format!("{:.1}", 1e6 * fit.seconds)];
         row.extend(values(fit).iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
         row
-    });
-    (header, rows.collect())
+    };
+    Table::new(name, title, columns, study.fits.iter().map(row))
 }
 
-fn runs(study: &Stretches) -> (Vec<Heading>, Vec<Vec<String>>) {
-    let mut header = vec![Heading::words("fit")];
-    header.extend(["shapes", "ms", "fitted %", "held out %"].map(Heading::numbers));
+fn samples(study: &Stretches) -> Table {
+    let mut columns = vec![Column::words("fit"), Column::numbers("shapes"), Column::numbers("time").unit("ms")];
+    columns.extend(["fitted", "held out"].map(|title| Column::numbers(title).unit("%")));
     let rows = study.runs.iter().map(|run| {
         let percent = |share: f64| format!("{:.3}", 100.0 * share);
         let (shapes, seconds) = (run.shapes.to_string(), format!("{:.2}", 1e3 * run.seconds));
         vec![run.name.clone(), shapes, seconds, percent(run.trained), percent(run.held_out)]
     });
-    (header, rows.collect())
+    Table::new("samples", format!("{}, one element on one thread", study.element), columns, rows)
 }
 
 /// Lines over logarithmic axes, an SVG file's text; what is below a thousandth of the largest value is drawn there.

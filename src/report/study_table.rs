@@ -1,9 +1,7 @@
 //! The table of a sweep: a row for each study, fit and load.
 
-use super::columns::{Heading, aligned};
-use super::result_table::ResultTable;
-use super::rows::csv;
 use super::study_record::StudyRecord;
+use super::table::{Cell, Column, Digits, Table, csv};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{check_apart, check_file, check_folder};
 use crate::solve::Standing;
@@ -148,80 +146,36 @@ fn cell(value: &Value) -> String {
 }
 
 /// What each study sets.
-pub fn planned_text(keys: &[String], studies: &[Study]) -> String {
-    let (header, rows) = planned(keys, studies);
-    aligned(&header, &rows[..rows.len().min(PRINTED)]) + &rest(studies.len())
+pub fn planned_table(title: &str, keys: &[String], studies: &[Study]) -> Table {
+    let columns = std::iter::once(Column::words("study")).chain(keys.iter().map(Column::numbers)).collect();
+    let row = |(place, study): (usize, &Study)| settings(keys, place, study);
+    Table::new("studies", title, columns, studies.iter().enumerate().map(row))
 }
 
-/// The same of all studies, to be typeset.
-pub fn planned_table(title: &str, keys: &[String], studies: &[Study]) -> ResultTable {
-    let (header, rows) = planned(keys, studies);
-    ResultTable::printed("studies", title, &header, &rows)
+/// The number of a study, and what it sets.
+fn settings(keys: &[String], place: usize, study: &Study) -> Vec<Cell> {
+    let values = study.values();
+    let set = keys.iter().map(|key| values.get(key).map_or_else(String::new, shown).into());
+    std::iter::once(Cell::from(place + 1)).chain(set).collect()
 }
 
-fn planned(keys: &[String], studies: &[Study]) -> (Vec<Heading>, Vec<Vec<String>>) {
-    let mut header = vec![Heading::words("study")];
-    header.extend(keys.iter().map(Heading::numbers));
-    let row = |(place, study): (usize, &Study)| {
-        let values = study.values();
-        let set = keys.iter().map(|key| values.get(key).map_or_else(String::new, shown));
-        std::iter::once((place + 1).to_string()).chain(set).collect()
-    };
-    (header, studies.iter().enumerate().map(row).collect())
-}
-
-/// How many rows are not printed.
-fn rest(count: usize) -> String {
-    let more = count.saturating_sub(PRINTED);
-    if more > 0 { format!("and {more} more\n") } else { String::new() }
-}
-
-/// One row for each study: the values that were set, the largest error of each fit under any load, and what went wrong.
-pub fn studies_text<'a>(
-    keys: &[String],
-    studies: &[Study],
-    record: impl Fn(&str) -> Option<&'a StudyRecord>,
-) -> String {
-    let (header, rows) = studied(keys, studies, &record);
-    let shown = &rows[..rows.len().min(PRINTED)];
-    let mut text = aligned(&header, shown) + &rest(rows.len());
-    let is_marked = |row: &Vec<String>| row.iter().any(|cell| cell.ends_with(" !"));
-    if shown.iter().any(is_marked) {
-        text += "! the network is not stable, so that its errors mean little; the column status of table.csv has the verdict\n";
+/// The first rows of a table of studies, and how many there are more.
+pub fn studies_text(mut table: Table) -> String {
+    let more = table.rows.len().saturating_sub(PRINTED);
+    table.rows.truncate(PRINTED);
+    if more > 0 {
+        table.notes.insert(0, format!("and {more} more"));
     }
-    let failed = studies
-        .iter()
-        .enumerate()
-        .filter_map(|(place, study)| Some((place + 1, record(&StudyRecord::mark(&study.values()))?.error.as_ref()?)));
-    let failed: Vec<_> = failed.collect();
-    for (number, error) in failed.iter().take(FAULTS) {
-        text += &format!("\nstudy {number} failed: {error}");
-    }
-    if failed.len() > FAULTS {
-        text += &format!("\nand {} more failed", failed.len() - FAULTS);
-    }
-    if !failed.is_empty() {
-        text += "\n";
-    }
-    text
+    table.titled_text()
 }
 
-/// The same of all studies that are done, to be typeset.
+/// One row for each study that is done: the values that were set, the largest error of each fit under any load, and what went wrong.
 pub fn studies_table<'a>(
     title: &str,
     keys: &[String],
     studies: &[Study],
     record: impl Fn(&str) -> Option<&'a StudyRecord>,
-) -> ResultTable {
-    let (header, rows) = studied(keys, studies, &record);
-    ResultTable::printed("sweep", &format!("{title}: largest %e_rms under any load"), &header, &rows)
-}
-
-fn studied<'a>(
-    keys: &[String],
-    studies: &[Study],
-    record: &impl Fn(&str) -> Option<&'a StudyRecord>,
-) -> (Vec<Heading>, Vec<Vec<String>>) {
+) -> Table {
     let found = |study: &Study| record(&StudyRecord::mark(&study.values()));
     let rms = |fit: &Value| fit["loads"].as_array()?.iter().filter_map(|load| load["e_rms"].as_f64()).reduce(f64::max);
     let fits = |record: &'a StudyRecord| -> &'a [Value] {
@@ -233,23 +187,36 @@ fn studied<'a>(
             names.push(name);
         }
     }
-    let mut header = vec![Heading::words("study")];
-    header.extend(keys.iter().map(Heading::numbers));
-    header.extend(names.iter().map(|name| Heading::numbers(format!("{name}\n%e_rms"))));
+    let mut columns = vec![Column::words("study")];
+    columns.extend(keys.iter().map(Column::numbers));
+    columns.extend(names.iter().map(|name| Column::numbers("e_rms").unit("%").group(*name)));
     let done: Vec<_> = studies.iter().enumerate().filter_map(|(i, study)| Some((i, study, found(study)?))).collect();
-    let row = |(place, study, record): &(usize, &Study, &'a StudyRecord)| {
-        let values = study.values();
-        let mut row = vec![(place + 1).to_string()];
-        row.extend(keys.iter().map(|key| values.get(key).map_or_else(String::new, shown)));
-        row.extend(names.iter().map(|name| {
-            let fit = fits(record).iter().find(|fit| fit["name"] == **name);
-            let error = fit.and_then(rms).map_or("-".into(), |error| format!("{error:.2}"));
-            let status = fit.and_then(|fit| fit["status"].as_str()).unwrap_or_default();
-            if UNSTABLE.map(standing_word).contains(&status) { format!("{error} !") } else { error }
-        }));
-        row
-    };
-    (header, done.iter().map(row).collect())
+    let mut is_marked = false;
+    let rows: Vec<Vec<Cell>> = done
+        .iter()
+        .map(|&(place, study, record)| {
+            let mut row = settings(keys, place, study);
+            row.extend(names.iter().map(|name| {
+                let fit = fits(record).iter().find(|fit| fit["name"] == **name);
+                let error = Cell::number(fit.and_then(rms), Digits::Fixed(2));
+                let status = fit.and_then(|fit| fit["status"].as_str()).unwrap_or_default();
+                let stands = !UNSTABLE.map(standing_word).contains(&status);
+                is_marked |= !stands;
+                if stands { error } else { error.marked(" !") }
+            }));
+            row
+        })
+        .collect();
+    let mark =
+        "! the network is not stable, so that its errors mean little; the column status of table.csv has the verdict";
+    let failed: Vec<String> = done
+        .iter()
+        .filter_map(|(place, _, record)| Some(format!("study {} failed: {}", place + 1, record.error.as_ref()?)))
+        .collect();
+    let more = failed.len().saturating_sub(FAULTS);
+    let notes = is_marked.then(|| mark.to_string()).into_iter().chain(failed.into_iter().take(FAULTS));
+    let notes: Vec<String> = notes.chain((more > 0).then(|| format!("and {more} more failed"))).collect();
+    Table::new("sweep", format!("{title}: largest e_rms under any load"), columns, rows).with_notes(notes)
 }
 
 /// A value in a printed table: numbers with at most six digits.

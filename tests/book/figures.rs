@@ -22,7 +22,7 @@ fn the_picture_shows_the_errors_of_a_fresh_run() {
         return;
     }
     let known = words(&std::fs::read_to_string(path).unwrap());
-    assert!(known.contains("%e_rms"), "{known}");
+    assert!(known.contains("e_rms"), "{known}");
     compare(&known, &words(&picture), 0.0).unwrap();
 }
 

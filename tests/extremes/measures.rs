@@ -119,7 +119,7 @@ fn what_runs_away_is_not_reported_at_rest() {
         moved.len(),
         "{notes:?}"
     );
-    let table = report::table(&outcome);
+    let table = report::tables(&outcome);
     let rows: Vec<&str> = table.lines().filter(|line| line.contains("after")).collect();
     assert_eq!(rows.len(), moved.len(), "{table}");
     assert!(rows.iter().all(|row| !row.contains("0.000e0")), "{table}");

@@ -54,7 +54,7 @@ pub fn of_scene(text: &str, path: &Path) -> Result<Verdict, String> {
 /// # Errors
 /// A figure is not finite or wrong.
 pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
-    let mut texts = vec![report::summary(outcome), report::table(outcome)];
+    let mut texts = vec![report::summary(outcome), report::tables(outcome)];
     texts.extend(outcome.fits.iter().map(|fit| {
         let mut text = Vec::new();
         report::network_csv(&outcome.mesh, &fit.network, &mut text).unwrap();
@@ -113,7 +113,7 @@ pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
                 (Some(error), None) => {
                     let expected = rms(&body.fem, u, &outcome.mesh);
                     if !((error.rms - expected).abs() <= 1e-9 * expected.max(1e-9)) {
-                        return Err(format!("%e_rms of {} is {expected:e}, found {:e}", load.name, error.rms));
+                        return Err(format!("e_rms of {} is {expected:e}, found {:e}", load.name, error.rms));
                     }
                 }
                 (Some(error), Some(_)) if !(error.rms.is_finite() && error.max.is_finite()) => {

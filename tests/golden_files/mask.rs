@@ -23,7 +23,7 @@ enum At {
 }
 
 /// Patterns, in which `*` stands for any letters and `#` for a whole number.
-const MASKS: [(At, &str, &str); 23] = [
+const MASKS: [(At, &str, &str); 24] = [
     (At::Key, "seconds*", "a time"),
     (At::Key, "steps_per_second", "from a time"),
     (At::Key, "residual", "what rounding leaves of the forces after a solve; its digits are those of rounding errors"),
@@ -31,6 +31,7 @@ const MASKS: [(At, &str, &str); 23] = [
     (At::Column, "us/element*", "a time"),
     (At::Column, "µs/element", "a time"),
     (At::Column, "ms", "a time"),
+    (At::Column, "time ms", "a time"),
     (At::Column, "time", "an estimate for this machine"),
     (At::Column, "memory", "an estimate for this machine"),
     (At::Column, "steps/s", "from a time"),

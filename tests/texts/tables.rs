@@ -4,19 +4,19 @@ use super::hostile::{every, others};
 use super::readers::{of_markdown, parts, printed};
 use springfit::element::Element;
 use springfit::mesh::{BoxMesh, Group};
-use springfit::report::{CellRecord, ColumnRecord, Markup, ResultTable};
+use springfit::report::{Cell, Column, Markup, Table};
 use springfit::study::{DraftMaterial, DraftSource, draft};
 use springfit::text::{csv, not_a_line, of_csv, printable};
 use std::sync::Arc;
 
-fn table(text: &str) -> ResultTable {
-    let cell = |text: &str| CellRecord { text: text.into(), value: None };
-    let column = |numbers| ColumnRecord { title: text.into(), unit: String::new(), numbers };
-    ResultTable {
+fn table(text: &str) -> Table {
+    let cell = |text: &str| Cell { text: text.into(), value: None };
+    Table {
         name: text.into(),
         title: text.into(),
-        columns: vec![column(false), column(true), column(false)],
+        columns: [Column::words("a"), Column::numbers("b"), Column::words("c")].map(|column| column.group(text)).into(),
         rows: vec![vec![cell(text), cell("1.5"), cell("end")], vec![cell(text), cell("-"), cell(text)]],
+        notes: Vec::new(),
     }
 }
 
@@ -24,23 +24,31 @@ fn table(text: &str) -> ResultTable {
 fn a_cell_of_a_table_is_one_cell_with_its_text() {
     for text in every() {
         let shown = printable(&text);
+        // A column without a group has its title alone.
+        let title = |row: usize| match (row, text.is_empty()) {
+            (0, true) => "a",
+            (0, false) => ": a",
+            _ => "",
+        };
         let latex = Markup::Latex.table(&table(&text));
         let rows: Vec<&str> = latex.lines().filter_map(|line| line.strip_suffix(" \\\\")).collect();
         assert_eq!(rows.len(), 3, "{latex}");
-        for row in rows {
+        for (i, row) in rows.into_iter().enumerate() {
+            let title = title(i);
             let cells = parts(row, '&');
             assert_eq!(cells.len(), 3, "{row}");
             // Leading blanks of a line and those beside `&` have no meaning.
             let first = printed(cells[0].trim_start()).unwrap_or_else(|| panic!("{row}"));
-            let expected = shown.trim_start().replace("|R-K|", "");
+            let expected = format!("{shown}{title}").trim_start().replace("|R-K|", "");
             assert_eq!(first.trim_end(), expected.trim_end(), "{row}");
         }
         let markdown = Markup::Markdown.table(&table(&text));
         assert_eq!(markdown.lines().count(), 6, "{markdown}");
-        for line in markdown.lines().skip(2).filter(|line| !line.contains("---:")) {
+        for (i, line) in markdown.lines().skip(2).filter(|line| !line.contains("---:")).enumerate() {
+            let title = title(i);
             let cells = parts(line, '|');
             assert_eq!(cells.len(), 5, "{line}");
-            assert_eq!(of_markdown(&cells[1]).as_deref(), Some(&*format!(" {shown} ")), "{line}");
+            assert_eq!(of_markdown(&cells[1]).as_deref(), Some(&*format!(" {shown}{title} ")), "{line}");
         }
     }
 }

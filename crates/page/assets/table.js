@@ -8,7 +8,8 @@ function sortable(table) {
   }))));
   const headings = table.columns.map((column, i) => {
     const unit = column.unit ? element("span", { class: "unit" }, ` ${column.unit}`) : null;
-    const button = element("button", { type: "button", onclick: () => sort(i) }, column.title, unit);
+    const title = column.group ? `${column.group}: ${column.title}` : column.title;
+    const button = element("button", { type: "button", onclick: () => sort(i) }, title, unit);
     return element("th", { scope: "col", "aria-sort": "none", class: column.numbers ? "number" : null }, button);
   });
   function sort(i) {
@@ -26,7 +27,8 @@ function sortable(table) {
   fill(table.rows);
   const caption = element("caption", {}, table.title);
   const grid = element("table", { id: `table-${table.name}` }, caption, element("thead", {}, element("tr", {}, ...headings)), body);
-  return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": table.title }, grid);
+  const notes = table.notes.map((note) => element("p", { class: "hint" }, note));
+  return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": table.title }, grid, ...notes);
 }
 
 function showTables(record) {

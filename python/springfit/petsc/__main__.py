@@ -60,7 +60,7 @@ def table(report: dict) -> str:
     """The errors of each fit, and the times."""
     head = f"{report['scene']}: {report['nodes']} points, {report['elements']} elements on {report['ranks']} ranks, shared out by {report['partitioner']}\n\n"
     width = max(len(fit["name"]) for fit in report["fits"]) if report["fits"] else 3
-    lines = [f" {'fit':{width}}  {'load':12}  {'%e_rms':>9}  {'%e_max':>9}  iterations"]
+    lines = [f" {'fit':{width}}  {'load':12}  {'e_rms %':>9}  {'e_max %':>9}  iterations"]
     number = lambda value: "-" if value is None else f"{value:.4f}"
     for load in report["loads"]:
         lines.append(f" {'finite elements':{width}}  {load['name']:12}  {'':9}  {'':9}  {load['iterations']}")

@@ -13,7 +13,7 @@ use crate::network::{
 use crate::number::finite;
 use crate::report::fit_record::FitRecord;
 use crate::report::load_record::LoadRecord;
-use crate::report::table::notes;
+use crate::report::notes::notes;
 use crate::study::{BodyLoad, DampingRecipe, FitOutcome, MotionOutcome, Outcome};
 use crate::text::printable;
 use std::collections::BTreeMap;

@@ -12,7 +12,7 @@ pub use record::{
 };
 
 use super::json::Report;
-use super::result_table::ResultTable;
+use super::table::Table;
 use crate::material::State;
 use crate::study::{MotionOutcome, Outcome};
 use crate::text::printable;
@@ -48,7 +48,7 @@ impl PageRecord {
                 State::PlaneStrain { .. } => "plane strain",
             }
             .into(),
-            tables: ResultTable::all(&report),
+            tables: Table::all(&report),
             report,
             view: ViewRecord::of(outcome),
         }

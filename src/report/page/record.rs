@@ -2,7 +2,7 @@
 
 use super::array::{Floats, Places};
 use crate::report::json::Report;
-use crate::report::result_table::ResultTable;
+use crate::report::table::Table;
 use serde::Serialize;
 
 /// All that a page shows.
@@ -19,7 +19,7 @@ pub struct PageRecord {
     /// The keys of `report.json`.
     pub report: Report,
     /// The tables of the report.
-    pub tables: Vec<ResultTable>,
+    pub tables: Vec<Table>,
     /// The body and its networks as pictures.
     pub view: ViewRecord,
 }

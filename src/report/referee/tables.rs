@@ -1,16 +1,8 @@
 //! The rows of a referee as tables: a column for each load.
 
 use super::record::{Factor, FoundRow, RefereeRecord, RefereeRow};
-use crate::report::columns::{Heading, aligned};
-use crate::report::result_table::ResultTable;
-
-/// A table: its name, its title, its headings and its rows.
-struct Sheet {
-    name: &'static str,
-    title: String,
-    headings: Vec<Heading>,
-    rows: Vec<Vec<String>>,
-}
+use crate::report::table::Digits::{Fixed, Signed};
+use crate::report::table::{Cell, Column, Table};
 
 /// The loads, in the order in which rows have them.
 pub(super) fn loads(record: &RefereeRecord) -> Vec<&str> {
@@ -45,28 +37,23 @@ pub(super) fn bodies<'a>(record: &'a RefereeRecord, chosen: impl Fn(&RefereeRow)
     found
 }
 
-/// All tables, to be typeset.
-pub fn referee_tables(record: &RefereeRecord) -> Vec<ResultTable> {
-    let of = |sheet: &Sheet| ResultTable::printed(sheet.name, &sheet.title, &sheet.headings, &sheet.rows);
-    sheets(record).iter().map(of).collect()
-}
-
 /// All tables as text, and what was not run.
 pub fn referee_text(record: &RefereeRecord) -> String {
     let versions = record.engines.iter().map(|engine| format!("{} {}", engine.name, engine.version));
     let mut text = format!("{}\n", versions.collect::<Vec<_>>().join(", "));
-    for sheet in sheets(record) {
-        text += &format!("\n{}\n\n{}", sheet.title, aligned(&sheet.headings, &sheet.rows));
+    for table in referee_tables(record) {
+        text += &format!("\n{}", table.titled_text());
     }
     let lines = |word: &str, lines: &[String]| lines.iter().map(|line| format!("{word}: {line}\n")).collect::<String>();
     text + &lines("not run", &record.not_run) + &lines("failed", &record.failed)
 }
 
-fn sheets(record: &RefereeRecord) -> Vec<Sheet> {
+/// All tables for which there are results.
+pub fn referee_tables(record: &RefereeRecord) -> Vec<Table> {
     let elements = |row: &RefereeRow| row.is_of_elements();
     let springs = |row: &RefereeRow| !row.is_of_elements();
     let mesh = "beside finite elements of the same mesh, %";
-    let sheets = vec![
+    let tables = vec![
         by_load(record, "own elements", format!("Own elements: energy {mesh}; positive is too soft"), elements, |f| {
             f.energy_percent
         }),
@@ -83,52 +70,47 @@ fn sheets(record: &RefereeRecord) -> Vec<Sheet> {
         by_load(record, "truth", "Energy beside refined meshes, %".into(), |_| true, |f| f.truth_percent),
         mesh_errors(record),
     ];
-    sheets.into_iter().filter(|sheet| !sheet.rows.is_empty()).collect()
+    tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
 fn by_load(
     record: &RefereeRecord,
-    name: &'static str,
+    name: &str,
     title: String,
     chosen: impl Fn(&RefereeRow) -> bool,
     value: fn(&FoundRow) -> f64,
-) -> Sheet {
-    let mut headings = ["engine", "model", "solver"].map(Heading::words).to_vec();
-    headings.push(Heading::numbers("ν"));
-    headings.extend(loads(record).into_iter().map(Heading::numbers));
+) -> Table {
+    let mut columns = ["engine", "model", "solver"].map(Column::words).to_vec();
+    columns.push(Column::numbers("ν"));
+    columns.extend(loads(record).into_iter().map(Column::numbers));
     let cell = |row: &Option<&RefereeRow>| match row {
-        None => "–".into(),
+        None => Cell::number(None, Signed(1)),
         Some(RefereeRow { found: None, moving_percent: None, .. }) => "diverged".into(),
         Some(RefereeRow { found: None, .. }) => "not at rest".into(),
         Some(RefereeRow { found: Some(found), .. }) => {
-            format!("{}{}", signed(value(found)), if found.is_still { "" } else { "*" })
+            Cell::number(Some(value(found)), Signed(1)).marked(if found.is_still { "" } else { "*" })
         }
     };
     let mut rows = Vec::new();
     let mut moving = 0.0f64;
     for bodies in bodies(record, chosen) {
         let RefereeRow { engine, solver, poisson, .. } = bodies.first;
-        let mut cells = vec![engine.clone(), bodies.first.title(), solver.clone(), poisson.to_string()];
+        let mut cells: Vec<Cell> =
+            [engine.clone(), bodies.first.title(), solver.clone(), poisson.to_string()].map(Cell::from).into();
         cells.extend(bodies.by_load.iter().map(cell));
         rows.push(cells);
         for row in bodies.by_load.iter().flatten().filter(|row| row.found.is_some_and(|found| !found.is_still)) {
             moving = moving.max(row.moving_percent.unwrap_or(0.0));
         }
     }
-    let still = format!("{title} (* still moving, by at most {moving:.2} % of the largest displacement)");
-    Sheet { name, title: if moving > 0.0 { still } else { title }, headings, rows }
+    let still = (moving > 0.0).then(|| format!("* still moving, by at most {moving:.2} % of the largest displacement"));
+    Table::new(name, title, columns, rows).with_notes(still)
 }
 
-/// Signed with one digit behind the point, and a zero without a sign.
-fn signed(percent: f64) -> String {
-    let text = format!("{percent:+.1}");
-    if text == "+0.0" || text == "-0.0" { "0.0".into() } else { text }
-}
-
-fn repairs(record: &RefereeRecord) -> Sheet {
-    let mut headings = ["engine", "model", "solver"].map(Heading::words).to_vec();
-    headings.extend(["ν", "factor\nby tension", "derived:\nfactor of E", "and ν"].map(Heading::numbers));
-    let number = |value: Option<f64>| value.map_or("–".into(), |value| format!("{value:.3}"));
+fn repairs(record: &RefereeRecord) -> Table {
+    let mut columns = ["engine", "model", "solver"].map(Column::words).to_vec();
+    columns.extend(["ν", "factor\nby tension", "derived:\nfactor of E", "and ν"].map(Column::numbers));
+    let number = |value: Option<f64>| Cell::number(value, Fixed(3));
     let row = |repair: &super::record::RepairRecord| {
         let derived = |k: usize| number(repair.derived.map(|derived| derived[k]));
         let factor = match repair.factor {
@@ -136,25 +118,30 @@ fn repairs(record: &RefereeRecord) -> Sheet {
             Factor::TooSoft => "too soft".into(),
             Factor::NotAtRest => "not at rest".into(),
         };
-        let names = [&repair.engine, &repair.model, &repair.solver].map(String::clone);
-        names.into_iter().chain([repair.poisson.to_string(), factor, derived(0), derived(1)]).collect()
+        let names = [&repair.engine, &repair.model, &repair.solver].map(|name| Cell::from(&**name));
+        names.into_iter().chain([repair.poisson.to_string().into(), factor, derived(0), derived(1)]).collect::<Vec<_>>()
     };
-    let title = "What to tell the engine: E, or all constants of springs, times the factor".into();
-    Sheet { name: "repairs", title, headings, rows: record.repairs.iter().map(row).collect() }
+    let title = "What to tell the engine: E, or all constants of springs, times the factor";
+    Table::new("repairs", title, columns, record.repairs.iter().map(row))
 }
 
 /// How far the finite elements of the mesh are from the truth.
-fn mesh_errors(record: &RefereeRecord) -> Sheet {
-    let headings = ["ν", "energy\nof the truth %", "truth uncertain\nby %"].map(Heading::numbers);
-    let mut rows: Vec<Vec<String>> = Vec::new();
+fn mesh_errors(record: &RefereeRecord) -> Table {
+    let columns = vec![
+        Column::words("load"),
+        Column::numbers("ν"),
+        Column::numbers("energy\nof the truth").unit("%"),
+        Column::numbers("truth uncertain\nby").unit("%"),
+    ];
+    let mut rows: Vec<Vec<Cell>> = Vec::new();
     for row in &record.rows {
         let error = 100.0 * (row.energy_of_finite_elements / row.truth - 1.0);
-        let uncertain = format!("{:.1}", row.truth_uncertainty_percent);
-        let cells = vec![row.load.clone(), row.poisson.to_string(), signed(error), uncertain];
+        let figures = [(error, Signed(1)), (row.truth_uncertainty_percent, Fixed(1))];
+        let mut cells = vec![Cell::from(&*row.load), row.poisson.to_string().into()];
+        cells.extend(figures.map(|(value, digits)| Cell::number(Some(value), digits)));
         if !rows.contains(&cells) {
             rows.push(cells);
         }
     }
-    let headings = std::iter::once(Heading::words("load")).chain(headings).collect();
-    Sheet { name: "mesh", title: "Finite elements of the mesh beside refined meshes".into(), headings, rows }
+    Table::new("mesh", "Finite elements of the mesh beside refined meshes", columns, rows)
 }

@@ -5,7 +5,7 @@ use springfit::solve::Standing;
 use springfit::study::{Convergence, FitEntry, converge};
 use std::process::Command;
 
-/// By element: the geometric mean of %e_rms over the loads of its scenes, from `examples/defaults.rs`.
+/// By element: the geometric mean of e_rms over the loads of its scenes, from `examples/defaults.rs`.
 pub fn elements() -> String {
     // Examples are built beside the tests.
     let own = std::env::current_exe().unwrap();

@@ -16,7 +16,7 @@ pub fn frequencies() -> String {
         std::iter::once(format!("`{}`", own.name)).chain(off).chain([error]).collect()
     };
     let rows: Vec<Vec<String>> = outcome.frequencies.iter().zip(&motion.models).map(row).collect();
-    markdown(&["model", "1", "2", "3", "4", "5", "6", "%e_rms, mean / largest"], &rows)
+    markdown(&["model", "1", "2", "3", "4", "5", "6", "e_rms in %, mean / largest"], &rows)
 }
 
 /// The error of the springs of the membrane, as they turn and with both models linear.
@@ -27,5 +27,5 @@ pub fn membrane() -> String {
     let [own_mean, own_max] = springs.linear_error.unwrap();
     let rows = [("springs that turn", mean, max), ("both models linear", own_mean, own_max)];
     let rows = rows.map(|(name, mean, max)| vec![name.to_string(), format!("{mean:.2}"), format!("{max:.2}")]);
-    markdown(&["compared", "%e_rms, mean", "largest"], &rows)
+    markdown(&["compared", "e_rms in %, mean", "largest"], &rows)
 }

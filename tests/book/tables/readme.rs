@@ -6,7 +6,7 @@ use springfit::study::{FitEntry, converge, converge_to};
 /// Nanoseconds to fit one tetrahedron on one core: `cargo bench --bench fit -- tet4`.
 const TIMES: [&str; 2] = ["23 ns", "26 ns (`offdiag`), 43 µs (`spectral`)"];
 
-/// %e_rms under the two loads of a scene.
+/// e_rms under the two loads of a scene.
 fn errors(name: &str, entry: FitEntry) -> String {
     let outcome = outcome(&scene(name).with_fits(vec![fit(entry)]));
     let errors: Vec<String> = outcome.fits[0].loads.iter().map(|load| signed(load.error.unwrap().rms, 2)).collect();

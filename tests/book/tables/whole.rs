@@ -10,7 +10,7 @@ fn error(fit: &FitOutcome, load: &str) -> Option<String> {
     Some(format!("{:.2}", load.error?.rms))
 }
 
-/// One row for each fit: %e_rms under loads that were fitted, that chose the regularisation, and that no fit has seen.
+/// One row for each fit: e_rms under loads that were fitted, that chose the regularisation, and that no fit has seen.
 fn rows(name: &str, outcome: &Outcome) -> Vec<Vec<String>> {
     let shear = if outcome.load("shear x").is_some() { "shear x" } else { "shear" };
     let [bending, gravity] =

@@ -36,7 +36,7 @@ pub struct StretchedFit {
     pub name: String,
     /// The time per element, on all threads, s.
     pub seconds: f64,
-    /// %e_rms at each of [`STRETCHES`]; `None` if one of the models has no equilibrium.
+    /// The error e_rms in percent at each of [`STRETCHES`]; `None` if one of the models has no equilibrium.
     pub errors: Vec<Option<f64>>,
     /// By how many percent the force that holds the network at each stretch exceeds that of the body.
     pub excess: Vec<Option<f64>>,

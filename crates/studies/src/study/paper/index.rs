@@ -102,14 +102,25 @@ impl Column {
     /// The heading of the column.
     pub fn name(self) -> &'static str {
         match self {
-            Column::ERms => "%e_rms",
-            Column::EMax => "%e_max",
-            Column::Young => "E Pa",
-            Column::Poisson => "nu",
+            Column::ERms => "e_rms",
+            Column::EMax => "e_max",
+            Column::Young => "E",
+            Column::Poisson => "ν",
+            Column::Seconds => "time",
+            Column::Frames => "speed",
+            Column::YoungRatio => "E/E_in furthest",
+            Column::PoissonShift => "ν − ν_in furthest",
+        }
+    }
+
+    /// The unit of the column; a ratio has none.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Column::ERms | Column::EMax => "%",
+            Column::Young => "Pa",
             Column::Seconds => "s/element",
             Column::Frames => "steps/s",
-            Column::YoungRatio => "E/E_in furthest",
-            Column::PoissonShift => "nu - nu_in furthest",
+            Column::Poisson | Column::YoungRatio | Column::PoissonShift => "",
         }
     }
 }

@@ -106,7 +106,7 @@ impl PaperTable {
         objects
     }
 
-    /// For an object, the fit with the least printed %e_rms, and the fit with the least computed one among stable
+    /// For an object, the fit with the least printed e_rms, and the fit with the least computed one among stable
     /// networks.
     pub fn best(&self, object: &str) -> (Option<&PaperRow>, Option<&PaperRow>) {
         let Some(place) = self.columns.iter().position(|c| *c == Column::ERms) else { return (None, None) };

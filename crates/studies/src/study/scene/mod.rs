@@ -29,7 +29,7 @@ pub use entry::scene_schema;
 pub use gauge::Gauge;
 pub use input::{BoxEntry, DiscEntry, FillEntry, MeshInput, check_unit};
 pub use load::{LoadCase, LoadKind, MeasuredEntry};
-pub use motion_recipe::{AppliedForce, DampingRecipe, ForcePrecision, MotionRecipe, PrescribedMotion};
+pub use motion_recipe::{AppliedForce, DampingRecipe, ForcePrecision, MotionRecipe, PrescribedMotion, motion_title};
 pub use output::Output;
 pub use part::Part;
 pub use reference::ReferenceEntry;

@@ -54,6 +54,12 @@ crate::named!(ForcePrecision {
     "single" => Single,
 });
 
+/// A motion in words, with times in s and the names of the integrator and of the precision.
+pub fn motion_title(duration: f64, steps: usize, step: f64, integrator: &str, precision: &str) -> String {
+    let precision = if precision == ForcePrecision::Double.name() { "" } else { " in single precision" };
+    format!("{duration:?} s in {steps} steps of {step:?} s by {integrator}{precision}")
+}
+
 /// The damping of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DampingRecipe {
@@ -86,12 +92,8 @@ pub struct AppliedForce {
 impl MotionRecipe {
     /// The motion in words.
     pub fn title(&self) -> String {
-        let (step, name) = (self.options.step, self.options.integrator.name());
-        let precision = match self.precision {
-            ForcePrecision::Double => "",
-            ForcePrecision::Single => " in single precision",
-        };
-        format!("{:?} s in {} steps of {step:?} s by {name}{precision}", self.duration, self.steps)
+        let (step, integrator) = (self.options.step, self.options.integrator.name());
+        motion_title(self.duration, self.steps, step, integrator, self.precision.name())
     }
 
     /// The time at the end of the last step, s: that of the first step that reaches the duration.

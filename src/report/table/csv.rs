@@ -1,9 +1,19 @@
 //! Tables as CSV.
 
+use super::Table;
 use crate::text;
 
+impl Table {
+    /// The table as CSV, without its notes.
+    pub fn csv(&self) -> String {
+        let row = |row: &Vec<super::Cell>| row.iter().map(|cell| cell.plain().to_string()).collect();
+        let header: Vec<String> = self.columns.iter().map(super::Column::plain_heading).collect();
+        csv(&header, &self.rows.iter().map(row).collect::<Vec<_>>())
+    }
+}
+
 /// A header and rows as CSV text: cells with commas, quotes or line ends are quoted, and no text is a formula of a spreadsheet.
-pub(super) fn csv<H: AsRef<str>>(header: &[H], rows: &[Vec<String>]) -> String {
+pub(in crate::report) fn csv<H: AsRef<str>>(header: &[H], rows: &[Vec<String>]) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
     let cell = |cell: &str| text::csv(&text::printable_lines(cell)).into_owned();
     let header = header.iter().map(|heading| cell(heading.as_ref()));

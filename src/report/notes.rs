@@ -1,187 +1,14 @@
-//! The table on the terminal.
+//! What a reader must know before trusting a result.
 
 use super::agreement::{Agreement, agreements};
-use super::columns::{Heading, aligned};
-use super::frequencies::{frequency_notes, frequency_table};
+use super::frequencies::frequency_notes;
 use super::linear_theory::linear_notes;
-use super::load_errors::load_error_table;
-use super::materials::{material_note, material_table};
-use super::motion::{motion_notes, motion_table};
-use super::quality::{changes, counted, quality_lines};
-use super::region_record::RegionRecord;
-use crate::fit::Spread;
+use super::materials::material_note;
+use super::motion::motion_notes;
 use crate::mesh::Filled;
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
-use crate::study::{BodyLoad, FitOutcome, Followed, GaugeResult, LoadOutcome, Outcome, Reading, extent};
-use crate::text::printable;
-use std::fmt::Write;
-
-/// The mesh, the size of the body and the material.
-pub(super) fn summary_line(outcome: &Outcome) -> String {
-    let mesh = &outcome.mesh;
-    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
-    format!(
-        "{} points, {}, {}; {}{}",
-        mesh.point_count(),
-        cells.join(", "),
-        size(&extent(mesh)),
-        material_words(outcome),
-        outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
-    )
-}
-
-/// The material, or the number of regions with their own.
-fn material_words(outcome: &Outcome) -> String {
-    match &RegionRecord::all(outcome)[..] {
-        [one] => one.words(),
-        regions => format!("{} materials", regions.len()),
-    }
-}
-
-/// What was modelled, in a few lines.
-pub fn summary(outcome: &Outcome) -> String {
-    let mesh = &outcome.mesh;
-    let given =
-        if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
-    let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
-    for line in changes(mesh) {
-        writeln!(text, "{line}").expect("a String grows");
-    }
-    if let Some(numbering) = mesh.numbering.as_ref().filter(|numbering| !numbering.is_contiguous()) {
-        let title = numbering.title();
-        writeln!(
-            text,
-            "in the output, \"points\" are indices from 0 and \"nodes\" are the numbers of the mesh file: {title}"
-        )
-        .expect("a String grows");
-    }
-    for region in RegionRecord::all(outcome) {
-        if let Some(name) = &region.region {
-            let cells = counted(region.cells, "cell");
-            writeln!(text, "material of {}: {}, {cells}", printable(name), region.words()).expect("a String grows");
-        }
-    }
-    for line in quality_lines(&mesh.quality) {
-        writeln!(text, "{line}").expect("a String grows");
-    }
-    text
-}
-
-/// The sizes along the axes, such as `0.120 x 0.075 x 0.062 m`: the largest has three digits.
-pub(super) fn size(extent: &[f64]) -> String {
-    let largest = extent.iter().fold(0.0, |largest: f64, x| largest.max(*x));
-    let decimals = (2.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize;
-    let along = |x: &f64| match largest {
-        1e-4..1e6 => format!("{x:.decimals$}"),
-        _ => format!("{x:.2e}"),
-    };
-    format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
-}
-
-/// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
-pub fn table(outcome: &Outcome) -> String {
-    let mut header = vec![Heading::words("fit")];
-    header.extend(
-        ["springs", "k < 0", "|R-K|/|R| Frobenius\nmean / max", "2-norm\nmean / max", "fit\nus/element"]
-            .map(Heading::numbers),
-    );
-    let sampled = outcome.fits.iter().any(|fit| fit.kind.sampled().is_some());
-    if sampled {
-        header.push(Heading::numbers("sampled forces %\nfitted / held out"));
-    }
-    for load in &outcome.loads {
-        header.push(Heading::numbers(format!("{}\n%e_rms / %e_max", printable(&load.name))));
-        if load.reading().is_some() {
-            header.push(Heading::numbers(format!("{}, gauge\nE Pa / nu", printable(&load.name))));
-        }
-    }
-    if !outcome.loads.is_empty() {
-        header.push(Heading::words("network"));
-    }
-    let rows: Vec<_> = outcome.fits.iter().map(|fit| row(outcome, fit, sampled)).collect();
-    let under = [
-        load_error_table(outcome),
-        material_table(outcome),
-        times(outcome),
-        gauge(outcome),
-        frequency_table(outcome),
-        motion_table(outcome),
-    ];
-    aligned(&header, &rows) + &under.concat()
-}
-
-fn row(outcome: &Outcome, fit: &FitOutcome, sampled: bool) -> Vec<String> {
-    let elements = outcome.mesh.cell_count();
-    let pair = |spread: Option<Spread>| spread.map_or("-".into(), |s| format!("{:.4} / {:.4}", s.mean, s.max));
-    let mut row = vec![
-        fit.fit.name.clone(),
-        fit.network.len().to_string(),
-        fit.network.negative().to_string(),
-        pair(fit.frobenius()),
-        pair(fit.spectral()),
-        format!("{:.2}{}", 1e6 * fit.seconds / elements.max(1) as f64, if fit.reused > 0 { "*" } else { "" }),
-    ];
-    if sampled {
-        let percent = |spread: &Spread| format!("{:.2}", 100.0 * spread.mean);
-        row.push(fit.kind.sampled().map_or("-".into(), |s| {
-            format!("{} / {:>5}", percent(&s.trained), s.held_out.as_ref().map_or("-".into(), percent))
-        }));
-    }
-    for (load, body) in fit.loads.iter().zip(&outcome.loads) {
-        row.push(load.error.map_or("-".into(), |e| format!("{:.2} / {:5.2}", e.rms, e.max)));
-        if body.reading().is_some() {
-            row.push(load.gauge.map_or("-".into(), |r| format!("{:.4e} / {:.3}", r.young, r.poisson)));
-        }
-    }
-    if !fit.loads.is_empty() {
-        row.push(fit.status().into());
-    }
-    row
-}
-
-/// The gauge's readings of the finite elements.
-fn gauge(outcome: &Outcome) -> String {
-    let line = |load: &BodyLoad| {
-        let Reading { young, poisson } = load.reading()?;
-        Some(format!(
-            "Gauge reading of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.\n",
-            load.name
-        ))
-    };
-    outcome.loads.iter().filter_map(line).collect()
-}
-
-fn times(outcome: &Outcome) -> String {
-    let loads: Vec<_> = outcome.fits.iter().flat_map(|f| &f.loads).collect();
-    if loads.is_empty() {
-        return String::new();
-    }
-    let mean = |seconds: &dyn Fn(&LoadOutcome) -> f64| {
-        let mean = loads.iter().map(|l| seconds(l)).sum::<f64>() / loads.len() as f64;
-        if mean < 1.0 { format!("{:.2} ms", 1e3 * mean) } else { format!("{mean:.2} s") }
-    };
-    format!(
-        "One load, assembled and solved: {} with finite elements, {} with springs (means).\n",
-        mean(&|l| l.seconds_fem),
-        mean(&|l| l.seconds_lem)
-    ) + &iterations(&loads)
-}
-
-/// How iterations went, where there were any: the most of all loads and models, and the largest residual.
-fn iterations(loads: &[&LoadOutcome]) -> String {
-    let solved = || loads.iter().flat_map(|l| l.solved_fem.iter().chain(&l.solved_lem));
-    let iterated: Vec<_> = solved().filter(|solved| solved.iterations.is_some()).collect();
-    let Some(most) = iterated.iter().max_by_key(|solved| solved.iterations) else { return String::new() };
-    format!(
-        "{} unknowns solved by conjugate gradients with multigrid: at most {} iterations, residual {:.1e}; nodes x unknowns of the levels: \
-         {}.\n",
-        most.unknowns,
-        most.iterations.unwrap_or(0),
-        iterated.iter().map(|solved| solved.residual).fold(0.0, f64::max),
-        most.levels.as_deref().unwrap_or("-").replace('×', "x")
-    )
-}
+use crate::study::{FitOutcome, Followed, GaugeResult, Outcome};
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
@@ -195,7 +22,7 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
     let measured = outcome.loads.iter().filter_map(|load| {
         let measured = load.measured?;
-        let error = measured.error.map_or("-".into(), |e| format!("%e_rms / %e_max {:.2} / {:.2}", e.rms, e.max));
+        let error = measured.error.map_or("-".into(), |e| format!("e_rms / e_max {:.2} / {:.2} %", e.rms, e.max));
         let by = if measured.is_of_finer { "of the finer body" } else { "measured" };
         Some(format!(
             "errors under {} are relative to the displacements {by} at {} points; finite elements: {error}",

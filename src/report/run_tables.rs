@@ -1,0 +1,257 @@
+//! The tables of a run, from its report.
+
+use super::fit_record::FitRecord;
+use super::frequencies::frequencies;
+use super::json::Report;
+use super::load_record::LoadRecord;
+use super::motion::motions;
+use super::table::Digits::{Fixed, Signed, Significant};
+use super::table::Priority::{First, Third};
+use super::table::{Cell, Column, Table};
+use crate::study::{Reading, SampledOutcome};
+
+impl Table {
+    /// All tables for which the report has results.
+    pub fn all(report: &Report) -> Vec<Table> {
+        let all = [
+            fits(report),
+            errors(report),
+            materials(report),
+            times(report),
+            whole(report),
+            frequencies(&report.frequencies),
+            motions(report.motion_options.as_ref(), &report.motion),
+        ];
+        all.into_iter().filter(|table| !table.rows.is_empty()).collect()
+    }
+}
+
+/// The loads of each fit.
+fn loads(report: &Report) -> &[LoadRecord] {
+    report.fits.first().map_or(&[], |fit| &fit.loads)
+}
+
+fn fits(report: &Report) -> Table {
+    let matrices = "|R-K|/|R| Frobenius";
+    let standing = standing(report);
+    let mut columns = vec![
+        Column::words("fit"),
+        // What all have is said below the table, and without loads no network is asked to stand.
+        Column::words("network").priority(if standing.is_some() || loads(report).is_empty() { Third } else { First }),
+        Column::numbers("springs").priority(First),
+        Column::numbers("k < 0").priority(First),
+        Column::numbers("mean").group(matrices).priority(First),
+        Column::numbers("max").group(matrices).priority(First),
+        Column::numbers("mean").group("2-norm").priority(First),
+        Column::numbers("max").group("2-norm").priority(First),
+        Column::numbers("fit").unit("µs/element").priority(First),
+        Column::numbers("all").unit("ms").priority(Third),
+    ];
+    let is_sampled = report.fits.iter().any(|fit| fit.sampled.is_some());
+    if is_sampled {
+        let column = |title| Column::numbers(title).unit("%").group("sampled forces").priority(First);
+        columns.extend(["fitted", "held out"].map(column));
+    }
+    let row = |fit: &FitRecord| {
+        let share = |value| Cell::number(Some(value), Fixed(4));
+        let time = Cell::number(Some(1e6 * fit.seconds_per_element), Fixed(2));
+        let mut row = vec![
+            Cell::from(&*fit.name),
+            Cell::from(&*fit.status),
+            fit.springs.into(),
+            fit.negative_springs.into(),
+            share(fit.relative_frobenius.mean),
+            share(fit.relative_frobenius.max),
+            share(fit.relative_spectral.mean),
+            share(fit.relative_spectral.max),
+            if fit.reused_elements > 0 { time.marked("*") } else { time },
+            Cell::number(Some(1e3 * fit.seconds), Significant(3)),
+        ];
+        if is_sampled {
+            let held_out = |sampled: &SampledOutcome| Some(sampled.held_out.as_ref()?.mean);
+            let sampled = fit.sampled.as_ref();
+            let errors = [sampled.map(|sampled| sampled.trained.mean), sampled.and_then(held_out)];
+            row.extend(errors.map(|error| Cell::percent(error, Fixed(2))));
+        }
+        row
+    };
+    let title = "Networks and the matrices of their elements";
+    Table::new("fits", title, columns, report.fits.iter().map(row)).with_notes(standing)
+}
+
+/// That all networks are to be trusted.
+fn standing(report: &Report) -> Option<String> {
+    let all = |status: &str| report.fits.iter().all(|fit| fit.status == status);
+    let words = [("stable", "All networks are stable."), ("converged", "All networks have converged.")];
+    words.into_iter().find(|(status, _)| all(status)).map(|(_, words)| words.to_string())
+}
+
+fn errors(report: &Report) -> Table {
+    let loads = loads(report);
+    // A gauge that reads has a reading of the finite elements.
+    let is_read = |load: usize| report.gauge.get(load).is_some_and(Option::is_some);
+    let mut columns = vec![Column::words("fit")];
+    for (i, load) in loads.iter().enumerate() {
+        let column = |title| Column::numbers(title).unit("%").group(&*load.name);
+        columns.extend(["e_rms", "e_max"].map(|title| column(title).priority(First)));
+        columns.extend(["e_tip", "e_energy"].map(column));
+        if is_read(i) {
+            let gauge = |title| Column::numbers(title).group(format!("{}, gauge", load.name)).priority(First);
+            columns.extend([gauge("E").unit("Pa"), gauge("ν")]);
+        }
+    }
+    let cells = |(i, load): (usize, &LoadRecord)| {
+        let mut cells = [load.e_rms, load.e_max, load.e_tip].map(|error| Cell::number(error, Fixed(2))).to_vec();
+        cells.push(Cell::number(load.e_energy, Signed(2)));
+        if is_read(i) {
+            let reading = |of: fn(Reading) -> f64| load.gauge.map(of);
+            cells.push(Cell::number(reading(|reading| reading.young), Significant(5)));
+            cells.push(Cell::number(reading(|reading| reading.poisson), Fixed(3)));
+        }
+        cells
+    };
+    let row = |fit: &FitRecord| {
+        std::iter::once(Cell::from(&*fit.name)).chain(fit.loads.iter().enumerate().flat_map(cells)).collect()
+    };
+    let rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
+    let title = "Errors of the displacements in percent of the largest; e_energy is that of the compliance";
+    Table::new("errors", title, columns, rows)
+}
+
+fn materials(report: &Report) -> Table {
+    let mut columns = vec![
+        Column::words("fit"),
+        Column::numbers("E").unit("Pa"),
+        Column::numbers("ν"),
+        Column::numbers("error of C").unit("%"),
+        Column::numbers("of the mean").unit("%").priority(Third),
+        Column::numbers("of the worst").unit("%").priority(Third),
+    ];
+    let is_whole = report.fits.iter().any(|fit| fit.effective_young.is_some());
+    if is_whole {
+        let whole = |title| Column::numbers(title).group("whole").priority(Third);
+        columns.extend([whole("E").unit("Pa"), whole("ν"), whole("Zener")]);
+    }
+    let row = |fit: &FitRecord| {
+        let m = &fit.as_material;
+        let distances = [m.distance, m.mean_distance, m.largest_distance];
+        let mut row =
+            vec![Cell::from(&*fit.name), Cell::number(m.young, Significant(5)), Cell::number(m.poisson, Fixed(3))];
+        row.extend(distances.map(|share| Cell::percent(Some(share), Fixed(1))));
+        if is_whole {
+            row.push(Cell::number(fit.effective_young, Significant(5)));
+            row.extend([fit.effective_poisson, fit.zener].map(|number| Cell::number(number, Fixed(3))));
+        }
+        row
+    };
+    let asked = match (report.young, report.poisson) {
+        (Some(young), Some(poisson)) => format!("asked for are E = {young} Pa, ν = {poisson}"),
+        _ => "those that are asked for differ from cell to cell".into(),
+    };
+    let title = format!("Networks as materials; {asked}");
+    Table::new("materials", title, columns, report.fits.iter().map(row)).with_notes(samples(report))
+}
+
+/// Of what a body of several materials the rows speak: the mean of its samples, which is not that of the body.
+fn samples(report: &Report) -> Option<String> {
+    let m = &report.fits.first()?.as_material;
+    if report.young.is_some() && report.poisson.is_some() {
+        return None;
+    }
+    let asked = match (m.asked_young, m.asked_poisson) {
+        (Some(young), Some(poisson)) => format!("; finite elements have E = {young:.4e} Pa, nu = {poisson:.3} there"),
+        (Some(young), None) => format!("; finite elements have E = {young:.4e} Pa there"),
+        (None, _) => String::new(),
+    };
+    let samples = if m.samples == 1 { "one sample".into() } else { format!("{} samples", m.samples) };
+    Some(format!(
+        "The materials differ from cell to cell: E and nu are those of {samples} of cells, not of the body{asked}."
+    ))
+}
+
+fn times(report: &Report) -> Table {
+    let columns = [
+        Column::words("load"),
+        Column::numbers("finite elements").unit("ms"),
+        Column::numbers("springs").unit("ms"),
+        Column::words("solver"),
+        Column::numbers("unknowns"),
+        Column::numbers("iterations"),
+        Column::numbers("residual"),
+    ];
+    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
+    let row = |fit: &FitRecord, load: &LoadRecord| {
+        let solver = load.solver_lem.as_ref();
+        let known = |value: Option<usize>| value.map_or(Cell::from("–"), Cell::from);
+        let followed = load.followed.as_ref();
+        vec![
+            Cell::from(&*fit.name),
+            Cell::from(&*load.name),
+            Cell::number(Some(1e3 * load.seconds_fem), Significant(3)),
+            Cell::number(Some(1e3 * load.seconds_lem), Significant(3)),
+            solver.map_or(if followed.is_some() { "Newton" } else { "–" }, |solver| &solver.method).into(),
+            known(solver.map(|solver| solver.unknowns)),
+            known(solver.and_then(|solver| solver.iterations).or(followed.map(|followed| followed.iterations))),
+            Cell::number(solver.map(|s| s.residual).or(followed.map(|f| f.residual)), Significant(2)),
+        ]
+    };
+    let rows: Vec<_> = report.fits.iter().flat_map(|fit| fit.loads.iter().map(move |load| row(fit, load))).collect();
+    let title = "Times to assemble and solve, each load as if it were alone";
+    let notes = means(report).into_iter().chain(iterations(report));
+    Table::new("times", title, columns.collect(), rows).with_notes(notes)
+}
+
+/// All loads of all fits.
+fn all_loads(report: &Report) -> impl Iterator<Item = &LoadRecord> {
+    report.fits.iter().flat_map(|fit| &fit.loads)
+}
+
+/// The mean times of a load.
+fn means(report: &Report) -> Option<String> {
+    let count = all_loads(report).count();
+    let mean = |seconds: fn(&LoadRecord) -> f64| {
+        let mean = all_loads(report).map(seconds).sum::<f64>() / count as f64;
+        if mean < 1.0 { format!("{:.2} ms", 1e3 * mean) } else { format!("{mean:.2} s") }
+    };
+    let [finite, springs] = [mean(|load| load.seconds_fem), mean(|load| load.seconds_lem)];
+    (count > 0).then(|| {
+        format!("One load, assembled and solved: {finite} with finite elements, {springs} with springs (means).")
+    })
+}
+
+/// How iterations went, where there were any: the most of all loads and models, and the largest residual.
+fn iterations(report: &Report) -> Option<String> {
+    let solved = all_loads(report).flat_map(|load| load.solver_fem.iter().chain(&load.solver_lem));
+    let iterated: Vec<_> = solved.filter(|solved| solved.iterations.is_some()).collect();
+    let most = iterated.iter().max_by_key(|solved| solved.iterations)?;
+    Some(format!(
+        "{} unknowns solved by conjugate gradients with multigrid: at most {} iterations, residual {:.1e}; nodes x unknowns of the levels: \
+         {}.",
+        most.unknowns,
+        most.iterations.unwrap_or(0),
+        iterated.iter().map(|solved| solved.residual).fold(0.0, f64::max),
+        most.levels.as_deref().unwrap_or("-").replace('×', "x")
+    ))
+}
+
+fn whole(report: &Report) -> Table {
+    let columns = [
+        Column::words("load"),
+        Column::words("used for"),
+        Column::numbers("error before").unit("%"),
+        Column::numbers("error after").unit("%"),
+    ];
+    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
+    let mut rows = Vec::new();
+    for fit in &report.fits {
+        let Some(whole) = &fit.whole else { continue };
+        let fitted = whole.fitted.iter().map(|load| (load, "fit"));
+        for (load, use_) in fitted.chain(whole.judged.iter().map(|load| (load, "validation"))) {
+            let errors = [load.before, load.after].map(|share| Cell::percent(Some(share), Fixed(2)));
+            rows.push(
+                [[Cell::from(&*fit.name), Cell::from(&*load.load), use_.into()].to_vec(), errors.into()].concat(),
+            );
+        }
+    }
+    Table::new("whole", "Whole-object fits: errors at the start and at the end", columns.collect(), rows)
+}

@@ -1,0 +1,106 @@
+//! What was modelled, and the tables of a run on the terminal.
+
+use super::json::Report;
+use super::quality::{changes, counted, quality_lines};
+use super::region_record::RegionRecord;
+use super::table::{Table, run_text};
+use crate::study::{BodyLoad, Outcome, Reading, extent};
+use crate::text::printable;
+use std::fmt::Write;
+
+/// The mesh, the size of the body and the material.
+pub(super) fn summary_line(outcome: &Outcome) -> String {
+    let mesh = &outcome.mesh;
+    let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
+    format!(
+        "{} points, {}, {}; {}{}",
+        mesh.point_count(),
+        cells.join(", "),
+        size(&extent(mesh)),
+        material_words(outcome),
+        outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
+    )
+}
+
+/// The material, or the number of regions with their own.
+fn material_words(outcome: &Outcome) -> String {
+    match &RegionRecord::all(outcome)[..] {
+        [one] => one.words(),
+        regions => format!("{} materials", regions.len()),
+    }
+}
+
+/// What was modelled, in a few lines.
+pub fn summary(outcome: &Outcome) -> String {
+    let mesh = &outcome.mesh;
+    let given =
+        if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
+    let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
+    for line in changes(mesh) {
+        writeln!(text, "{line}").expect("a String grows");
+    }
+    if let Some(numbering) = mesh.numbering.as_ref().filter(|numbering| !numbering.is_contiguous()) {
+        let title = numbering.title();
+        writeln!(
+            text,
+            "in the output, \"points\" are indices from 0 and \"nodes\" are the numbers of the mesh file: {title}"
+        )
+        .expect("a String grows");
+    }
+    for region in RegionRecord::all(outcome) {
+        if let Some(name) = &region.region {
+            let cells = counted(region.cells, "cell");
+            writeln!(text, "material of {}: {}, {cells}", printable(name), region.words()).expect("a String grows");
+        }
+    }
+    for line in quality_lines(&mesh.quality) {
+        writeln!(text, "{line}").expect("a String grows");
+    }
+    text
+}
+
+/// The sizes along the axes, such as `0.120 x 0.075 x 0.062 m`: the largest has three digits.
+pub(super) fn size(extent: &[f64]) -> String {
+    let largest = extent.iter().fold(0.0, |largest: f64, x| largest.max(*x));
+    let decimals = (2.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize;
+    let along = |x: &f64| match largest {
+        1e-4..1e6 => format!("{x:.decimals$}"),
+        _ => format!("{x:.2e}"),
+    };
+    format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
+}
+
+/// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
+pub fn tables(outcome: &Outcome) -> String {
+    let mut tables = Table::all(&Report::of(outcome));
+    let mut sentences: Vec<String> = largest(outcome).into_iter().chain(gauge(outcome)).collect();
+    if let Some(errors) = tables.iter_mut().find(|table| table.name == "errors") {
+        errors.notes.append(&mut sentences);
+    }
+    run_text(&tables) + &sentences.iter().map(|sentence| sentence.clone() + "\n").collect::<String>()
+}
+
+/// The gauge's readings of the finite elements.
+fn gauge(outcome: &Outcome) -> Vec<String> {
+    let line = |load: &BodyLoad| {
+        let Reading { young, poisson } = load.reading()?;
+        Some(format!(
+            "Gauge reading of the finite elements under {}: E = {young:.4e} Pa, nu = {poisson:.3}.",
+            load.name
+        ))
+    };
+    outcome.loads.iter().filter_map(line).collect()
+}
+
+/// How far the finite elements move under the loads that they reach, which percentages hide.
+fn largest(outcome: &Outcome) -> Option<String> {
+    let d = outcome.mesh.dimension;
+    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let moved = |load: &BodyLoad| {
+        let length = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let most = load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
+        format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
+    };
+    let loads: Vec<String> = outcome.loads.iter().filter(|load| load.is_reached()).map(moved).collect();
+    (!loads.is_empty()).then(|| format!("Largest displacement of the finite elements: {}.", loads.join(", ")))
+}
