@@ -151,8 +151,8 @@ fn damaged_parts_of_a_run_are_named() {
     for (text, words) in [
         ("", "is not JSON"),
         ("{\"version\": 2", "is not JSON"),
-        ("[]", "expected 2, that of this program, found none"),
-        ("{\"version\": 3}", "found 3; run the scene again"),
+        ("[]", "expected 2 to 3, those that this program reads, found none"),
+        ("{\"version\": 4}", "found 4; run the scene again"),
         ("{\"version\": 2}", "missing field"),
         ("{\"version\": 2, \"scene\": 7}", "scene"),
     ] {

@@ -13,9 +13,8 @@ use springfit::springs::Springs;
 use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use springfit::whole::{
     Balanced, BodyRegions, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares,
-    ModuliParts, ModuliSharing, NodalLoad, Object, Pressure, Residual, ResidualForces, Target, Unknowns, Validation,
-    Wanted, Weighing, WholeFit, WholeSettings, fit_whole, made_loads, ninety_five, raise_idle, random_loads,
-    varied_loads,
+    ModuliParts, ModuliSharing, NodalLoad, Object, Pressure, Target, Unknowns, Validation, Wanted, Weighing, WholeFit,
+    WholeSettings, fit_whole, made_loads, ninety_five, raise_idle, random_loads, varied_loads,
 };
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -62,21 +61,6 @@ impl Body {
         let mut fits: Vec<CellFits> = self.mesh.blocks.iter().map(of_block).collect();
         raise_idle(&mut fits);
         fits
-    }
-
-    fn equations_of(&self, support: &Support) -> Equations {
-        Equations::factored(
-            &finite_elements(&self.mesh, self.material.moduli()),
-            support,
-            &self.mesh.points,
-            self.mesh.dimension,
-        )
-        .unwrap()
-        .unwrap()
-    }
-
-    fn equations(&self) -> Equations {
-        self.equations_of(&self.support)
     }
 
     fn target(&self, load: NodalLoad) -> Target {
@@ -142,9 +126,6 @@ fn derivatives_are_those_of_differences() {
         compare_with_differences(&problem);
         let theta = waves(problem.unknowns(), 0.2);
         compare_with_differences(&Balanced::at_errors(&problem, &theta).unwrap().unwrap());
-        let equations: Vec<_> =
-            [&targets[0], &targets[2]].map(|t| (t.support.clone(), body.equations_of(&t.support))).into();
-        compare_with_differences(&ResidualForces::new(&object, vec![&targets[0], &targets[2]], &equations).unwrap());
     }
 }
 
@@ -508,29 +489,24 @@ fn moved_by_another(body: &Body) -> (Network, Vec<Target>) {
     (network, trained)
 }
 
-/// A network that moves exactly so is found again as far as its displacements go, by both methods and from both residuals.
+/// A network that moves exactly so is found again as far as its displacements go, by both methods.
 #[test]
 fn what_a_network_did_is_found() {
     let body = Body::new(&load("cube_tet"), "fixed");
     let (network, trained) = moved_by_another(&body);
-    let wanted = Wanted { trained, body: vec![(body.support.clone(), body.equations())], ..Wanted::default() };
+    let wanted = Wanted { trained, ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
-    for (method, residual, limit) in [
-        (
-            DescentMethod::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }),
-            Residual::Displacements,
-            1e-4,
-        ),
-        (DescentMethod::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }), Residual::Forces, 1e-4),
-        (DescentMethod::Lbfgs { memory: 20 }, Residual::ForcesFirst, 5e-3),
+    for (method, limit) in [
+        (DescentMethod::GaussNewton(GaussNewton { decrease: 1e-6, ..GaussNewton::default() }), 1e-4),
+        (DescentMethod::Lbfgs { memory: 20 }, 5e-3),
     ] {
         let regularizations = vec![1e-4, 1e-8, 0.0];
-        let settings = WholeSettings { regularizations, iterations: 100, method, residual, ..WholeSettings::default() };
+        let settings = WholeSettings { regularizations, iterations: 100, method, ..WholeSettings::default() };
         let found = quietly(&object, &wanted, &settings);
         assert!(found.curve.iter().all(|s| !s.objective.is_empty() && s.objective.windows(2).all(|p| p[1] < p[0])));
         let worst = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
         let (before, after) = (worst(&found.trained[0].loads), worst(&found.trained[1].loads));
-        assert!(before > 0.05 && after < limit, "{residual:?} {method:?}: {before} {after}");
+        assert!(before > 0.05 && after < limit, "{method:?}: {before} {after}");
     }
 }
 
@@ -552,31 +528,6 @@ fn a_load_that_no_network_follows_does_not_decide() {
     let [equal, by_error] = [Weighing::Equal, Weighing::ByError].map(others);
     println!("the others: {equal:.4}, by their errors {by_error:.4}");
     assert!(by_error < equal / 3.0, "{equal} {by_error}");
-}
-
-/// Without regularization the residual of forces is convex in the constants: starts far apart come to one sum of squares.
-#[test]
-fn the_residual_of_forces_has_one_minimum() {
-    let body = Body::new(&load("tissue_tri"), "fixed");
-    let network = Network::assemble(&body.mesh, &body.fits(PLAIN, false));
-    let targets = body.made();
-    let equations = [(body.support.clone(), body.equations())];
-    let least = |network: &Network| {
-        let object = Object::new(network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
-        let method = DescentMethod::GaussNewton(GaussNewton { products: 400, accuracy: 0.01, decrease: 1e-9 });
-        let residual = Residual::Forces;
-        let (regularizations, range) = (vec![0.0], f64::INFINITY);
-        let settings =
-            WholeSettings { regularizations, iterations: 100, method, residual, range, ..WholeSettings::default() };
-        let wanted = Wanted { trained: targets.clone(), body: equations.to_vec(), ..Wanted::default() };
-        let found = quietly(&object, &wanted, &settings);
-        let object = Object::new(&found.network, &body.mesh.points, Unknowns::per_spring(network), None).unwrap();
-        let balance = ResidualForces::new(&object, targets.iter().collect(), &equations).unwrap();
-        balance.at(&vec![0.0; network.len()]).unwrap().unwrap().square()
-    };
-    let far = network.scaled(&waves(network.len(), 1.5).iter().map(|t| t.exp()).collect::<Vec<f64>>());
-    let (near, far) = (least(&network), least(&far));
-    assert!((near - far).abs() < 1e-3 * near, "{near} {far}");
 }
 
 /// Tractions made from a stress in balance have neither resultant nor moment, on any mesh.
@@ -694,8 +645,6 @@ fn every_way_of_fitting_lowers_the_errors() {
         "unknowns = \"region\"",
         "unknowns = \"group\"",
         "solver = \"l-bfgs\"",
-        "residual = \"forces\"",
-        "residual = \"forces-first\"",
         "regularization = 1e-3",
         "seed = 7",
         "start = \"equal\"",

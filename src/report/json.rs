@@ -13,8 +13,11 @@ use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, Outcome, R
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
-/// Of the report's keys; it changes when a key is removed or its meaning changes.
-pub const VERSION: u32 = 2;
+/// The version of the report's keys changes when a key is removed or its meaning changes. Version 3 has no `residual` of whole-object fits.
+pub const VERSION: u32 = 3;
+
+/// Reports from this version on have all keys that this program reads.
+pub(super) const OLDEST: u32 = 2;
 
 /// `report.json`. A value that does not exist or is not finite is null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::file::finish_edition;
-use crate::report::json::{Report, VERSION};
+use crate::report::json::{OLDEST, Report, VERSION};
 use crate::report::network::{NetworkRecord, read_network};
 use std::path::{Path, PathBuf};
 
@@ -35,9 +35,10 @@ impl RunFolder {
         let value: serde_json::Value =
             serde_json::from_str(&text).map_err(|e| Error::new(format!("is not JSON: {e}")).in_file(&path))?;
         let version = value.get("version").and_then(serde_json::Value::as_u64);
-        if version != Some(u64::from(VERSION)) {
+        if !version.is_some_and(|version| (OLDEST.into()..=VERSION.into()).contains(&version)) {
             let found = version.map_or("none".into(), |version| version.to_string());
-            let error = Error::expected("version", format!("{VERSION}, that of this program"), found);
+            let error =
+                Error::expected("version", format!("{OLDEST} to {VERSION}, those that this program reads"), found);
             return Err(error.followed_by("; run the scene again").in_file(&path));
         }
         serde_path_to_error::deserialize(value)

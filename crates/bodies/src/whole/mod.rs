@@ -8,7 +8,6 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-mod balance;
 mod balanced;
 mod blend;
 mod carriers;
@@ -31,7 +30,6 @@ mod student;
 mod target;
 mod unknowns;
 
-pub use balance::ResidualForces;
 pub use balanced::Balanced;
 pub use blend::fit_mass_share;
 pub use covariance::{Determination, MOST_ESTIMATED, WEAK};
@@ -45,7 +43,7 @@ pub use moduli::{ModuliParts, ModuliSharing};
 pub use object::{Object, raise_idle};
 pub use path::{Best, Snapshot, Stage, StepCallback};
 pub use regions::BodyRegions;
-pub use settings::{DescentMethod, Residual, Validation, Wanted, Weighing, WholeSettings};
+pub use settings::{DescentMethod, Validation, Wanted, Weighing, WholeSettings};
 pub use student::ninety_five;
 pub use target::{Frequencies, Target};
 pub use unknowns::Unknowns;

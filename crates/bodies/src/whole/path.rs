@@ -2,13 +2,12 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::balance::ResidualForces;
 use super::balanced::Balanced;
 use super::descent::{Descent, lbfgs};
 use super::displacements::{Displacements, Errors};
 use super::linearized::LeastSquares;
 use super::object::Object;
-use super::settings::{DescentMethod, Residual, Validation, Wanted, Weighing, WholeSettings};
+use super::settings::{DescentMethod, Validation, Wanted, Weighing, WholeSettings};
 use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,8 +45,8 @@ pub struct Stage {
     /// The search ended by itself, and not at `iterations`.
     #[serde(rename = "finished", alias = "is_finished", default)]
     pub is_finished: bool,
-    /// The objective has these values at the start of the stage and after each step. With `forces-first` it is that of the displacements,
-    /// and with L-BFGS the list has each lower point.
+    /// The objective has these values at the start of the stage and after each step. With L-BFGS the list has
+    /// each lower point.
     #[serde(default)]
     pub objective: Vec<f64>,
 }
@@ -194,27 +193,13 @@ impl Path<'_> {
         visit: &mut dyn FnMut(&[f64], f64) -> bool,
     ) -> Result<Descent> {
         let rho = self.settings.regularizations[stage];
-        let mut theta = theta.to_vec();
-        let forces = match self.settings.residual {
-            Residual::Displacements => false,
-            Residual::Forces => true,
-            Residual::ForcesFirst => stage == 0 && theta.iter().all(|t| *t == 0.0),
-        };
-        if forces {
-            let balance = ResidualForces::new(self.object, problem.targets.clone(), &self.wanted.body)?;
-            let found = self.descend(&balance, rho, &theta, visit)?;
-            if self.settings.residual == Residual::Forces {
-                return Ok(found);
-            }
-            theta = found.theta;
-        }
         let balanced = match self.settings.weighing {
             Weighing::Equal => None,
-            Weighing::ByError => Balanced::at_errors(problem, &theta)?,
+            Weighing::ByError => Balanced::at_errors(problem, theta)?,
         };
         match &balanced {
-            Some(balanced) => self.descend(balanced, rho, &theta, visit),
-            None => self.descend(problem, rho, &theta, visit),
+            Some(balanced) => self.descend(balanced, rho, theta, visit),
+            None => self.descend(problem, rho, theta, visit),
         }
     }
 

@@ -4,8 +4,6 @@
 
 use super::gauss_newton::GaussNewton;
 use super::target::{Frequencies, Target};
-use crate::model::Support;
-use crate::solve::Equations;
 
 /// The method that minimises the objective.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,20 +21,6 @@ pub enum DescentMethod {
 const MEMORY: usize = 10;
 
 crate::named!(DescentMethod { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });
-
-/// The residuals whose squares are minimised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Residual {
-    /// Differences of displacements, see [`Displacements`](super::Displacements).
-    #[default]
-    Displacements,
-    /// Residual forces at the target displacements, see [`ResidualForces`](super::ResidualForces).
-    Forces,
-    /// Residual forces at the largest ρ, then differences of displacements.
-    ForcesFirst,
-}
-
-crate::named!(Residual { "displacements" => Displacements, "forces" => Forces, "forces-first" => ForcesFirst });
 
 /// How much each load counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,8 +41,6 @@ pub struct WholeSettings {
     pub iterations: usize,
     /// The method that minimises the objective.
     pub method: DescentMethod,
-    /// The residuals.
-    pub residual: Residual,
     /// How much each load counts, where the residuals are differences of displacements.
     pub weighing: Weighing,
     /// The largest ratio of the constants of two length springs. A ρ that leads to a larger one is rejected, unless the
@@ -78,7 +60,6 @@ impl Default for WholeSettings {
             regularizations: WholeSettings::REGULARIZATIONS.to_vec(),
             iterations: 20,
             method: DescentMethod::GaussNewton(GaussNewton::default()),
-            residual: Residual::default(),
             weighing: Weighing::default(),
             range: 1e3,
         }
@@ -109,8 +90,7 @@ impl Validation {
     }
 }
 
-/// The targets: the loads of the fit, the validation, frequencies, and the stiffness of the finite elements if residual
-/// forces are used.
+/// The targets: the loads of the fit, the validation, and frequencies.
 #[derive(Debug, Clone, Default)]
 pub struct Wanted {
     /// The loads of the fit.
@@ -119,8 +99,6 @@ pub struct Wanted {
     pub validation: Validation,
     /// The target frequencies, if there are any.
     pub frequencies: Option<Frequencies>,
-    /// The equations of the finite elements under each support, for residual forces.
-    pub body: Vec<(Support, Equations)>,
     /// The standard deviation of a residual, where the noise of the displacements is known; required by [`Validation::Discrepancy`].
     pub noise: Option<f64>,
 }

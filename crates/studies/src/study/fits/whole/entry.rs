@@ -7,7 +7,7 @@ use crate::fit::{Choices, Fit, Objective, ShearSprings, VolumeSprings};
 use crate::named::unknown;
 use crate::study::choice::choice;
 use crate::study::fits::sampled::SampledRecipe;
-use crate::whole::{DescentMethod, GaussNewton, ModuliSharing, Residual, WholeSettings};
+use crate::whole::{DescentMethod, GaussNewton, ModuliSharing, WholeSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -49,9 +49,6 @@ pub struct WholeEntry {
     /// found from measured loads alone, or from none.
     #[schemars(extend("enum" = Sharing::NAMES, "x-default" = "`\"spring\"`; `\"moduli\"` with the start `exact`"))]
     pub unknowns: Option<String>,
-    /// The fit makes the errors of `displacements` or of `forces` small, or first those of the forces (`forces-first`).
-    #[schemars(extend("enum" = Residual::NAMES, "default" = Residual::default().name()))]
-    pub residual: Option<String>,
     /// The regularization ρ is given, 0 or more, instead of chosen by `validate`.
     #[schemars(extend("x-default" = "chosen by `validate`"))]
     pub regularization: Option<f64>,
@@ -165,7 +162,6 @@ impl WholeEntry {
         let mut settings = WholeSettings {
             iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
             method: choice("solver", self.solver.as_deref(), method, DescentMethod::named)?,
-            residual: choice("residual", self.residual.as_deref(), settings.residual, Residual::named)?,
             ..settings
         };
         settings.range = self.range.unwrap_or(settings.range);
@@ -175,9 +171,6 @@ impl WholeEntry {
         check_count("iterations", settings.iterations as u64, 1, bound::ITERATIONS)?;
         check_count("frequencies", self.frequencies.unwrap_or(0) as u64, 0, bound::MODES)?;
         check_count("masses", self.masses.unwrap_or(0) as u64, 0, bound::MODES / 2)?;
-        if settings.residual == Residual::Forces && self.frequencies.is_some() {
-            return Err(Error::at("frequencies", "does not go with residual = \"forces\", which has no displacements"));
-        }
         if self.range.is_some() && self.regularization.is_some() {
             return Err(Error::at(
                 "range",

@@ -20,8 +20,6 @@ pub struct WholeRecord {
     /// Springs share an unknown factor by `spring`, `group`, `region` or `element`, or the moduli of cells, regions or the body are the
     /// unknowns.
     pub unknowns: String,
-    /// The residuals are those of `displacements`, `forces` or `forces-first`.
-    pub residual: String,
     /// The search steps by this method.
     pub solver: String,
     /// This number of natural frequencies is fitted.
@@ -63,7 +61,6 @@ impl WholeRecord {
             weight: objective.and_then(|objective| objective.weight()).map(|weight| weight.name().into()),
             higher: objective.and_then(|objective| objective.higher()),
             unknowns: recipe.unknowns.name().into(),
-            residual: recipe.settings.residual.name().into(),
             solver: recipe.settings.method.name().into(),
             frequencies: recipe.frequencies,
             masses: recipe.masses,

@@ -8,11 +8,10 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Support, unheld_bodies};
 use crate::named::unknown;
-use crate::solve::Equations;
 use crate::study::progress::Progress;
 use crate::whole::{
-    NodalLoad, PRESSURE, Pressure, Residual, Target, Validation, Wanted, Weighing, WholeSettings, made_loads,
-    random_loads, varied_loads,
+    NodalLoad, PRESSURE, Pressure, Target, Validation, Wanted, Weighing, WholeSettings, made_loads, random_loads,
+    varied_loads,
 };
 use std::sync::Arc;
 
@@ -77,15 +76,7 @@ impl WholeBody<'_> {
         };
         let noise = self.weigh(recipe, &mut trained)?;
         let frequencies = self.frequencies(recipe.frequencies)?;
-        let mut body: Vec<(Support, Equations)> = Vec::new();
-        if recipe.settings.residual != Residual::Displacements {
-            for target in &trained {
-                if !body.iter().any(|(support, _)| *support == target.support) {
-                    body.push((target.support.clone(), self.equations("residual", &target.support)?));
-                }
-            }
-        }
-        Ok(Wanted { trained, validation, frequencies, body, noise })
+        Ok(Wanted { trained, validation, frequencies, noise })
     }
 
     /// Weighs the loads by the noise of their displacements, if it is known for each; returns the deviation of the residuals.
