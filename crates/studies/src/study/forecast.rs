@@ -75,13 +75,13 @@ impl Forecast {
     /// # Errors
     /// Those of a run before it begins: of the mesh, the material, the supports and the loads.
     pub fn of(scene: &Scene) -> Result<Forecast> {
-        let worked_out = || {
+        let forecast = || {
             let mesh = scene.build_mesh()?;
             let material = &scene.material_of(&mesh)?;
             let (_, cases) = load_cases(scene, &mesh, material)?;
             Forecast::of_body(scene, &mesh, material, &cases, scene.laws(&mesh, material)?.as_ref())
         };
-        worked_out().map_err(|e| scene.with_line(e))
+        forecast().map_err(|e| scene.with_line(e))
     }
 
     /// The stages of a scene whose mesh is there.

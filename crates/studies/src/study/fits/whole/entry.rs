@@ -139,97 +139,33 @@ impl WholeEntry {
     /// # Errors
     /// A value is unknown or out of range, or a load is both fitted and used for validation.
     fn recipe(&self, start: Start) -> Result<WholeRecipe> {
-        let loads = self.loads.clone().unwrap_or_else(|| vec![MADE.into()]);
-        if loads.is_empty() {
-            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
-        }
-        for (key, names) in [("loads", Some(&loads)), ("validate", self.validate.as_ref())] {
-            let names = names.map_or(&[][..], |names| names);
-            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
-            }
-        }
-        let is_exact = matches!(start, Start::Exact(..));
-        let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
-        let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
+        let loads = self.fitted_loads()?;
+        let is_made = loads.iter().any(|name| name == MADE);
+        let unknowns = self.sharing(&start)?;
         let few = unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element);
-        let settings = WholeSettings::default();
-        let method = match few {
-            true => GaussNewton::PRECISE,
-            false => GaussNewton::default(),
-        };
-        let method = DescentMethod::GaussNewton(method);
-        let mut settings = WholeSettings {
-            iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
-            method: choice("solver", self.solver.as_deref(), method, DescentMethod::named)?,
-            ..settings
-        };
-        settings.range = self.range.unwrap_or(settings.range);
-        if !(settings.range >= 1.0) {
-            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
-        }
-        check_count("iterations", settings.iterations as u64, 1, bound::ITERATIONS)?;
-        check_count("frequencies", self.frequencies.unwrap_or(0) as u64, 0, bound::MODES)?;
-        check_count("masses", self.masses.unwrap_or(0) as u64, 0, bound::MODES / 2)?;
-        if self.range.is_some() && self.regularization.is_some() {
-            return Err(Error::at(
-                "range",
-                "limits what \"validate\" may choose, found with a regularization that is given",
-            ));
-        }
-        let validation = match (self.validate.clone(), self.regularization) {
-            (Some(_), Some(_)) => {
-                return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
-            }
-            (None, Some(rho)) if !(rho >= 0.0 && rho.is_finite()) => {
-                return Err(Error::expected("regularization", "a number of at least 0", rho));
-            }
-            (None, Some(rho)) => {
+        let mut settings = self.settings(few)?;
+        let validation = match self.regularization {
+            Some(rho) => {
+                self.check_given(rho)?;
                 settings.regularizations.retain(|larger| *larger > rho);
                 settings.regularizations.push(rho);
                 ValidationRecipe::None
             }
-            (None, None) if few && !loads.iter().any(|name| name == MADE) => {
+            None if self.validate.is_none() && few && !is_made => {
                 settings.regularizations = vec![FEW];
                 ValidationRecipe::None
             }
-            (None, None) => ValidationRecipe::Loads(LoadSelection::new(vec![MADE.into()])),
-            (Some(names), None) if names == [LEAVE_ONE_OUT] => ValidationRecipe::LeaveOneOut,
-            (Some(names), None) if names == [DISCREPANCY] => ValidationRecipe::Discrepancy,
-            (Some(names), None) => {
-                if names.is_empty() {
-                    let expected =
-                        "names of loads of the scene, \"made\", or \"leave-one-out\" or \"discrepancy\" alone";
-                    return Err(Error::expected("validate", expected, "none"));
-                }
-                if let Some(name) = names.iter().find(|name| *name != MADE && loads.contains(name)) {
-                    return Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\"")));
-                }
-                ValidationRecipe::Loads(LoadSelection::new(names))
-            }
+            None => self.validation(&loads)?,
         };
-        if unknowns == Sharing::RegionYoung && matches!(start, Start::Exact(_, VolumeSprings::Patches)) {
-            let expected = "\"points\" or \"cells\" with unknowns = \"region-young\": patches at a boundary of regions belong to both";
-            return Err(Error::expected("volume", expected, "\"patches\""));
-        }
-        if unknowns.moduli().is_some() != is_exact {
-            let found = format!("\"{}\" with the start \"{}\"", unknowns.name(), start.title());
-            let expected = "\"moduli\", \"region-moduli\", \"region-young\" or \"body-moduli\" with the start \"exact\", and no others";
-            return Err(Error::expected("unknowns", expected, found));
-        }
-        let of_exact = [("shear", self.shear.is_some()), ("volume", self.volume.is_some())];
-        if let Some((key, _)) = of_exact.iter().find(|(_, given)| *given && !is_exact) {
-            return Err(Error::at(*key, "belongs to the start \"exact\""));
-        }
         let supports = checked_supports("supports", self.supports.as_deref())?;
         let validation_supports = checked_supports("validate_supports", self.validate_supports.as_deref())?;
-        let is_made = matches!(&validation, ValidationRecipe::Loads(loads) if loads.made);
-        if !validation_supports.is_empty() && !is_made {
+        let is_validated = matches!(&validation, ValidationRecipe::Loads(loads) if loads.made);
+        if !validation_supports.is_empty() && !is_validated {
             return Err(Error::at("validate_supports", "belongs to validate = \"made\""));
         }
         let other_supports = checked_supports("other_supports", self.other_supports.as_deref())?;
         for (key, given) in [("supports", &supports), ("other_supports", &other_supports)] {
-            if !given.is_empty() && !loads.iter().any(|name| name == MADE) {
+            if !given.is_empty() && !is_made {
                 return Err(Error::at(key, "belongs to loads = [\"made\"]"));
             }
         }
@@ -246,6 +182,95 @@ impl WholeEntry {
             validation_supports,
             other_supports,
         })
+    }
+
+    /// The names of the loads that are fitted.
+    fn fitted_loads(&self) -> Result<Vec<String>> {
+        let loads = self.loads.clone().unwrap_or_else(|| vec![MADE.into()]);
+        if loads.is_empty() {
+            return Err(Error::expected("loads", "names of loads of the scene to fit, or \"made\"", "none"));
+        }
+        for (key, names) in [("loads", Some(&loads)), ("validate", self.validate.as_ref())] {
+            let names = names.map_or(&[][..], |names| names);
+            if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
+                return Err(Error::expected(key, "each load once", format!("\"{}\" again", names[i])));
+            }
+        }
+        Ok(loads)
+    }
+
+    /// Which constants have an unknown of their own: moduli with the start `exact`, and factors on springs with others.
+    fn sharing(&self, start: &Start) -> Result<Sharing> {
+        let is_exact = matches!(start, Start::Exact(..));
+        let default = if is_exact { Sharing::Moduli } else { Sharing::default() };
+        let unknowns = choice("unknowns", self.unknowns.as_deref(), default, Sharing::named)?;
+        if unknowns == Sharing::RegionYoung && matches!(start, Start::Exact(_, VolumeSprings::Patches)) {
+            let expected = "\"points\" or \"cells\" with unknowns = \"region-young\": patches at a boundary of regions belong to both";
+            return Err(Error::expected("volume", expected, "\"patches\""));
+        }
+        if unknowns.moduli().is_some() != is_exact {
+            let found = format!("\"{}\" with the start \"{}\"", unknowns.name(), start.title());
+            let expected = "\"moduli\", \"region-moduli\", \"region-young\" or \"body-moduli\" with the start \"exact\", and no others";
+            return Err(Error::expected("unknowns", expected, found));
+        }
+        let of_exact = [("shear", self.shear.is_some()), ("volume", self.volume.is_some())];
+        match of_exact.iter().find(|(_, given)| *given && !is_exact) {
+            Some((key, _)) => Err(Error::at(*key, "belongs to the start \"exact\"")),
+            None => Ok(unknowns),
+        }
+    }
+
+    /// How the search goes; `few` unknowns are found more precisely.
+    fn settings(&self, few: bool) -> Result<WholeSettings> {
+        let settings = WholeSettings::default();
+        let method = DescentMethod::GaussNewton(if few { GaussNewton::PRECISE } else { GaussNewton::default() });
+        let settings = WholeSettings {
+            iterations: self.iterations.map_or(settings.iterations, |i| usize::try_from(i).unwrap_or(usize::MAX)),
+            method: choice("solver", self.solver.as_deref(), method, DescentMethod::named)?,
+            range: self.range.unwrap_or(settings.range),
+            ..settings
+        };
+        if !(settings.range >= 1.0) {
+            return Err(Error::expected("range", "a factor of at least 1 between constants", settings.range));
+        }
+        check_count("iterations", settings.iterations as u64, 1, bound::ITERATIONS)?;
+        check_count("frequencies", self.frequencies.unwrap_or(0) as u64, 0, bound::MODES)?;
+        check_count("masses", self.masses.unwrap_or(0) as u64, 0, bound::MODES / 2)?;
+        Ok(settings)
+    }
+
+    /// A regularization that is given is a number, and nothing else chooses it.
+    fn check_given(&self, rho: f64) -> Result<()> {
+        if self.range.is_some() {
+            let problem = "limits what \"validate\" may choose, found with a regularization that is given";
+            return Err(Error::at("range", problem));
+        }
+        if self.validate.is_some() {
+            return Err(Error::at("regularization", "is chosen by \"validate\" or given, found both"));
+        }
+        if !(rho >= 0.0 && rho.is_finite()) {
+            return Err(Error::expected("regularization", "a number of at least 0", rho));
+        }
+        Ok(())
+    }
+
+    /// What chooses the regularization, beside the `loads` that are fitted.
+    fn validation(&self, loads: &[String]) -> Result<ValidationRecipe> {
+        let names = self.validate.clone().unwrap_or_else(|| vec![MADE.into()]);
+        if names == [LEAVE_ONE_OUT] {
+            return Ok(ValidationRecipe::LeaveOneOut);
+        }
+        if names == [DISCREPANCY] {
+            return Ok(ValidationRecipe::Discrepancy);
+        }
+        if names.is_empty() {
+            let expected = "names of loads of the scene, \"made\", or \"leave-one-out\" or \"discrepancy\" alone";
+            return Err(Error::expected("validate", expected, "none"));
+        }
+        match names.iter().find(|name| *name != MADE && loads.contains(name)) {
+            Some(name) => Err(Error::expected("validate", "loads that are not fitted", format!("\"{name}\""))),
+            None => Ok(ValidationRecipe::Loads(LoadSelection::new(names))),
+        }
     }
 }
 

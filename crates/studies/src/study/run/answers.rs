@@ -1,0 +1,112 @@
+//! The answers of the finite elements and of the networks to the loads.
+
+use super::posed::Posed;
+use super::solved::{Solved, solve_linear};
+use crate::error::Result;
+use crate::material::EnergyMap;
+use crate::model::Deformation;
+use crate::study::body::{LargeBody, LinearBody, load_notes};
+use crate::study::masses::PointMasses;
+use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
+use crate::study::progress::{Event, Progress};
+use crate::study::stages::stages;
+use crate::study::time::TimePlan;
+
+/// The displacements of the finite elements; those of the networks are with their fits.
+pub(super) struct Answers {
+    /// For each load, `[points · dimension]`, m.
+    displacements: Vec<Vec<f64>>,
+    /// How far each load was followed; `None` at small deformation.
+    followed: Vec<Option<Followed>>,
+    /// The energies of the laws, at large deformation.
+    laws: Option<EnergyMap>,
+    masses: Option<PointMasses>,
+}
+
+impl Answers {
+    /// Solves every load with every network, and with the finite elements where no fit has needed that.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, or iterations that were asked for stall.
+    pub fn of(posed: &Posed, solved: Solved, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<Answers> {
+        let Solved { large, linear, masses, .. } = solved;
+        let (displacements, followed, laws) = match large {
+            Some(large) => {
+                at_large(posed, &large, fits, progress)?;
+                (large.displacements, large.followed.into_iter().map(Some).collect(), Some(large.laws))
+            }
+            None => {
+                let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
+                at_small(posed, &body, fits, progress)?;
+                (body.into_displacements(), vec![None; posed.cases.len()], None)
+            }
+        };
+        if let Some(gauged) = &posed.gauged {
+            fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
+        }
+        Ok(Answers { displacements, followed, laws, masses })
+    }
+
+    /// All that was found, without what happens over time; with the plan of that, and the laws that it needs.
+    pub fn outcome(self, posed: Posed, fits: Vec<FitOutcome>) -> (Outcome, TimePlan, Option<EnergyMap>) {
+        let Answers { displacements, followed, laws, masses } = self;
+        let Posed { scene, mesh, material, support, cases, gauged, plan, .. } = posed;
+        let answers = cases.iter().zip(displacements).zip(followed).enumerate();
+        let loads = answers.map(|(i, ((case, fem), followed))| BodyLoad {
+            name: case.name.clone(),
+            support: case.support.clone(),
+            forces: case.forces.clone(),
+            gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
+            measured: case.measured(&fem, mesh.dimension),
+            deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),
+            followed,
+            fem,
+        });
+        let loads = loads.collect();
+        let outcome = Outcome {
+            scene: scene.title().into(),
+            inputs: scene.inputs(),
+            settings: scene.settings().iter().map(|setting| setting.to_string()).collect(),
+            command: None,
+            source: scene.mesh().title(),
+            assumed: scene.assumption(&mesh),
+            of_loads: load_notes(scene, &mesh),
+            left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
+            mesh,
+            material,
+            support: Some(support),
+            lumping: masses.as_ref().map(|masses| masses.lumping),
+            masses: masses.map(|masses| masses.values),
+            law: laws.as_ref().map(EnergyMap::title),
+            fibres: laws.as_ref().and_then(EnergyMap::distance_at_rest),
+            loads,
+            fits,
+            motion: None,
+            frequencies: Vec::new(),
+        };
+        (outcome, plan, laws)
+    }
+}
+
+/// The answers of the networks at large deformation.
+fn at_large(posed: &Posed, body: &LargeBody, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<()> {
+    let count = fits.len();
+    for (done, fit) in fits.iter_mut().enumerate() {
+        progress(Event::stage("networks", done, count));
+        fit.loads = body.compare(&posed.mesh, &posed.cases, &fit.network)?;
+    }
+    Ok(())
+}
+
+/// The answers of the networks at small deformation, and how they stand.
+fn at_small(posed: &Posed, body: &LinearBody, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<()> {
+    let count = fits.len();
+    for (done, fit) in fits.iter_mut().enumerate() {
+        progress(Event::stage("networks", done, count));
+        let compared = fit.kind.compared(posed.material.moduli());
+        let answers = body.compare(&posed.mesh, &posed.cases, &fit.network, &compared, progress);
+        let answers = answers.map_err(|e| posed.in_scene(e))?;
+        (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
+    }
+    Ok(())
+}

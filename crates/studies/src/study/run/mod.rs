@@ -1,0 +1,47 @@
+//! Runs a scene: the body with its supports and loads, its finite elements, a network for each fit, and the answers of both beside each other.
+
+mod answers;
+mod posed;
+mod solved;
+
+use super::checkpoint::Controls;
+use super::outcome::Outcome;
+use super::progress::{Event, Progress};
+use super::scene::Scene;
+use crate::error::Result;
+use answers::Answers;
+use posed::Posed;
+use solved::Solved;
+
+/// Runs the scene. Only the work that the scene requests is done.
+///
+/// # Errors
+/// An input is wrong: a group, a support, a load or the mesh. A network that is not stable is not an error.
+pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
+    run_with(scene, &Controls::default(), progress)
+}
+
+/// As [`run`]; whole-object fits can be cancelled and continued.
+///
+/// # Errors
+/// Those of [`run`]; or the checkpoint is wrong or cannot be written.
+pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
+    in_stages(scene, controls, progress).map_err(|e| scene.with_line(e))
+}
+
+/// The stages of a run, one after the other.
+fn in_stages(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
+    controls.check()?;
+    let mut posed = Posed::of(scene, controls, progress)?;
+    let solved = Solved::of(&mut posed, progress)?;
+    let mut fits = solved.fits(&posed, controls, progress)?;
+    posed.measure_moduli(&mut fits, progress)?;
+    let answers = Answers::of(&posed, solved, &mut fits, progress)?;
+    let (mut outcome, plan, laws) = answers.outcome(posed, fits);
+    if controls.cancelled() {
+        progress(Event::Note("ended early, without motion and frequencies"));
+    } else {
+        plan.follow(scene, laws.as_ref(), &mut outcome, progress)?;
+    }
+    Ok(outcome)
+}

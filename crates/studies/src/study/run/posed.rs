@@ -1,0 +1,102 @@
+//! What a scene asks of a body, before anything is solved.
+
+use crate::analysis::moduli::moduli_of_body;
+use crate::error::{Error, Result};
+use crate::material::{EnergyMap, MaterialMap};
+use crate::mesh::Mesh;
+use crate::model::Support;
+use crate::study::body::{Case, Gauged, load_cases};
+use crate::study::checkpoint::Controls;
+use crate::study::forecast::Forecast;
+use crate::study::outcome::FitOutcome;
+use crate::study::progress::{Event, Progress};
+use crate::study::scene::Scene;
+use crate::study::time::TimePlan;
+
+/// The body of a scene with its material, its support and its loads.
+pub(super) struct Posed<'a> {
+    pub scene: &'a Scene,
+    pub mesh: Mesh,
+    pub material: MaterialMap,
+    /// The support of the `[[fix]]` entries.
+    pub support: Support,
+    /// The loads, each under its own support.
+    pub cases: Vec<Case>,
+    /// The energies of the laws, at large deformation; until they are solved.
+    pub energy: Option<EnergyMap>,
+    pub gauged: Option<Gauged>,
+    /// What is asked for over time.
+    pub plan: TimePlan,
+}
+
+impl<'a> Posed<'a> {
+    /// Reads all inputs, and says what is expected to take long.
+    ///
+    /// # Errors
+    /// An input is wrong.
+    pub fn of(scene: &'a Scene, controls: &Controls, progress: &mut Progress) -> Result<Posed<'a>> {
+        let mesh = scene.build_mesh()?;
+        let material = scene.material_of(&mesh)?;
+        drawable(scene, &mesh)?;
+        let (support, cases) = load_cases(scene, &mesh, &material)?;
+        let energy = scene.laws(&mesh, &material)?;
+        if controls.announce
+            && let Some(words) = Forecast::of_body(scene, &mesh, &material, &cases, energy.as_ref())?.announcement()
+        {
+            progress(Event::Note(&words));
+        }
+        let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
+        let plan = TimePlan::of(scene, &mesh, &material, &support)?;
+        Ok(Posed { scene, mesh, material, support, cases, energy, gauged, plan })
+    }
+
+    /// The error in the scene's file, unless it names another place.
+    pub fn in_scene(&self, error: Error) -> Error {
+        error.placed(|e| e.in_file(self.scene.path()))
+    }
+
+    /// Whether each point is held in all directions under every load; without loads, by `[[fix]]`.
+    pub fn held_points(&self) -> Vec<bool> {
+        let d = self.mesh.dimension;
+        let holds = |support: &Support, point: usize| (point * d..(point + 1) * d).all(|dof| support.is_fixed(dof));
+        let held = |point| match &self.cases[..] {
+            [] => holds(&self.support, point),
+            cases => cases.iter().all(|case| holds(&case.support, point)),
+        };
+        (0..self.mesh.point_count()).map(held).collect()
+    }
+
+    /// The moduli of each network as a whole, if the scene asks for them.
+    ///
+    /// # Errors
+    /// The equations of a network do not fit into memory.
+    pub fn measure_moduli(&self, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<()> {
+        if !self.scene.output().moduli {
+            return Ok(());
+        }
+        let count = fits.len();
+        for (done, fit) in fits.iter_mut().enumerate() {
+            progress(Event::stage("moduli", done, count));
+            fit.network.check_size()?;
+            let found = moduli_of_body(&self.mesh, &fit.network.stiffness(&self.mesh.points))?;
+            fit.moduli = found.map(|moduli| moduli.of_solid(self.material.state()));
+            if fit.moduli.is_none() {
+                let problem =
+                    "the whole network has no moduli: some strain meets no resistance, or no point is inside the body";
+                progress(Event::Note(&format!("{}: {problem}", fit.fit.name)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Checked before the work starts, not after it.
+fn drawable(scene: &Scene, mesh: &Mesh) -> Result<()> {
+    match mesh.blocks.iter().find(|b| scene.output().vtu && b.element.formats.vtk.is_none()) {
+        Some(block) => {
+            let expected = "elements that name their VTK type in [formats]";
+            Err(Error::expected("output.vtu", expected, &block.element.name).in_file(scene.path()))
+        }
+        None => Ok(()),
+    }
+}

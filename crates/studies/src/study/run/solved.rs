@@ -1,0 +1,95 @@
+//! The finite elements of a run as far as its fits need them, and the fits.
+
+use super::posed::Posed;
+use crate::error::Result;
+use crate::study::body::{FineBody, LargeBody, LinearBody};
+use crate::study::checkpoint::Controls;
+use crate::study::fits::{Finer, Reference, WholeBody};
+use crate::study::fitting::{fit_mesh, fit_without_errors};
+use crate::study::masses::{PointMasses, point_masses};
+use crate::study::outcome::FitOutcome;
+use crate::study::progress::Progress;
+
+/// The finite elements that are solved before the fits.
+pub(super) struct Solved {
+    /// The finer body that gives the displacements, if there is one.
+    fine: Option<FineBody>,
+    /// The body at large deformation.
+    pub large: Option<LargeBody>,
+    /// The body at small deformation; `None` where no fit needs its displacements, which are then found after the fits.
+    pub linear: Option<LinearBody>,
+    pub masses: Option<PointMasses>,
+}
+
+impl Solved {
+    /// Solves what the fits of the scene need. The finer body's displacements become those that loads are compared with.
+    ///
+    /// # Errors
+    /// Some motion has no stiffness, equations do not fit into memory, or a file of displacements is wrong.
+    pub fn of(posed: &mut Posed, progress: &mut Progress) -> Result<Solved> {
+        let scene = posed.scene;
+        let fine = FineBody::of(scene, &posed.mesh, progress)?;
+        if let Some(fine) = &fine {
+            fine.measure(scene, &mut posed.cases, progress)?;
+        }
+        let large = posed.energy.take().map(|energy| {
+            LargeBody::solve(&posed.mesh, energy, scene.newton(), &posed.cases, progress).map_err(|e| posed.in_scene(e))
+        });
+        let large = large.transpose()?;
+        let masses = posed.material.density().map(|density| point_masses(&posed.mesh, density, &posed.material));
+        let masses = masses.transpose().map_err(|e| scene.at("material", e))?;
+        // Only fits to the whole object need the displacements of the body.
+        let fits_whole = scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
+        let linear = match large.is_none() && fits_whole {
+            true => Some(solve_linear(posed, progress)?),
+            false => None,
+        };
+        Ok(Solved { fine, large, linear, masses })
+    }
+
+    /// Each fit of the scene, in its order.
+    ///
+    /// # Errors
+    /// A fit does not go with the mesh, the material or the loads; the error names it.
+    pub fn fits(&self, posed: &Posed, controls: &Controls, progress: &mut Progress) -> Result<Vec<FitOutcome>> {
+        let Posed { scene, mesh, material, .. } = posed;
+        let whole = self.whole(posed, controls);
+        let held = posed.held_points();
+        let reference = Reference { large: self.large.as_ref(), whole: Some(&whole), held: &held };
+        let mut fits = Vec::new();
+        for fit in scene.fits() {
+            let fitted = match scene.output().has_errors() {
+                true => fit_mesh(mesh, material, &reference, fit, progress),
+                false => fit_without_errors(mesh, material, &reference, fit, progress).map(|(fitted, _)| fitted),
+            };
+            fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
+        }
+        Ok(fits)
+    }
+
+    /// The body to which whole-object fits are fitted.
+    fn whole<'a>(&'a self, posed: &'a Posed, controls: &'a Controls) -> WholeBody<'a> {
+        let mut whole = WholeBody::new(&posed.mesh, &posed.material, &posed.support, controls);
+        whole.cases = &posed.cases;
+        whole.displacements = match (&self.large, &self.linear) {
+            (Some(large), _) => large.complete().collect(),
+            (None, Some(linear)) => linear.displacements().map(Some).collect(),
+            (None, None) => Vec::new(),
+        };
+        whole.newton = self.large.as_ref().map(|_| posed.scene.newton());
+        whole.fine = self.fine.as_ref().map(|fine| fine as &dyn Finer);
+        whole.masses = self.masses.as_ref().map(|masses| &masses.values[..]);
+        whole.solver = posed.scene.solver();
+        whole.know(self.linear.iter().flat_map(|linear| linear.held(&posed.cases)));
+        whole
+    }
+}
+
+/// The finite elements at small deformation under each load.
+///
+/// # Errors
+/// As [`LinearBody::solve`].
+pub(super) fn solve_linear(posed: &Posed, progress: &mut Progress) -> Result<LinearBody> {
+    let moduli = posed.material.moduli();
+    LinearBody::solve(&posed.mesh, &moduli, &posed.cases, posed.scene.solver(), progress).map_err(|e| posed.in_scene(e))
+}
