@@ -5,9 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use springfit::element::Element;
 use springfit::fit::{
-    Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element,
+    Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element, plain,
 };
-use springfit::material::{Material, Moduli};
+use springfit::material::{Hooke, Material, Moduli};
 use springfit::mesh::BoxMesh;
 use springfit::springs::Springs;
 use springfit::stiffness::Geometry;
@@ -553,4 +553,28 @@ fn congruent_cells_are_fitted_once() {
         let fits = fit_cells(&element, &springs, &mesh.points, nodes, moduli, &fit, &mut |_| {}).unwrap();
         assert_eq!(fits.reused, 0, "{}", element.name);
     }
+}
+
+/// The routes of a fit against its formula, written out: networks are equal in what a norm sees of them. The formula solves normal equations
+/// without corrections, and loses their condition.
+#[test]
+fn every_route_comes_to_the_constants_of_the_formula() {
+    let mut worst = 0.0f64;
+    for case in cases(3) {
+        let hooke = Hooke::Isotropic(case.moduli);
+        let r = plain::stiffness(&case.element, &case.x, &hooke).unwrap();
+        assert!((&r - &case.r).norm() < 1e-13 * case.r.norm(), "{}", case.name);
+        for weight in weights() {
+            let seen = plain::seen(weight, &r, &case.x, case.springs.dimension());
+            assert!((seen(&r) - case.weighted(weight, &r)).norm() < 1e-9 * seen(&r).norm(), "{} {weight:?}", case.name);
+            let formula = plain::constants(&case.element, &case.springs, &case.x, &hooke, weight).unwrap();
+            let k = case.fit(Fit::new(Objective::Frobenius(weight)));
+            let g = DMatrix::from_columns(&case.g);
+            let change = DMatrix::from_fn(k.len(), g.nrows(), |s, i| (k[s] - formula[s]) * g[(i, s)]);
+            let difference = seen(&(&g * change)).norm() / seen(&r).norm();
+            worst = worst.max(difference);
+            assert!(difference < 1e-9, "{} {weight:?}: {difference}", case.name);
+        }
+    }
+    println!("largest difference: {worst:.1e} of |R|");
 }

@@ -1,7 +1,7 @@
 //! Spring constants from the stiffness of each element: `min_k ‖R − K(k)‖`, `K(k) = Σ_s k_s g_s g_sᵀ`, and other
 //! objectives.
 //!
-//! [`fit_cells`] fits all cells of one element type; [`fit_exact`] makes networks that are equal to the finite element;
+//! [`plain`] is a fit as its formula: read it first. [`fit_cells`] fits all cells of one element type by faster routes; [`fit_exact`] makes networks that are equal to the finite element;
 //! [`fit_sampled`] fits to forces at large deformation; [`published`] holds the formulas of other authors.
 //!
 //! Theory: pages *Least squares*, *The 2-norm*, *The divergence*, *Modal weights*, *Exact networks and patches* and
@@ -36,6 +36,7 @@ mod norms;
 mod objective;
 mod packed_hooke;
 mod packing;
+pub mod plain;
 mod precision;
 pub mod published;
 mod reduction;

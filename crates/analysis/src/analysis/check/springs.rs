@@ -5,14 +5,18 @@ use super::property::Property;
 use super::shape::{ASKED, geometry, shapes};
 use crate::analysis::moduli::Lattice;
 use crate::element::Element;
-use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_exact};
-use crate::material::Material;
+use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_element, fit_exact, plain};
+use crate::material::{Hooke, Material};
 use crate::springs::Springs;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// The `‖R − K‖/‖R‖` of an exact network that rounding may cause.
 const EXACT: f64 = 1e-10;
+/// The difference of two networks, relative to `‖R‖`, that rounding of the normal equations may cause.
+const FORMULA: f64 = 1e-8;
+/// The formula of so many springs takes a second for a shape.
+const MANY: usize = 40;
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
     let mut properties = vec![exact(element)];
@@ -53,7 +57,7 @@ fn selected(element: &Arc<Element>) -> Vec<Property> {
         Err(error) => return vec![Property::new("springs", false, error.to_string())],
     };
     let (rank, condition) = rank_and_condition(element, &springs);
-    let mut properties = vec![rank, condition];
+    let mut properties = vec![rank, condition, formula(element, &springs)];
     let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
     properties.push(moduli(element, "moduli of the springs", &springs));
     if element.springs.iter().any(|g| g.optional)
@@ -96,6 +100,33 @@ fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Proper
         "singular: the springs are linearly dependent, and the least of all optima is taken".to_string()
     };
     (rank, Property::noted("condition of the equations", finding).with(worst))
+}
+
+/// The constants of every weight against those of the formula, by the matrices of the springs, over all shapes; over one where springs are many.
+fn formula(element: &Element, springs: &Springs) -> Property {
+    let (young, poisson) = ASKED;
+    let mut worst = 0.0f64;
+    let count = if springs.len() > MANY { 1 } else { usize::MAX };
+    for x in shapes(element).into_iter().take(count) {
+        for weight in Weight::all() {
+            let found = Material::for_body(element.dimension(), young, poisson, None, None).and_then(|material| {
+                let moduli = material.moduli();
+                let fit = Fit::new(Objective::Frobenius(weight));
+                let fast = fit_element(element, springs, &x, moduli, &fit)?;
+                let formula = plain::constants(element, springs, &x, &Hooke::Isotropic(moduli), weight)?;
+                let size = plain::stiffness(element, &x, &Hooke::Isotropic(moduli))?.norm();
+                let g = plain::gradients(element, springs, &x)?;
+                let differences = DMatrix::from_fn(g.ncols(), g.nrows(), |s, i| (fast[s] - formula[s]) * g[(i, s)]);
+                Ok((g * differences).norm() / size)
+            });
+            match found {
+                Ok(difference) => worst = worst.max(difference),
+                Err(error) => return Property::new("fits by the formula", false, error.to_string()),
+            }
+        }
+    }
+    let finding = format!("networks of every weight, largest difference {worst:.1e} of |R|");
+    Property::new("fits by the formula", worst <= FORMULA, finding).with(worst)
 }
 
 /// The moduli of the plain fit on a periodic box.
