@@ -164,7 +164,7 @@ impl Terminal {
         self.print_bytes(printable_lines(text).as_bytes())
     }
 
-    /// The same of text of our own, which may have control characters.
+    /// Prints text of this program, which may have control characters, as [`Terminal::print`] does.
     ///
     /// # Errors
     /// As there.

@@ -257,7 +257,7 @@ impl Fit {
         Ok(support)
     }
 
-    /// The same fault with the option that the key stands for, as it is typed.
+    /// Moves a fault from its key to the option that the key stands for, as it is typed.
     fn of_option(&self, error: Error) -> Error {
         let command = <Fit as Args>::augment_args(clap::Command::new("fit"));
         // Options have the last part of a key's path.

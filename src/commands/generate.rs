@@ -83,7 +83,7 @@ impl Generate {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// The same fault with the option that it is about: objectives name themselves, and what is wrong with an element no option.
+    /// Moves a fault to the option that it is about: objectives name themselves, and what is wrong with an element names no option.
     fn of_option(&self, error: Error) -> Error {
         match error.key() {
             Some("higher") if self.higher.is_none() => error.at_key("--objective"),

@@ -63,7 +63,7 @@ impl OutputOptions {
         printable_lines(&text).into_owned()
     }
 
-    /// The same of an outcome, with its notes, which a report has as well.
+    /// Prints an outcome with its notes, which a report has as well.
     ///
     /// # Errors
     /// Standard output cannot be written.

@@ -21,7 +21,7 @@ pub const TARGET: Target = Target {
 
 /// m/s², along z, up or down.
 const GRAVITY: f64 = 9.8;
-/// Of its gravity; 9.81 m/s² is the same.
+/// A gravity that differs from that of the simulator by at most this share is accepted as equal; 9.81 m/s² is.
 const SAME: f64 = 2e-3;
 /// s, between two states.
 const FRAME: f64 = 1.0 / 30.0;

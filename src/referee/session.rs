@@ -76,7 +76,7 @@ pub struct Session {
     program: PathBuf,
     /// What the engine prints.
     log: PathBuf,
-    /// Of the engine.
+    /// The engine has this version.
     pub version: String,
     /// s; 0 before a body is opened.
     pub step: f64,

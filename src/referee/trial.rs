@@ -22,7 +22,7 @@ pub struct Trial<'a> {
     pub engine: &'a Engine,
     /// What runs it.
     pub program: &'a Path,
-    /// Of the scripts and exports.
+    /// The scripts and exports are in this folder.
     pub folder: &'a Path,
     /// The bodies of one Poisson's ratio.
     pub bodies: &'a [StandardBody],

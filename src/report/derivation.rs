@@ -20,7 +20,7 @@ pub struct Derivation<'a> {
     pub exact: Option<&'a ExactForm>,
     /// The fits, each with its constants as formulas or the reason why there are none.
     pub fits: &'a [Result<ClosedFit>],
-    /// Of plane elements: what E and ν mean.
+    /// The plane state tells what E and ν of plane elements mean.
     pub plane: Option<Plane>,
     /// With the stiffness matrix.
     pub matrix: bool,

@@ -78,7 +78,7 @@ pub struct FitRecord {
 }
 
 impl FitRecord {
-    /// Of a body of `elements` elements of this thickness, if they have the same.
+    /// Makes the record of a fit of a body of `elements` elements; `thickness` is that of all elements, or `None` if theirs differ.
     pub(super) fn of(outcome: &FitOutcome, elements: usize, thickness: Option<f64>) -> FitRecord {
         let certificate = outcome.kind.stiffness();
         let moduli = outcome.moduli.as_ref();

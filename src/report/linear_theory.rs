@@ -29,7 +29,7 @@ impl DeformationRecord {
         }
     }
 
-    /// Of each load and of the motion, where they are linear.
+    /// Makes a record of the deformation under each load and in the motion, where they are linear.
     pub(super) fn all(outcome: &Outcome) -> Vec<DeformationRecord> {
         let loads = outcome.loads.iter().filter_map(of_load);
         let motion = moved(outcome).and_then(|body| body.deformation);
@@ -71,7 +71,7 @@ pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
     beyond.map(note).collect()
 }
 
-/// Of a network whose springs turn beside linear finite elements, what of its error is the fit's. Bodies in space of surfaces and
+/// Says what part of a network's error is the fit's, where the springs turn beside linear finite elements. Bodies in space of surfaces and
 /// curves have no law, `is_bulk` is false of them.
 pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>, is_bulk: bool) -> Option<String> {
     let ([mean, max], [own_mean, own_max]) = (model.error()?, model.linear_error?);

@@ -90,7 +90,7 @@ pub struct MotionRecord {
     pub linear_e_rms_max: Option<f64>,
 }
 
-/// Of reports without the key.
+/// Names the precision of the forces in reports without the key.
 fn double() -> String {
     ForcePrecision::Double.name().into()
 }

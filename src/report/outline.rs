@@ -9,7 +9,8 @@ pub(super) fn cell_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
     edges_of_sides(mesh, |_, _| true)
 }
 
-/// The same, of a solid those of the sides for which `is_seen` holds: their corners, and the centre of their cell.
+/// Finds the edges of all cells of a curve or in the plane; of a solid those of the sides for which `is_seen` holds, which is given their
+/// corners and the centre of their cell.
 pub(super) fn edges_of_sides(mesh: &Mesh, is_seen: impl Fn(&[&[f64]], [f64; 3]) -> bool) -> Vec<[usize; 2]> {
     let mut edges = BTreeSet::new();
     let mut add = |element: &Element, nodes: &[usize], corners: &[usize]| {

@@ -16,7 +16,7 @@ pub fn open_outputs(folder: &Path, names: &[&str], inputs: &[PathBuf]) -> Result
     Edition::begin(folder, names, inputs, &former_names(folder))
 }
 
-/// The same for all that a run of the scene writes.
+/// Opens `folder`, which need not exist yet, for all files that a run of the scene writes, before the work.
 ///
 /// # Errors
 /// Those of [`Edition::begin`]; or two arrays of a file for ParaView would have the same name.

@@ -126,7 +126,7 @@ pub fn network_grid(file: &NetworkFile) -> Grid {
     grid
 }
 
-/// Of the finite elements, if they reached the whole load.
+/// Returns the displacements of the finite elements, if they reached the whole load.
 fn body_vectors(load: &BodyLoad, dimension: usize) -> Option<Array> {
     load.is_reached().then(|| vectors(body_array(&load.name), &load.fem, dimension))
 }

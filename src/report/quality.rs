@@ -7,7 +7,7 @@ pub(super) fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The same with the verbs that follow it.
+/// Returns a number of things, `1 cell` or `2 cells`, with the verbs that follow it.
 fn with_verbs(count: usize, thing: &str) -> (String, &'static str, &'static str) {
     let (are, were) = if count == 1 { ("is", "was") } else { ("are", "were") };
     (counted(count, thing), are, were)

@@ -25,7 +25,7 @@ pub struct RegionRecord {
 }
 
 impl RegionRecord {
-    /// Of each region of a body.
+    /// Makes a record of each region of a body.
     pub(super) fn all(outcome: &Outcome) -> Vec<RegionRecord> {
         let (mesh, material) = (&outcome.mesh, &outcome.material);
         let (names, thicknesses) = (material.regions(), material.thicknesses());

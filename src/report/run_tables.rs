@@ -152,7 +152,7 @@ fn materials(report: &Report) -> Table {
     Table::new("materials", title, columns, report.fits.iter().map(row)).with_notes(samples(report))
 }
 
-/// Of what a body of several materials the rows speak: the mean of its samples, which is not that of the body.
+/// Says what the rows of a body of several materials speak of: the mean of its samples, which is not that of the body.
 fn samples(report: &Report) -> Option<String> {
     let m = &report.fits.first()?.as_material;
     if report.young.is_some() && report.poisson.is_some() {

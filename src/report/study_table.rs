@@ -36,7 +36,7 @@ pub struct StudyTable {
 }
 
 impl StudyTable {
-    /// Of the studies that have a record; `keys` are those of the sweep, and studies are counted from 1.
+    /// Makes the table of the studies that have a record; `keys` are those of the sweep, and studies are counted from 1.
     pub fn of<'a>(keys: &[String], studies: &[Study], record: impl Fn(&str) -> Option<&'a StudyRecord>) -> StudyTable {
         let mut figures = BTreeSet::new();
         let mut rows: Vec<(Vec<Value>, BTreeMap<String, Value>)> = Vec::new();
@@ -61,12 +61,12 @@ impl StudyTable {
         StudyTable { columns: columns.collect(), rows: rows.into_iter().map(complete).collect() }
     }
 
-    /// As CSV; a value that is missing is an empty cell.
+    /// Writes the table as CSV; a value that is missing is an empty cell.
     pub fn csv(&self) -> String {
         csv(&self.columns, &self.rows.iter().map(|row| row.iter().map(cell).collect()).collect::<Vec<_>>())
     }
 
-    /// As a list of objects, in JSON.
+    /// Converts the table to a list of objects, in JSON.
     pub fn json(&self) -> Value {
         let object = |row: &Vec<Value>| {
             Value::Object(self.columns.iter().cloned().zip(row.iter().cloned()).collect::<Map<_, _>>())

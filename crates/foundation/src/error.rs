@@ -74,19 +74,19 @@ impl Error {
         Error::at(key, format!("expected {expected}, found {found}"))
     }
 
-    /// The same fault as one of another kind.
+    /// Sets the kind of the fault.
     pub fn of_kind(mut self, kind: ErrorKind) -> Self {
         self.kind = kind;
         self
     }
 
-    /// The same fault at another key.
+    /// Sets the key of the fault.
     pub fn at_key(mut self, key: impl Into<String>) -> Self {
         self.key = Some(line(key.into()));
         self
     }
 
-    /// The same fault with more words after the problem.
+    /// Adds words after the problem of the fault.
     pub fn followed_by(mut self, words: impl fmt::Display) -> Self {
         self.problem = cut(&line(format!("{}{words}", self.problem))).into_owned();
         self
@@ -128,7 +128,7 @@ impl Error {
         if self.file.is_some() { self } else { place(self) }
     }
 
-    /// The same fault as one of a command-line option, which has no file: the key `young` becomes `--young`.
+    /// Makes the fault one of a command-line option, which has no file: the key `young` becomes `--young`.
     pub fn of_option(mut self) -> Self {
         if self.file.is_none() {
             self.key = self.key.map(|key| format!("--{key}"));

@@ -9,7 +9,7 @@ use crate::random::Random;
 use crate::settings::{Event, Watch};
 use std::f64::consts::PI;
 
-/// Of `M⁻¹ A`, this is a zero with rounding.
+/// An eigenvalue of `M⁻¹ A` that is not above this is zero up to rounding.
 const NOTHING: f64 = 1e-10;
 /// The largest eigenvalue of `M⁻¹ A` is at most this multiple of the largest that was met, and not below 1, which it is without rounding.
 const MARGIN: f64 = 1.05;

@@ -100,8 +100,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         Ok(self.gradients::<f64>(&[b], tolerance, iterations, watch)?.remove(0))
     }
 
-    /// The same for each of several right hand sides, eight at a time: each product reads the matrix once for all of them. The watch
-    /// hears the largest residual of those.
+    /// Solves for each of several right hand sides as [`Multigrid::solve`] does, eight at a time: each product reads the matrix once for
+    /// all of them. The watch hears the largest residual of those.
     ///
     /// # Errors
     /// As [`Multigrid::solve`].

@@ -147,7 +147,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         self.cycle(r, z, workspace);
     }
 
-    /// The same of one vector or of several.
+    /// Computes `z ← M⁻¹ r` by one V-cycle, for one vector or for several; what is held is zero in z, whatever it is in r.
     pub(crate) fn cycle<T: Entry>(&self, r: &[[T; D]], z: &mut [[T; D]], workspace: &mut Workspace<D, M, T>) {
         let Workspace { first, others } = workspace;
         first.residual.copy_from_slice(r);

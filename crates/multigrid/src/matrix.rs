@@ -31,7 +31,7 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
         &self.values
     }
 
-    /// As [`BlockMatrix::values`], to be changed.
+    /// Gives access to the blocks, in the order of the pattern's columns, so that they can be changed.
     pub fn values_mut(&mut self) -> &mut [Block<R, C>] {
         &mut self.values
     }
@@ -59,7 +59,7 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
         self.product(x, y);
     }
 
-    /// The same of one vector or of several.
+    /// Computes `y ← A x` for one vector or for several.
     pub(crate) fn product<T: Entry>(&self, x: &[[T; C]], y: &mut [[T; R]]) {
         self.each_row(y, x, |y, product| *y = product);
     }

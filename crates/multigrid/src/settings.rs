@@ -41,7 +41,7 @@ pub enum Event {
     Iteration {
         /// Counted from 1.
         number: usize,
-        /// As a share of that at the start, in the norm of the inverse preconditioner.
+        /// The residual is a share of that at the start, in the norm of the inverse preconditioner.
         residual: f64,
     },
 }

@@ -13,17 +13,17 @@ use std::ops::Range;
 /// How the points of a series are shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
-    /// As marks.
+    /// The points are shown as marks.
     Marks,
-    /// As an open mark: the value is below the axis.
+    /// The points are shown as open marks: their values are below the axis.
     Below,
-    /// As a line.
+    /// The points are shown as a line.
     Line,
-    /// As a line with marks.
+    /// The points are shown as a line with marks.
     Curve,
-    /// As a thin grey line with its name at its last point, for comparison; no place is made for it.
+    /// The points are shown as a thin grey line with its name at its last point, for comparison; no place is made for it.
     Guide,
-    /// As bars of this width.
+    /// The points are shown as bars of this width.
     Bars(f64),
 }
 
@@ -257,7 +257,7 @@ impl Chart {
     }
 }
 
-/// Of the names of guides.
+/// The names of guides have this colour.
 const GUIDE: RGBColor = RGBColor(110, 110, 110);
 
 #[derive(Clone, Copy)]

@@ -49,7 +49,7 @@ struct Entry {
 }
 
 impl Moduli {
-    /// Of all networks of a run, or of the one that is named.
+    /// Reads the moduli of all networks of a run, or of the one that is named.
     ///
     /// # Errors
     /// No network has a tensor whose inverse exists, or there is no network with the name.
@@ -76,7 +76,7 @@ impl Moduli {
         Ok(Moduli { title, planes, curves, reference: reference(run, &report) })
     }
 
-    /// As an SVG file's text: a panel for each plane, the radius is the modulus.
+    /// Draws the text of an SVG file: a panel for each plane, in which the radius is the modulus.
     pub fn svg(&self, columns: Columns) -> String {
         let all = self.curves.iter().flat_map(|curve| curve.moduli.iter().flatten()).chain(&self.reference);
         let largest = all.copied().fold(0.0, f64::max);

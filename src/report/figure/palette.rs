@@ -13,7 +13,7 @@ pub const COLORS: [RGBColor; 8] = [
     RGBColor(204, 121, 167),
     RGBColor(120, 120, 120),
 ];
-/// Of what others are compared with.
+/// What others are compared with has this colour.
 pub const REFERENCE: RGBColor = RGBColor(175, 175, 175);
 /// The dashes of lines, pixels; none of a solid line.
 pub const DASHES: [&[i32]; 5] = [&[], &[8, 3], &[3, 3], &[12, 3, 3, 3], &[1, 2]];

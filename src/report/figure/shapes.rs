@@ -14,12 +14,12 @@ use svg::node::element::{Circle, Mask, Path, Rectangle};
 const MARGIN: f64 = 10.0;
 const CAPTION: f64 = 20.0;
 const KEY: f64 = 50.0;
-/// Of a key below the bar of colours.
+/// A key with its entries below the bar of colours has this height, pixels.
 const TALL_KEY: f64 = 95.0;
 /// Pixels across the bar of colours, and its steps.
 const BAR: f64 = 7.0;
 const STEPS: i32 = 40;
-/// Of a line of the key.
+/// A line of the key has this height, pixels.
 const LINE: f64 = 15.0;
 /// The longest arrow as a part of the larger side of the picture of the body.
 const ARROW: f64 = 0.14;
@@ -39,7 +39,7 @@ struct Scale {
 }
 
 impl Deformation {
-    /// As an SVG file's text: the body at rest with supports and forces, finite elements, springs.
+    /// Draws the text of an SVG file: the body at rest with supports and forces, finite elements, springs.
     pub fn svg(&self, columns: Columns) -> String {
         let d = self.mesh.dimension;
         let camera = Camera::of(&self.mesh);

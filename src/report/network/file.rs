@@ -165,7 +165,7 @@ impl<'a> NetworkFile<'a> {
     }
 }
 
-/// Of lengths, masses and the constants of each kind of springs.
+/// Names the units of lengths, masses, times, forces and the constants of each kind of springs.
 fn units() -> BTreeMap<String, String> {
     let kinds = SpringKind::all().map(|kind| (format!("{} spring", kind.name()), kind.properties().unit.to_string()));
     let plain = [("length", "m"), ("mass", "kg"), ("time", "s"), ("force", "N")];

@@ -33,7 +33,7 @@ pub struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    /// Of networks on a mesh under some loads.
+    /// Chooses what is drawn of networks on a mesh under this number of loads.
     pub fn of(mesh: &'a Mesh, networks: &[(&str, &Network)], loads: usize) -> Drawing<'a> {
         let mut left_out = Vec::new();
         let mut triangles = mesh.surface_triangles();
@@ -112,7 +112,7 @@ fn surface(mesh: &Mesh, edges: &[[usize; 2]]) -> Vec<bool> {
     on
 }
 
-/// Of more springs than `most`, those on the surface, and of those some in even steps.
+/// Chooses the springs that are drawn: of more springs than `most`, those on the surface, and of those some in even steps.
 fn drawn(network: &Network, on_surface: &[bool], most: usize) -> Vec<usize> {
     let all = network.lengths.len();
     if all <= most {

@@ -89,13 +89,13 @@ pub struct NetworkViewRecord {
 pub struct HistogramRecord {
     /// The kind of the springs.
     pub kind: String,
-    /// Of the constants.
+    /// The constants have this unit.
     pub unit: String,
     /// The least and the largest constant.
     pub range: [f64; 2],
     /// The lower end of the first interval, and their width.
     pub first: f64,
-    /// As `first`, the width.
+    /// Each interval has this width, in the unit of the constants.
     pub width: f64,
     /// Springs in each interval.
     pub counts: Vec<usize>,

@@ -12,12 +12,12 @@ const BETWEEN: f64 = 9.0;
 const ABOVE: f64 = 40.0;
 const BESIDE: f64 = 300.0;
 const RIGHT: f64 = 34.0;
-/// Of the names, so that the longest has room.
+/// The names have this font size, so that the longest has room.
 const LABEL: f64 = 9.0;
 /// The ends of the axis, percent; bars beyond are cut and have their number beside them.
 const LEAST: f64 = -20.0;
 const MOST: f64 = 60.0;
-/// Of the lines of the axis, percent.
+/// The lines of the axis are this far apart, percent.
 const EVERY: i32 = 20;
 
 /// The error of the engine, without that of the fit: own elements beside finite elements, springs beside their own equilibrium.

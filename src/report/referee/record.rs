@@ -22,7 +22,7 @@ pub struct RefereeRecord {
 /// A simulator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EngineRecord {
-    /// As after `--engine`.
+    /// The option `--engine` calls the engine by this name.
     pub name: String,
     /// The version that ran.
     pub version: String,
@@ -77,7 +77,7 @@ pub struct RefereeRow {
     pub told: Option<[f64; 2]>,
     /// Half the work of the load as our finite elements of refined meshes, J.
     pub truth: f64,
-    /// Of the truth, percent.
+    /// The truth has this uncertainty, percent.
     pub truth_uncertainty_percent: f64,
     /// The displacement of the point that moves most as finite elements of the mesh, m.
     pub tip_of_finite_elements: f64,

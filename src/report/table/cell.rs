@@ -21,7 +21,7 @@ pub struct Cell {
 pub(in crate::report) enum Digits {
     /// With this number of digits behind the point.
     Fixed(usize),
-    /// The same, with its sign.
+    /// The number is written with its sign and this number of digits behind the point.
     Signed(usize),
     /// With this number of digits in all.
     Significant(usize),
@@ -39,12 +39,12 @@ impl Cell {
         Cell::number(share.map(|share| 100.0 * share), digits)
     }
 
-    /// The same cell with a mark behind it.
+    /// Puts a mark behind the text of the cell.
     pub(in crate::report) fn marked(self, mark: &str) -> Cell {
         Cell { text: self.text + mark, ..self }
     }
 
-    /// The same cell in this column: texts of a column of numbers are read as numbers.
+    /// Puts the cell into this column: texts of a column of numbers are read as numbers.
     pub(super) fn of(self, column: &Column) -> Cell {
         let value =
             self.value.or_else(|| self.text.parse().ok().filter(|value: &f64| column.numbers && value.is_finite()));

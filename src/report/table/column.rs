@@ -57,17 +57,17 @@ impl Column {
         Column { numbers: true, ..Column::words(title) }
     }
 
-    /// The same column in this unit.
+    /// Sets the unit of the column.
     pub(in crate::report) fn unit(self, unit: &str) -> Column {
         Column { unit: unit.into(), ..self }
     }
 
-    /// The same column in this group.
+    /// Sets the group of the column.
     pub fn group(self, group: impl Into<String>) -> Column {
         Column { group: group.into(), ..self }
     }
 
-    /// The same column with this priority.
+    /// Sets the priority of the column.
     pub(in crate::report) fn priority(self, priority: Priority) -> Column {
         Column { priority, ..self }
     }
@@ -80,7 +80,7 @@ impl Column {
         if self.unit.is_empty() { named } else { format!("{named}, {}", self.unit) }
     }
 
-    /// The same in the letters that every program reads.
+    /// Writes group, title and unit in one line, in the letters that every program reads.
     pub(in crate::report) fn plain_heading(&self) -> String {
         Column { title: ascii(&self.title), unit: ascii(&self.unit), ..self.clone() }.heading()
     }

@@ -47,7 +47,7 @@ impl Table {
         Table { name: name.into(), title: title.into(), columns, rows, notes: Vec::new() }
     }
 
-    /// The same table with sentences below it.
+    /// Puts sentences below the table.
     pub(super) fn with_notes(self, notes: impl IntoIterator<Item = String>) -> Table {
         Table { notes: notes.into_iter().collect(), ..self }
     }

@@ -68,7 +68,7 @@ impl Lattice {
         })
     }
 
-    /// As [`Lattice::fit`], with the springs that `fit` finds for the cells, `[cells × nodes]` into the points.
+    /// Builds a box of cells as [`Lattice::fit`] does, with the springs that `fit` finds for the cells, `[cells × nodes]` into the points.
     ///
     /// # Errors
     /// The cells of the element do not fill a box; or those of `fit`.
@@ -84,7 +84,7 @@ impl Lattice {
         Ok(Lattice { mesh, fits })
     }
 
-    /// The same springs with other constants, `[cells × springs]`.
+    /// Replaces the constants of the springs by these, `[cells × springs]`.
     pub fn with_constants(mut self, constants: Vec<f64>) -> Lattice {
         self.fits.constants = constants;
         self

@@ -74,7 +74,8 @@ pub(super) struct Forces<'a> {
 }
 
 impl Ledger {
-    /// Of a motion that starts with the energy `start` and, in the held degrees of freedom, the kinetic energy `still`, J.
+    /// Opens the ledger of a motion that starts with the energy `start`, J, and whose held degrees of freedom start with the kinetic energy
+    /// `still`, J.
     pub fn new(start: f64, forces: &Forces, held: &[bool], still: f64) -> Ledger {
         Ledger {
             work: Sum::default(),

@@ -59,7 +59,7 @@ pub fn largest_square(
     lanczos(n, apply).map_or(gershgorin, |bound| bound.min(gershgorin))
 }
 
-/// The same for a stiffness in blocks.
+/// Returns the bound of [`largest_square`], rad²/s², for a stiffness in blocks.
 pub fn largest_square_of_blocks(stiffness: &BlockStiffness, masses: &[f64], held: &[bool]) -> f64 {
     let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
     let weights: Vec<f64> = masses.iter().zip(held).map(|(m, held)| if *held { 0.0 } else { 1.0 / m.sqrt() }).collect();

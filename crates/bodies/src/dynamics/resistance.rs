@@ -29,7 +29,7 @@ pub(super) struct Resistance<'a> {
 }
 
 impl<'a> Resistance<'a> {
-    /// Of methods with equations to solve, or without.
+    /// Prepares the forces, the damping and the masses of a motion; `has_equations` tells whether its method has equations to solve.
     pub fn new(motion: &Motion<'a>, linear: bool, has_equations: bool) -> Result<Resistance<'a>> {
         let d = motion.dimension();
         let mut resistance = Resistance {
@@ -84,8 +84,8 @@ impl<'a> Resistance<'a> {
         self.model.forces(&self.x, force) && pass::all(force, f64::is_finite)
     }
 
-    /// The same with the energy, J, and the values of the entries of the tangent, or of a nearby positive semidefinite
-    /// one if `definite`.
+    /// Writes the gradient of the energy at the displacements u, N, and the values of the entries of the tangent, or of a nearby positive
+    /// semidefinite one if `definite`. Returns the energy, J.
     pub fn refill(&mut self, u: &[f64], force: &mut [f64], tangent: &mut [f64], definite: bool) -> Option<f64> {
         self.place(u);
         let energy = match definite {

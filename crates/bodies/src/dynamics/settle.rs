@@ -45,7 +45,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// Of a step without equations.
+    /// Describes the end of a step that solves no equations.
     pub(super) fn explicit(outcome: StepOutcome) -> Step {
         Step { outcome, iterations: 0, residual: None, modified: 0, solver_iterations: 0 }
     }

@@ -45,7 +45,8 @@ impl BlockStiffness {
         require(BlockStiffness::expected_bytes(mesh, models, levels))
     }
 
-    /// Of the finite elements, once it is known that `models` such matrices and `levels` times what solves with one fit into memory.
+    /// Assembles the stiffness of the finite elements, once it is known that `models` such matrices and `levels` times what solves with one
+    /// fit into memory.
     ///
     /// # Errors
     /// They do not; kind `Limit`.

@@ -36,8 +36,8 @@ pub trait Elastic {
         None
     }
 
-    /// As [`Elastic::respond`], into existing memory: the forces, the values of the entries of the tangent, with the
-    /// positions and order that they have at rest, and the energy.
+    /// Writes the response of [`Elastic::respond`] into existing memory: the forces, and the values of the entries of the tangent, with the
+    /// positions and order that they have at rest. Returns the energy, J.
     fn refill(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
         let response = self.respond(x)?;
         force.copy_from_slice(&response.force);
@@ -45,8 +45,8 @@ pub trait Elastic {
         Some(response.energy)
     }
 
-    /// As [`Elastic::refill`], with a positive semidefinite approximation of the tangent if the model has one,
-    /// otherwise with the tangent.
+    /// Writes forces and tangent as [`Elastic::refill`] does. If the model has a positive semidefinite approximation of the tangent, that
+    /// is written in its place.
     fn refill_definite(&self, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
         self.refill(x, force, tangent)
     }

@@ -152,8 +152,8 @@ fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) 
     sound
 }
 
-/// The same with the energy and the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`; negative factors are dropped if it is
-/// to be definite.
+/// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`, and writes the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`;
+/// negative factors are dropped if it is to be definite. Returns the energy.
 fn pull_and_stiffen<const D: usize>(
     springs: &[LengthSpring],
     x: &[f64],

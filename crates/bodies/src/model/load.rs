@@ -30,7 +30,7 @@ pub enum Action {
 /// One direction of a load: constant, or a function of the position.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Component {
-    /// The same value everywhere.
+    /// The load has this value everywhere.
     Constant(f64),
     /// A function of the coordinates x, y (, z) in m.
     Varying(Expr),
@@ -90,12 +90,12 @@ impl Values<'_> {
 }
 
 impl Action {
-    /// The same traction everywhere, Pa.
+    /// Acts with this traction everywhere, Pa.
     pub fn traction(traction: &[f64]) -> Action {
         Action::Traction(traction.iter().copied().map(Component::Constant).collect())
     }
 
-    /// The same force per volume everywhere, N/m³.
+    /// Acts with this force per volume everywhere, N/m³.
     pub fn body(body: &[f64]) -> Action {
         Action::Body(body.iter().copied().map(Component::Constant).collect())
     }

@@ -21,7 +21,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Of a body; `density` is in kg/m³ and `thickness` in m, of all cells or of each.
+    /// Computes the moments of a body; `density` is in kg/m³ and `thickness` in m, of all cells or of each.
     pub fn of_body(mesh: &Mesh, density: impl Into<CellMap<f64>>, thickness: impl Into<CellMap<f64>>) -> Moments {
         let (density, thickness, d) = (density.into(), thickness.into(), mesh.dimension);
         let mut parts: Vec<(f64, Vec<f64>)> = Vec::new();
@@ -41,7 +41,7 @@ impl Moments {
         Moments::sum(d, || parts.iter().map(|(m, x)| (*m, &x[..])))
     }
 
-    /// Of masses at points, `[points × dimension]`.
+    /// Computes the moments of masses, kg, at points, `[points × dimension]`, m.
     pub fn of_masses(points: &[f64], dimension: usize, masses: &[f64]) -> Moments {
         Moments::sum(dimension, || masses.iter().copied().zip(points.chunks_exact(dimension)))
     }

@@ -28,7 +28,8 @@ pub(super) struct RestForces<'a> {
 }
 
 impl<'a> RestForces<'a> {
-    /// Of the network's springs on content, those in `contents` may change their tension.
+    /// Sums the forces at rest of the springs that do not change. The network's springs on content that are in `contents` may change their
+    /// tension.
     pub fn new(mesh: &'a Mesh, network: &'a Network, edges: &'a Edges, contents: &'a Contents) -> RestForces<'a> {
         let d = mesh.dimension;
         let mut fixed = vec![0.0; mesh.points.len()];

@@ -36,7 +36,7 @@ pub(super) struct Minimum {
 }
 
 impl Quadratic {
-    /// Of the balance of the forces at some points, `[points × dimension]`, m, with no variables yet.
+    /// Begins a programme that balances the forces at some points, `[points × dimension]`, m, with no variables yet.
     pub fn new(points: &[f64], dimension: usize) -> Quadratic {
         let (rows, points) = (points.len(), points.to_vec());
         Quadratic { rows, points, dimension, starts: vec![0], ..Quadratic::default() }

@@ -38,7 +38,7 @@ impl Equations {
         Equations::of_system(Arc::new(System::new(entries, support)?.placed(points, dimension)))
     }
 
-    /// The same of equations whose pattern may be known.
+    /// Factorises equations whose pattern may be known, by Cholesky's method; `None` if the matrix is not positive definite.
     ///
     /// # Errors
     /// The factor does not fit into memory.

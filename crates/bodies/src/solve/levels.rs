@@ -27,7 +27,7 @@ const LARGEST_STEPS: usize = 32;
 /// Vectors of a solution with its levels, about.
 const VECTORS: usize = 12;
 
-/// Of the solutions in the iteration for modes.
+/// The solutions in the iteration for modes have this tolerance.
 const MODE_TOLERANCE: f64 = 1e-12;
 
 /// Called with the share of a solution that is done.
@@ -117,7 +117,8 @@ impl Levels {
         Ok(self.solve_each(&[f], solver, share)?.remove(0))
     }
 
-    /// The same under each of several nodal forces, side by side as far as memory allows.
+    /// Finds the displacements of all degrees of freedom under each of several nodal forces, `[points · dimension]`, side by side as far as
+    /// memory allows.
     ///
     /// # Errors
     /// As [`Levels::solve`].

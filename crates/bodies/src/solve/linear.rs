@@ -92,7 +92,7 @@ impl System {
         Ok(System::of(Arc::new(Pattern { free, place, symbolic, slots, places, cholesky }), entries, support))
     }
 
-    /// The same equations, of points at these places, `[points × dimension]`, m. A large factor in space then has less than half of the
+    /// Gives the points of the equations their places, `[points × dimension]`, m. A large factor in space then has less than half of the
     /// entries. Places of another number of degrees of freedom are not used.
     pub fn placed(self, points: &[f64], dimension: usize) -> System {
         if dimension > 0 && points.len() == self.degrees() && points.len().is_multiple_of(dimension) {

@@ -22,7 +22,7 @@ crate::named!(StaticMethod { "auto" => Auto, "cholesky" => Cholesky, "multigrid"
 pub struct StaticSolver {
     /// A factor or iterations.
     pub method: StaticMethod,
-    /// Of the iterations: about the relative error in the norm of the energy.
+    /// The iterations end at about this relative error in the norm of the energy.
     pub tolerance: f64,
     /// At most.
     pub iterations: usize,

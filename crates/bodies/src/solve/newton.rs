@@ -91,7 +91,7 @@ impl Newton {
         self.solve_with(model, points, support, forces, None)
     }
 
-    /// The same with the [pattern](Newton::pattern) of the tangents, if it is known.
+    /// Applies the load as [`Newton::solve`] does, with the [pattern](Newton::pattern) of the tangents, if it is known.
     ///
     /// # Errors
     /// The tangent does not fit into memory.

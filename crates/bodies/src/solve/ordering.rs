@@ -22,7 +22,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Of the free degrees of freedom of points, `[points × dimension]`, m.
+    /// Finds the places of the free degrees of freedom of points, `[points × dimension]`, m.
     pub fn of(free: &[usize], points: &[f64], dimension: usize) -> Places {
         let at = |dof: &usize| dof / dimension * dimension;
         let coordinates = free.iter().map(at).flat_map(|first| &points[first..first + dimension]).copied();
@@ -39,7 +39,7 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Of a symmetric pattern with both triangles.
+    /// Builds the graph of a symmetric pattern with both triangles.
     pub fn of(matrix: SymbolicSparseColMatRef<'_, usize>) -> Graph {
         let neighbours = |unknown: usize| matrix.row_idx_of_col_raw(unknown);
         let count = matrix.ncols();

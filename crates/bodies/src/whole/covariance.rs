@@ -61,7 +61,7 @@ impl Determination {
         Determination::by(&columns, &at.residuals.concat(), problem.observations(), noise)
     }
 
-    /// The same by the derivatives of the residuals in each unknown, of which `seen` are known.
+    /// Computes the deviations from the derivatives of the residuals in each unknown, `[unknowns][residuals]`; `seen` residuals are known.
     ///
     /// # Errors
     /// There are as many unknowns as residuals that are known, or more.

@@ -178,7 +178,7 @@ impl<'a> Displacements<'a> {
         Ok(Some((displacements, tangents)))
     }
 
-    /// The same at large displacements; each load has a tangent of its own.
+    /// Finds the displacements of every load at large displacements, and the tangents there, a separate one for each load.
     fn large(&self, network: &Network) -> Result<Option<Moved>> {
         let newton = self.object.newton.expect("this is called at large displacements only");
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();

@@ -133,7 +133,7 @@ pub fn random_loads(
 /// The pressure with which varied loads begin. Few other loads see the resistance to a change of volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pressure {
-    /// The same everywhere: "pressure".
+    /// The pressure has one value everywhere; the load is called "pressure".
     Uniform,
     /// Linear in the position, with slopes from the seed: "varying pressure". No other seed has it, as none has the other varied loads.
     Varying,

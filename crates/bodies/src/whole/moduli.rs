@@ -26,7 +26,7 @@ pub enum ModuliSharing {
     Body,
     /// The cells of the same region, see [`BodyRegions`]; all patches.
     Region,
-    /// The same with one factor on both moduli, so that Poisson's ratio stays; all patches.
+    /// The cells of one region, see [`BodyRegions`], share one factor on both moduli, so that Poisson's ratio stays; all patches share one.
     RegionYoung,
     /// Each cell, or each domain of an edge, has factors of its own, and so has each patch.
     Element,

@@ -25,7 +25,7 @@ crate::named!(DescentMethod { "gauss-newton" => GaussNewton { 0: GaussNewton::de
 /// How much each load counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Weighing {
-    /// As its target says.
+    /// Each load counts as its target says.
     #[default]
     Equal,
     /// The less, the larger its error is where a stage begins, see [`Balanced`](super::Balanced).

@@ -15,7 +15,7 @@ pub trait Coordinate: Float + Default + Debug + Send + Sync + 'static {
     /// The nearest number to x.
     fn of(x: f64) -> Self;
 
-    /// The same number with the digits of an `f64`.
+    /// Converts the number to one with the digits of an `f64`.
     fn wide(self) -> f64;
 
     /// Runs `work` with one register per point if the machine has AVX2, and with arrays otherwise.

@@ -81,7 +81,7 @@ pub fn dispatched<R>(work: impl FnOnce() -> R) -> R {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// The same value in every lane.
+    /// Puts one value into every lane.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Lanes<S> {
         Lanes { simd, values: simd.splat_f64s(value) }

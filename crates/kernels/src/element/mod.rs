@@ -185,7 +185,7 @@ impl Element {
         self.tabulation.space
     }
 
-    /// The same element as a piece of a surface or curve in a space of more dimensions.
+    /// Makes the element a piece of a surface or curve in a space of more dimensions.
     pub fn in_space(mut self, space: usize) -> Element {
         self.tabulation.space = space.max(self.dimension());
         self

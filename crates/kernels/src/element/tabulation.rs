@@ -52,7 +52,7 @@ impl Tabulation {
         table
     }
 
-    /// The same table with derivatives along the tangents of a side instead of the cell's own coordinates:
+    /// Replaces the derivatives along the reference coordinates of the cell by those along the tangents of a side:
     /// `∂N_a/∂s_k = Σ_l ∂N_a/∂ξ_l tangent_k,l`.
     pub fn along(self, tangents: &[Vec<f64>]) -> Tabulation {
         let gradients = self
@@ -65,7 +65,7 @@ impl Tabulation {
 }
 
 impl<C> Tabulation<C> {
-    /// The same table in another kind of number.
+    /// Converts the table to another kind of number.
     pub fn map<D>(&self, convert: impl Fn(&C) -> D) -> Tabulation<D> {
         let all = |values: &[C]| values.iter().map(&convert).collect();
         Tabulation {

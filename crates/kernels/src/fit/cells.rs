@@ -100,7 +100,7 @@ impl CellFits {
         }
     }
 
-    /// As [`fit_cells`], with the memory of an earlier fit.
+    /// Fits every cell as [`fit_cells`] does, with the memory of an earlier fit.
     ///
     /// # Errors
     /// Those of [`fit_cells`].

@@ -23,7 +23,8 @@ const SOFTEST: f64 = 1e-4;
 
 /// A pivot of the normal equations below this means a loss of more than seven digits.
 const LEAST_PIVOT: f64 = 1e-6;
-/// The same limit for every objective if springs measure functions, whose gradients have lost some digits before.
+/// A pivot below this means that too many digits are lost, for every objective, if springs measure functions, whose gradients have lost
+/// some digits before.
 const LEAST_MEASURED_PIVOT: f64 = 1e-4;
 /// The softest motion is known to nine digits if its stiffness is this many rounding errors.
 const KNOWN: f64 = 1e9;
@@ -197,8 +198,8 @@ impl<T: Real> Method<T> {
         Some(found.map(|kappa| self.reduced.unknowns.iter().map(|unknown| constant(&kappa, unknown)).collect()))
     }
 
-    /// As [`Method::finish`], for a method that solves a single cell in numbers of more digits than the constants have;
-    /// `independent` tells whether the springs are linearly independent.
+    /// Writes the constants as [`Method::finish`] does, for a method that solves a single cell in numbers of more digits than the constants
+    /// have; `independent` tells whether the springs are linearly independent.
     pub fn finish_alone(mut self, independent: impl Fn() -> bool, constants: &mut [f64]) -> Verdict {
         // Motions as soft as rounding errors do not determine the constants.
         let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();

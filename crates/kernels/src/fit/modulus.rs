@@ -11,7 +11,7 @@ use crate::symbolic::Fraction;
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Modulus {
-    /// As text, such as `lambda` or `C12`.
+    /// The number has this name in text, such as `lambda` or `C12`.
     pub name: String,
     /// In LaTeX, such as `\\lambda` or `C_{12}`.
     pub latex: String,

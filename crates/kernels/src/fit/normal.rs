@@ -113,7 +113,7 @@ impl<T: Scalar> Normal<T> {
         self.solve_to(T::given())
     }
 
-    /// As [`Normal::solve_regular`], for input data with the relative error `rounding`.
+    /// Solves the equations as [`Normal::solve_regular`] does, for input data with the relative error `rounding`.
     pub fn solve_to(&mut self, rounding: f64) -> bool {
         let Some(any) = self.rhs.first().cloned() else { return true };
         // A size that the compiler knows unrolls the loops of the small systems, where they are most of the work.
@@ -167,7 +167,7 @@ impl<T: Real> Normal<T> {
         self.gram[s.max(t) * self.size() + s.min(t)].clone()
     }
 
-    /// The same equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
+    /// Returns the equations for `k_s/scale_s`, in which `M` has a unit diagonal, and the scales.
     pub fn scaled(&self) -> (Normal<T>, Vec<T>) {
         let m = self.size();
         let scale: Vec<T> = (0..m).map(|s| self.rhs[s].one() / &self.entry(s, s).sqrt()).collect();

@@ -163,7 +163,8 @@ pub fn distance_from_optimum(
     distance.ok_or_else(|| no_answer("it is not proved that the constants reach the value"))
 }
 
-/// As [`solved`], for the element with nodes at `x`; None also if it has no stiffness or its springs have no gradients.
+/// Solves the objective as [`solved`] does, for the element with nodes at `x`; None also if it has no stiffness or its springs have no
+/// gradients.
 fn shaped<T: Real>(
     any: &T,
     element: &Element,

@@ -102,7 +102,7 @@ pub fn element_errors<'a>(
     Ok(all)
 }
 
-/// As [`element_errors`]; `visit` is called with the errors of some cells after those of the others, in their order.
+/// Computes the errors of [`element_errors`]; `visit` is called with the errors of some cells after those of the others, in their order.
 ///
 /// # Errors
 /// Those of [`element_errors`].

@@ -20,8 +20,8 @@ pub struct Fit {
     pub solver: Solver,
     /// The rest measures of the springs.
     pub rest: Rest,
-    /// Of a spectral fit: the proved gap, relative to the value, at which the search may end; at most 1e-8. At zero it ends where rounding
-    /// ends it, which takes longer.
+    /// The search of a spectral fit may end at this proved gap, relative to the value; it is at most 1e-8. At zero the search ends where
+    /// rounding ends it, which takes longer.
     pub gap: f64,
 }
 

@@ -176,7 +176,7 @@ impl Weight {
         }
     }
 
-    /// The same weight with another scale of the motions beyond constant strain, if it has one.
+    /// Replaces the scale of the motions beyond constant strain, if the weight has one.
     pub(super) fn with_higher(self, higher: Higher) -> Weight {
         match self {
             Weight::Modal(_) => Weight::Modal(higher),

@@ -99,7 +99,7 @@ impl Anisotropy {
         &self.stiffness
     }
 
-    /// The same material with its first axis along the first vector and its second in the plane of both.
+    /// Turns the material so that its first axis is along the first vector and its second in the plane of both.
     ///
     /// # Errors
     /// The vectors are not finite or not independent; the key is `axes`.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// A value of each cell of a body, such as its material. Copies share the values.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CellMap<T> {
-    /// The same value in all cells.
+    /// All cells of the body have this value.
     Uniform(T),
     /// The values of the cells of each block, `[blocks][cells]`.
     Each(Arc<[Vec<T>]>),
@@ -16,7 +16,7 @@ pub enum CellMap<T> {
 /// A value of each cell of one block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BlockValues<'a, T> {
-    /// The same value in all cells.
+    /// All cells of the block have this value.
     Uniform(T),
     /// One for each, `[cells]`.
     Each(&'a [T]),
@@ -46,7 +46,7 @@ impl<T: Clone + PartialEq> CellMap<T> {
         }
     }
 
-    /// As [`CellMap::try_map`], for what cannot fail.
+    /// Converts the values to those of another kind that follow from them, by a function that cannot fail.
     pub fn map<U: Clone + PartialEq>(&self, of: impl Fn(&T) -> U) -> CellMap<U> {
         match self {
             CellMap::Uniform(value) => CellMap::Uniform(of(value)),

@@ -91,8 +91,8 @@ impl Energy {
         Energy::in_file(name_or_path, |text| Energy::parse(text, material))
     }
 
-    /// The same with the parameters of its file and moduli of 1 Pa and 0.3, to be given those of a material by [`Energy::of`], which proves
-    /// it at rest.
+    /// Reads the shipped energy with this name, or the energy in the file at this path, with the parameters of the file and moduli of 1 Pa
+    /// and 0.3. [`Energy::of`] gives it the moduli of a material, and proves it at rest.
     ///
     /// # Errors
     /// There is no such energy, or its file is wrong.
@@ -184,7 +184,7 @@ impl Energy {
         Ok(Energy { formula: Arc::new(formula), fibre: fibre.map(|a| a.normalize()), constants })
     }
 
-    /// The same energy of another material, with other values of some parameters, and with fibres in another direction.
+    /// Gives the energy the moduli of another material, other values of some parameters, and fibres in another direction.
     ///
     /// # Errors
     /// The energy has no such parameter, a value is not finite, it has no fibres or their direction is zero, or with these values it has

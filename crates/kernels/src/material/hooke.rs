@@ -96,7 +96,7 @@ impl Stiffness {
         self.entries.iter().map(|entry| entry.to_bits()).collect()
     }
 
-    /// As numbers of the kind of `any`.
+    /// Converts the stiffness to numbers of the kind of `any`.
     pub fn of_kind<T: Scalar<Constant = f64>>(&self, any: &T) -> Stiffness<T> {
         let entries = self.entries.iter().map(|entry| any.constant(entry)).collect();
         Stiffness { dimension: self.dimension, entries, lambda: any.constant(&self.lambda) }
@@ -164,7 +164,7 @@ impl Hooke {
         }
     }
 
-    /// As numbers of the kind of `any`.
+    /// Converts the law to numbers of the kind of `any`.
     pub fn of_kind<T: Scalar<Constant = f64>>(&self, any: &T) -> Hooke<T> {
         match self {
             Hooke::Isotropic(moduli) => Hooke::Isotropic(moduli.of_kind(any)),

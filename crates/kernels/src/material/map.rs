@@ -104,7 +104,7 @@ impl MaterialMap {
         })
     }
 
-    /// The same materials with the density of each cell, kg/m³, or without.
+    /// Gives the materials the density of each cell, kg/m³, or none.
     pub fn with_density(self, density: Option<CellMap<f64>>) -> MaterialMap {
         MaterialMap { density, ..self }
     }

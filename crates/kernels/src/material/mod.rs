@@ -183,7 +183,7 @@ impl Material {
         Material::new(young, poisson, state)
     }
 
-    /// The same rod with another cross-section, in m².
+    /// Gives a rod another cross-section, in m².
     ///
     /// # Errors
     /// The body is not a rod, or the area is not positive.

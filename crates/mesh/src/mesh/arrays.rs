@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Points, cells and named points, as another program has them.
 #[derive(Debug, Clone)]
 pub struct MeshArrays {
-    /// Of the space: 1, 2 or 3.
+    /// The space has this dimension: 1, 2 or 3.
     pub dimension: usize,
     /// `[points × dimension]`, m.
     pub points: Vec<f64>,

@@ -23,7 +23,7 @@ impl Mesh {
         Mesh::resolve_within(source, own, scale, None)
     }
 
-    /// As [`Mesh::resolve`], with a given gate for the cells.
+    /// Gives each cell of a file its element as [`Mesh::resolve`] does, with a given gate for the cells.
     ///
     /// # Errors
     /// Those of [`Mesh::resolve`], unless the gate skips such cells; or the gate refuses a cell, or no cell is left.

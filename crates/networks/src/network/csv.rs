@@ -53,7 +53,7 @@ impl<'a> SpringRow<'a> {
         SpringRow { kind: SpringKind::Length, points, constant: *constant, rest: *rest, law: None }
     }
 
-    /// Of a spring on these points.
+    /// Makes the row of a spring on these points.
     pub fn of_other(spring: &'a MeasureSpring, points: &'a [usize]) -> SpringRow<'a> {
         let law = spring.law.as_deref().map(|own| (&*own.law, &own.parameters[..]));
         SpringRow { kind: spring.kind, points, constant: spring.constant, rest: spring.rest, law }

@@ -46,7 +46,7 @@ pub fn write_npz(path: &Path, record: &ListedRecord<'_>, mesh: &Mesh, network: &
     write_seekable(path, |to| arrays_of(record, cells, &parts, to))
 }
 
-/// As [`network_npz`], with `cells` in place of those of the record.
+/// Writes the arrays of [`network_npz`], with `cells` in place of those of the record.
 fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
     network: &NetworkRecord<S, C>,
     cells: impl Fn() -> I,

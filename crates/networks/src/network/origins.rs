@@ -17,7 +17,7 @@ pub struct Origins {
 }
 
 impl Origins {
-    /// Of a network that the springs of each block of cells make.
+    /// Finds the origins of a network that the springs of each block of cells make.
     pub fn of(mesh: &Mesh, network: &Network, springs: &[Springs]) -> Origins {
         let mut records = Vec::new();
         let of_block = |(block, springs): (&CellBlock, &Springs)| {

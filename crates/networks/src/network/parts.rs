@@ -22,7 +22,7 @@ pub struct LengthPart {
 /// A linear spring on the content of a simplex: the area of a triangle in the plane, the volume of a tetrahedron in space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContentPart {
-    /// As many as dimensions, and one more; their content is positive in this order.
+    /// The simplex has one more point than dimensions; the content of the points is positive in this order.
     pub points: SmallVec<[usize; 4]>,
     /// N/m⁵; in the plane N/m³.
     pub constant: f64,

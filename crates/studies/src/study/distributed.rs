@@ -102,15 +102,15 @@ pub struct BodyShare {
     scene: Scene,
     mesh: Mesh,
     material: MaterialMap,
-    /// Of the finite elements.
+    /// The finite elements of these cells have this stiffness, N/m.
     pub stiffness: BlockStiffness,
 }
 
 /// The springs of some cells by one fit.
 pub struct FittedShare {
-    /// Of each block of cells.
+    /// Each block of cells has these springs.
     pub cells: Vec<CellFits>,
-    /// Of these cells alone.
+    /// The springs of these cells alone make this network.
     pub network: Network,
     /// At rest.
     pub stiffness: BlockStiffness,

@@ -22,8 +22,8 @@ const TRIAL: f64 = 0.02;
 const SHORT: f64 = 0.2;
 /// Cells that one thread fits at a time.
 const CHUNK: usize = 512;
-/// Of the rate of a dense factor, the share that sparse ones reach; and the entries of a factor that a solution reads in a second.
-/// Measured on bodies of 10 000 to 100 000 unknowns.
+/// Sparse factors reach this share of the rate of a dense factor; a solution reads [`SOLUTIONS`] entries of a factor in a second. Both are
+/// measured on bodies of 10 000 to 100 000 unknowns.
 const SPARSE: f64 = 0.8;
 const SOLUTIONS: f64 = 1e9;
 /// Work that is not measured at this rate takes no time.

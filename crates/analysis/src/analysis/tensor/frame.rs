@@ -3,7 +3,7 @@
 use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
 
-/// Of the columns of the projections of coordinate axes onto a plane, shorter ones have no direction to rely on.
+/// The projection of a coordinate axis onto a plane has no direction to rely on if it is shorter than this.
 const SHORT: f64 = 0.1;
 
 /// The plane or line that fits the points of a sample best.
@@ -15,7 +15,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Of a sample whose cells have dimension `d`.
+    /// Fits a plane or a line to a sample whose cells have dimension `d`.
     pub(super) fn of(sample: &Sample, d: usize) -> Plane {
         let space = sample.mesh.dimension;
         if d == space {

@@ -40,7 +40,7 @@ impl Simulation<'_> {
         Step::explicit(StepOutcome::Converged)
     }
 
-    /// The same step of a motion in rows.
+    /// Makes a step of symplectic Euler in a motion whose points and forces are in rows.
     fn leap_in_rows(&mut self) -> Step {
         let h = self.options.step;
         let time = (self.steps + 1) as f64 * h;

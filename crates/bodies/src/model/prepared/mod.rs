@@ -41,7 +41,7 @@ impl Network {
         PreparedNetwork::new(self)
     }
 
-    /// The same in numbers of this kind.
+    /// Sorts the springs for [`Elastic::forces`] in numbers of the kind `N`.
     pub fn prepared_in<N: Precision>(&self) -> Box<dyn Elastic + '_> {
         N::prepare(self)
     }

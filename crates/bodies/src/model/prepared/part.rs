@@ -126,7 +126,7 @@ impl<N: Coordinate> Part<N> {
         self.pull_rows(dimension, others, x, force, work)
     }
 
-    /// The same with the positions of the rows; writes the forces on them.
+    /// Computes the forces on the rows from the positions `x` of the rows, and writes them; false if a spring has none.
     pub fn pull_rows(
         &self,
         dimension: usize,

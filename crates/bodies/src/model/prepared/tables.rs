@@ -20,9 +20,9 @@ pub struct Cells {
 /// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
 #[derive(Debug)]
 pub enum Gradients {
-    /// Of all cells.
+    /// All cells share one table, `[points × nodes × dimension]`.
     Shared(Vec<f64>),
-    /// Of each cell its own, `[cells / LANES][points × nodes × dimension][LANES]`.
+    /// Each cell has a separate table, `[cells / LANES][points × nodes × dimension][LANES]`.
     Own(Vec<f64>),
 }
 

@@ -114,7 +114,7 @@ impl Fraction {
         }))
     }
 
-    /// The same polynomials with another number in front, which is not zero.
+    /// Puts another number, which is not zero, in front of the polynomials.
     fn of_content(&self, content: BigRational) -> Fraction {
         let (numerator, denominator) = (self.0.numerator.clone(), self.0.denominator.clone());
         Fraction(Arc::new(Terms { content, numerator, denominator }))

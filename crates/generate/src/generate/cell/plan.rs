@@ -22,7 +22,7 @@ const SPRINGS_OF_POINT: usize = 48;
 const UNKNOWNS: usize = 10;
 
 impl Plan {
-    /// The same plan with all springs unrolled.
+    /// Unrolls the loops over all springs; the other loops stay as they are planned.
     pub fn with_springs(self) -> Plan {
         Plan { springs: true, ..self }
     }

@@ -287,7 +287,7 @@ pub enum Constant {
 }
 
 impl Constant {
-    /// The same as a value of the function of `any`.
+    /// Converts the constant to a value of the function of `any`.
     fn value(&self, any: &Value) -> Value {
         match self {
             Constant::Number(number) => any.like(*number),

@@ -68,7 +68,7 @@ impl ExactEnergy {
         }
     }
 
-    /// The same energy with another share of the second invariant.
+    /// Sets the share of the shear modulus that belongs to the second invariant.
     ///
     /// # Errors
     /// The energy has no second invariant, or the share is not from 0 to 1.
@@ -122,7 +122,8 @@ const STABLE_IN_PLANE_STRESS: &str = "-(a - (a + b)*(c/c0*g - 1))*g";
 /// The stretch g through the thickness.
 const ACROSS_PLANE: &str = "((b + 2*a)*c/c0/(a + (a + b)*(c/c0)^2))";
 
-/// The same energy with both stretches across a rod, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`, and the slope `−μ g²/J`.
+/// The stable neo-Hookean energy with the stretches g across a rod that leave no stress there, `g² = ((λ + 2 μ) J − μ)/((λ + μ) J²)`. What
+/// remains has the slope `−μ g²/J`.
 const STABLE_IN_ROD: &str = "-a*((b + 2*a)*c/c0 - a)/((a + b)*(c/c0)^3)";
 
 impl Form {

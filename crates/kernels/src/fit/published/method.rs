@@ -61,7 +61,7 @@ const EDGES: &[Joint] = &[Joint::Edge];
 const CROSSED: &[Joint] = &[Joint::Edge, Joint::Diagonal];
 /// Poisson's ratio of springs with a centre of symmetry (Cauchy's relation λ = μ), in the plane.
 const PLANE: f64 = 1.0 / 3.0;
-/// The same ratio in space.
+/// Poisson's ratio of springs with a centre of symmetry (Cauchy's relation λ = μ), in space.
 const SOLID: f64 = 1.0 / 4.0;
 
 const fn cover(cell: Cell, joints: &'static [Joint], poisson: Ratio, shape: Option<Shape>) -> Cover {

@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
 const PROMISE: f64 = 1e-12;
-/// The same share for the starts, which search on some of the shapes.
+/// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more than this share.
 const ROUGH_PROMISE: f64 = 1e-8;
 /// Starts whose errors differ by less than this share of the best error have found the same optimum.
 const SAME: f64 = 1e-3;

@@ -52,7 +52,8 @@ pub struct SampledFits {
     /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`, with f the forces of the element and K those of
     /// its springs.
     pub trained: Vec<f64>,
-    /// The same error on the shapes that were held out, `[cells]`; NaN if there are none.
+    /// The error `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` of the springs' forces K from those of the element, f, on the shapes that were held out,
+    /// `[cells]`; NaN if there are none.
     pub held_out: Vec<f64>,
     /// For laws that are not linear in their parameters: the share of the starts that ended at the best error, the
     /// least over the cells.

@@ -5,7 +5,8 @@ use nalgebra::{DMatrix, DVector};
 /// A pivot of a constraint below this fraction of the first counts as zero. On regular shapes rounding leaves pivots of
 /// some 1e-13 in the place of zeros.
 const BALANCED: f64 = 1e-12;
-/// The same limit for equations: the square root of the limit for pivots of normal equations.
+/// A pivot of equations below this fraction of the first counts as zero. It is the square root of the limit for pivots of normal
+/// equations.
 const DEPENDENT: f64 = 5e-7;
 
 /// Orthonormal columns that span the `u` with `C u = 0`: the last columns of Q in `Cᵀ P = Q R`, where R has no rows.

@@ -24,7 +24,7 @@ pub struct LawRoom<const N: usize> {
 const ROOM: usize = 12;
 
 impl Formula {
-    /// Of the force and its derivatives in the parameters, of which the variable `first` is the first.
+    /// Derives the formula from the force and its derivatives in the parameters; the variable `first` is the first parameter.
     pub fn new(force: &Expr, by_parameter: &[Expr], first: usize) -> Formula {
         let by_parameters =
             by_parameter.iter().enumerate().flat_map(|(i, slope)| (0..=i).map(move |j| slope.derivative(first + j)));

@@ -306,7 +306,7 @@ impl Force {
         }
     }
 
-    /// The same law for each of so many groups.
+    /// Gives each of so many groups this law.
     pub fn of_all(law: Law, groups: usize) -> Force {
         Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())
     }

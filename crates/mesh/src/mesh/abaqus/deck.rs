@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 /// What the data lines that follow are.
 #[derive(Default)]
 enum Block {
-    /// Of no use for a mesh.
+    /// The lines are of no use for a mesh.
     #[default]
     Passed,
     /// The set of the nodes.

@@ -9,9 +9,9 @@ use std::collections::HashMap;
 
 /// The columns that are used.
 struct Columns {
-    /// Of each direction.
+    /// The position is in these columns, one for each direction.
     position: Vec<usize>,
-    /// Of each component.
+    /// The values are in these columns, one for each component.
     values: Vec<usize>,
 }
 

@@ -41,7 +41,7 @@ impl Field {
         Field::read_named(path, mesh, scale, None)
     }
 
-    /// As [`Field::read`], with the displacements called `array`: this point array of a grid, or the columns `array_x`,
+    /// Reads a file as [`Field::read`] does, with the displacements called `array`: this point array of a grid, or the columns `array_x`,
     /// `array_y`, `array_z` of a table.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ use std::sync::Arc;
 const TIE: f64 = 1e-9;
 
 impl Mesh {
-    /// The same body with cells of half the size: an interval is divided into two, a triangle or quadrilateral into
+    /// Divides the cells of the body into cells of half the size: an interval is divided into two, a triangle or quadrilateral into
     /// four, a tetrahedron, hexahedron or wedge into eight, a pyramid into six pyramids and four tetrahedra.
     ///
     /// New points are at the positions that the shape functions of the cell give, `x = Σ_a N_a x_a`. The geometry is

@@ -30,7 +30,7 @@ pub(in crate::mesh) struct Labels {
 }
 
 impl Labels {
-    /// The same numbers as reals.
+    /// Converts the whole numbers to real ones.
     pub fn as_array(&self) -> DataArray {
         let values = self.values.iter().map(|value| *value as f64).collect();
         DataArray { name: self.name.clone(), components: 1, values: Some(values) }

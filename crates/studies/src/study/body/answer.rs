@@ -53,7 +53,7 @@ pub(super) fn check_residual(residual: f64, largest: f64, case: &Case) -> Result
     Err(if largest > SOLVED { error.followed_by("; a smaller solver.tolerance leaves less") } else { error })
 }
 
-/// Of finite elements.
+/// Makes the error of finite elements whose stiffness is not positive definite.
 pub(super) fn not_definite(mesh: &Mesh) -> Error {
     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
     let bending = "; surfaces and curves resist no bending, so hold their points across them";

@@ -16,7 +16,7 @@ use std::time::Instant;
 #[derive(Default)]
 pub(super) struct Factored {
     pub systems: Vec<(Arc<System>, Arc<Factor>)>,
-    /// Of each load, into these.
+    /// Each load has its equations at this index of `systems`, `[loads]`.
     pub system_of: Vec<usize>,
 }
 

@@ -15,7 +15,7 @@ use std::time::Instant;
 /// The levels of the finite elements under each support.
 pub(super) struct Iterated {
     pub systems: Vec<Arc<Levels>>,
-    /// Of each load, into these.
+    /// Each load has its levels at this index of `systems`, `[loads]`.
     pub system_of: Vec<usize>,
 }
 

@@ -20,7 +20,7 @@ pub struct Selected {
 }
 
 impl Selected {
-    /// Of all conditions of a scene.
+    /// Finds what each condition of a scene selects on a mesh.
     pub fn all(scene: &Scene, mesh: &Mesh) -> Vec<Selected> {
         let d = mesh.dimension;
         let along_x: Vec<f64> = (0..d).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();

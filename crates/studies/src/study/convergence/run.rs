@@ -49,7 +49,8 @@ pub fn converge(scene: &Scene, levels: Option<usize>, progress: &mut Progress) -
 /// What is done with the results of the levels so far, when one more is there.
 pub type EachLevel<'a> = dyn FnMut(&Convergence) -> Result<()> + 'a;
 
-/// As [`converge`], or as [`converge_to`] with a reference; `each` is given the results of the first levels as soon as they are there.
+/// Runs the levels as [`converge`] does, or as [`converge_to`] does with a reference; `each` is given the results of the first levels as
+/// soon as they are there.
 ///
 /// # Errors
 /// A level fails as in [`converge`] and [`converge_to`], or `each` fails.
@@ -172,8 +173,8 @@ pub fn refinements(scene: &Scene, levels: Option<usize>) -> Result<Vec<Scene>> {
     Ok((0..count).map(|level| scene.clone().halved(level as u32)).collect())
 }
 
-/// As [`converge`], with the limit from the finite elements of another scene of the same body and loads, for example
-/// one of quadratic cells. If those of the scene lock, their limit is far from the solution.
+/// Runs the levels as [`converge`] does, with the limit from the finite elements of a reference: another scene with this body and these
+/// loads, for example one of quadratic cells. If the finite elements of `scene` lock, their limit is far from the solution.
 ///
 /// # Errors
 /// Those of [`converge`] for each scene; or the reference has no load with the same name, or another body, material, supports or

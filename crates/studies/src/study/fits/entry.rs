@@ -116,7 +116,7 @@ impl FitEntry {
         set
     }
 
-    /// The same entry with this value of a key, if there is one.
+    /// Sets a key of the entry to this value, if there is one.
     pub fn with(mut self, key: &str, value: Option<impl Into<Value>>) -> FitEntry {
         if let Some(value) = value {
             self.keys.insert(key.into(), value.into());
@@ -124,7 +124,7 @@ impl FitEntry {
         self
     }
 
-    /// The same entry with these spring groups.
+    /// Sets the spring groups of the entry.
     pub fn with_springs(self, springs: Option<Vec<String>>) -> FitEntry {
         FitEntry { springs, ..self }
     }
@@ -157,7 +157,7 @@ impl FitEntry {
         self.fits_with(folder, &FitFunctions::default())
     }
 
-    /// As [`FitEntry::fits`], with functions of the program in place of keys.
+    /// Returns the fits that the entry describes, as [`FitEntry::fits`] does, with functions of the program in place of keys.
     ///
     /// # Errors
     /// Those of [`FitEntry::fits`]; or a function stands for a key that is there as well, or that the objective does not have.

@@ -33,15 +33,15 @@ pub struct Fitted {
 /// The results that only one kind of fit has.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FittedKind {
-    /// Of a fit to the stiffness at rest.
+    /// A fit to the stiffness at rest has this outcome.
     Stiffness(StiffnessOutcome),
-    /// Of a fit to the forces at sampled shapes.
+    /// A fit to the forces at sampled shapes has this outcome.
     Sampled(SampledOutcome),
-    /// Of a fit to the displacements of the whole object.
+    /// A fit to the displacements of the whole object has this outcome.
     Whole(Box<WholeOutcome>),
-    /// Of a published formula.
+    /// A published formula has this outcome.
     Published(PublishedOutcome),
-    /// Of an exact network.
+    /// An exact network has this outcome.
     Exact(ExactOutcome),
 }
 

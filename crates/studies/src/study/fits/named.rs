@@ -32,7 +32,7 @@ impl NamedFit {
         NamedFit { name: name.into(), recipe, springs, entry: None }
     }
 
-    /// The same fit, as that of the `[[fit]]` with this number.
+    /// Marks the fit as that of the `[[fit]]` with this number, from 0.
     pub(in crate::study) fn of_entry(self, entry: usize) -> NamedFit {
         NamedFit { entry: Some(entry), ..self }
     }

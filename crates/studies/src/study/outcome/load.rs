@@ -59,11 +59,11 @@ pub struct LoadOutcome {
     pub work_error: Option<f64>,
     /// The time to assemble, factorise and solve the finite elements, as if this were the only load, s.
     pub seconds_fem: f64,
-    /// The same time for the network, s.
+    /// The time to assemble, factorise and solve the network, as if this were the only load, s.
     pub seconds_lem: f64,
     /// How the equations were solved; at large deformation they are many.
     pub solved_fem: Option<Solved>,
-    /// The same of the network.
+    /// How the equations of the network were solved; at large deformation they are many.
     pub solved_lem: Option<Solved>,
     /// Why there are no displacements of a network that is not stable, if they were sought.
     pub unsolved: Option<String>,

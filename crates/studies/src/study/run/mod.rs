@@ -21,7 +21,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     run_with(scene, &Controls::default(), progress)
 }
 
-/// As [`run`]; whole-object fits can be cancelled and continued.
+/// Runs the scene as [`run`] does; whole-object fits can be cancelled and continued.
 ///
 /// # Errors
 /// Those of [`run`]; or the checkpoint is wrong or cannot be written.

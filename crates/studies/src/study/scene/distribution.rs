@@ -23,7 +23,7 @@ pub struct Distribution {
 /// Where the values come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// The same value everywhere.
+    /// The quantity has this value everywhere.
     Number(f64),
     /// An expression of x, y and z in m.
     Expression(String),
@@ -61,7 +61,7 @@ fn one() -> f64 {
 }
 
 impl Distribution {
-    /// The same value everywhere.
+    /// Makes a quantity that has this value everywhere.
     pub fn of_number(value: f64) -> Distribution {
         Distribution { source: Source::Number(value), factor: 1.0 }
     }

@@ -73,7 +73,7 @@ impl Scene {
         Scene::parse_with(text, path, &[])
     }
 
-    /// As [`Scene::parse`], with other values of some keys.
+    /// Checks the text of a scene as [`Scene::parse`] does, with other values of some keys.
     ///
     /// # Errors
     /// Those of [`Scene::load_with`].
@@ -221,7 +221,7 @@ impl Scene {
         &self.output
     }
 
-    /// The same, to be changed.
+    /// Gives access to what is written and computed besides the table, so that it can be changed.
     pub fn output_mut(&mut self) -> &mut Output {
         &mut self.output
     }

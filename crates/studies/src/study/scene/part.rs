@@ -29,7 +29,7 @@ impl Part {
         }
     }
 
-    /// As [`Part::optional`], but the whole mesh is not accepted.
+    /// Makes a part as [`Part::optional`] does, but does not accept the whole mesh.
     pub(super) fn required(group: Option<String>, condition: Option<String>) -> Result<Part> {
         match Part::optional(group, condition)? {
             Part::Everything => Err(Error::new("expected \"group\" or \"where\", found neither")),

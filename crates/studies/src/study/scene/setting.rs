@@ -135,7 +135,7 @@ impl Setting {
     }
 }
 
-/// As it is typed.
+/// A setting is displayed as it is typed, `key=text`.
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}={}", self.key, self.text)

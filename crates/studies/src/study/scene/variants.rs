@@ -7,43 +7,43 @@ use crate::solve::Newton;
 use crate::study::fits::NamedFit;
 
 impl Scene {
-    /// The same scene with other fits.
+    /// Replaces the fits of the scene.
     pub fn with_fits(self, fits: Vec<NamedFit>) -> Scene {
         Scene { fits, ..self }
     }
 
-    /// The same scene with other outputs.
+    /// Replaces the outputs of the scene.
     pub fn with_output(self, output: Output) -> Scene {
         Scene { output, ..self }
     }
 
-    /// The same scene with other settings of Newton's method.
+    /// Replaces the settings of Newton's method.
     pub fn with_newton(self, newton: Newton) -> Scene {
         Scene { newton, ..self }
     }
 
-    /// The same scene without loads, and without the gauge that measures under them.
+    /// Removes the loads of the scene, and the gauge that measures under them.
     pub fn without_loads(self) -> Scene {
         Scene { loads: Vec::new(), gauge: None, ..self }
     }
 
-    /// The same scene without its gauge.
+    /// Removes the gauge of the scene.
     pub fn without_gauge(self) -> Scene {
         Scene { gauge: None, ..self }
     }
 
-    /// The same scene without its motion.
+    /// Removes the motion of the scene.
     pub fn without_motion(self) -> Scene {
         Scene { motion: None, ..self }
     }
 
-    /// The same scene with the edges of all cells halved this many more times.
+    /// Halves the edges of all cells this many more times.
     pub fn halved(mut self, times: u32) -> Scene {
         self.mesh.halvings += times;
         self
     }
 
-    /// The same scene with all lengths of the mesh multiplied by `factor`.
+    /// Multiplies all lengths of the mesh by `factor`.
     pub fn with_lengths_times(mut self, factor: f64) -> Scene {
         self.mesh.scale *= factor;
         if let Some(mesh) = self.reference.as_mut().and_then(|reference| reference.mesh.as_mut()) {
@@ -52,7 +52,7 @@ impl Scene {
         self
     }
 
-    /// The same scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
+    /// Copies the scene with Young's modulus multiplied by `factor`, and with another Poisson's ratio if one is given.
     pub fn of_material(&self, factor: f64, poisson: Option<f64>) -> Scene {
         let mut scene = self.clone();
         for material in &mut scene.material.all {

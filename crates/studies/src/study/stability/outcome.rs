@@ -136,7 +136,7 @@ pub struct StabilityRow {
     pub error: Option<f64>,
     /// The allowed error.
     pub allowed: Option<f64>,
-    /// The same error in single precision.
+    /// The relative error in single precision.
     pub single: Option<f64>,
     /// The condition number of the normal equations, or of the assembled system, both scaled to a unit diagonal.
     pub condition: Option<f64>,
@@ -170,7 +170,7 @@ impl StabilityRow {
         }
     }
 
-    /// The same result with this error and this allowed error.
+    /// Gives the result this error and this allowed error.
     pub fn with_error(mut self, error: f64, allowed: f64) -> StabilityRow {
         (self.error, self.allowed) = (Some(error), Some(allowed));
         self

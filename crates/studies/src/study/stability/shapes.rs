@@ -20,13 +20,13 @@ const SIZE: f64 = 0.01;
 const RATIOS: [f64; 10] = [-0.99, -0.9, -0.5, 0.0, 0.25, 0.4, 0.49, 0.499, 0.4999, 0.499999];
 /// The powers of ten of Young's modulus relative to the ordinary case: least, largest and step.
 const MODULI: [i32; 3] = [-12, 15, 3];
-/// The same for the size.
+/// The powers of ten of the size in m: least, largest and step.
 const SIZES: [i32; 3] = [-9, 7, 2];
-/// The same for the distance from the origin, relative to the size.
+/// The powers of ten of the distance from the origin, relative to the size: least, largest and step.
 const PLACES: [i32; 3] = [0, 8, 2];
-/// The same for the length of needles, relative to their width.
+/// The powers of ten of the length of needles, relative to their width: least, largest and step.
 const ASPECTS: [i32; 3] = [1, 8, 1];
-/// The same for the height of flat elements, relative to their width.
+/// The powers of ten of the height of flat elements, relative to their width: least, largest and step.
 const FLATNESS: [i32; 3] = [-14, -2, 2];
 /// The positions of nodes on edges: shares of the way from the middle to the first corner.
 const BENT: [f64; 7] = [0.1, 0.2, 0.3, 0.4, 0.45, 0.49, 0.6];

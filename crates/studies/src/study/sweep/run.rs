@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
 
-/// Of the threads that work, as that of a program's main thread: trees of expressions are walked by recursion.
+/// The threads that work have a stack of this many bytes, as a program's main thread has: trees of expressions are walked by recursion.
 const STACK: usize = 8 << 20;
 
 impl Sweep {

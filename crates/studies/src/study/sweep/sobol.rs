@@ -75,7 +75,7 @@ impl Sobol {
     }
 }
 
-/// Of the first dimension: van der Corput's sequence.
+/// Returns the direction numbers of the first dimension: van der Corput's sequence.
 fn first() -> [u32; BITS] {
     std::array::from_fn(|i| 1 << (BITS - 1 - i))
 }

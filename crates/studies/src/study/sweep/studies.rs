@@ -47,7 +47,7 @@ impl Sweep {
         Sweep::parse(&file::read_text(path)?, path, settings)
     }
 
-    /// The same of the text of a scene that is at `path`, to which other files are relative.
+    /// Reads the sweep as [`Sweep::load`] does, from the text of a scene that is at `path`, to which other files are relative.
     ///
     /// # Errors
     /// As there.

@@ -39,8 +39,8 @@ pub struct WholeBody<'a> {
     known: KnownEquations,
 }
 
-/// As many loads are as dear as the solutions of a fit under a support, by which the way to solve equations is chosen: each step has some tens
-/// for each load, which a factor serves without refinement.
+/// The solutions of a fit under a support are as dear as this many loads, by which the way to solve equations is chosen. Each step has
+/// some tens of solutions for each load, which a factor serves without refinement.
 const LOADS: usize = 200;
 
 impl<'a> WholeBody<'a> {

@@ -57,7 +57,7 @@ impl WholeBody<'_> {
         Ok(Object::of_moduli(parts, unknowns)?.iterated(self.iterations()))
     }
 
-    /// The same springs with equal constants, as stiff as the body is.
+    /// Gives the springs of an object equal constants, with which they are as stiff as the body is.
     pub(super) fn equal<'a>(&self, object: Object<'a>, wanted: &Wanted) -> Result<Object<'a>> {
         let object = object.alike();
         if self.newton.is_some() {

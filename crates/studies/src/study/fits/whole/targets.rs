@@ -29,7 +29,7 @@ pub(super) struct Held {
     /// The groups that are held; empty for the `[[fix]]` of the scene.
     pub groups: Vec<String>,
     pub support: Support,
-    /// The same on the finer mesh.
+    /// The finer mesh, if there is one, has this support.
     pub fine: Option<Support>,
 }
 
