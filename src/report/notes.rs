@@ -16,7 +16,7 @@ pub fn notes(outcome: &Outcome) -> Vec<String> {
     filled.into_iter().chain(notes_beside_summary(outcome)).collect()
 }
 
-/// Says what a reader must know before trusting a row, one sentence per line, without the lines that [`summary`] has.
+/// Says what a reader must know before trusting a row, one sentence per line, without the lines that `summary` has.
 pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
     let finite = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
