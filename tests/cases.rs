@@ -1,4 +1,4 @@
-//! The reference figures of whole bodies, e_rms / e_max, and how networks that do not stand are told.
+//! The errors e_rms and e_max of whole bodies are those of reference, and a run says which networks are not stable.
 
 use springfit::element::Element;
 use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};

@@ -20,7 +20,7 @@ pub struct Agreement {
     pub agree: bool,
 }
 
-/// An error e_rms, in percent, below this is as good as none.
+/// An error e_rms below this, in percent, is taken as zero.
 const NONE: f64 = 0.1;
 
 /// Up to this share they are said to agree.

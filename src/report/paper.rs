@@ -3,11 +3,11 @@
 use super::comparison::Comparison;
 use super::deformed::deformed;
 use super::surface::surface_figure;
-use super::table::{self, Cell, Table, csv, markdown_body};
+use super::table::{Cell, Column, Table, csv, markdown_body};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
-use crate::study::{Column, Paper, PaperRow, PaperTable, file_stem, heading};
+use crate::study::{self, Paper, PaperRow, PaperTable, file_stem, heading};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -15,44 +15,41 @@ use std::path::PathBuf;
 const FALLS: &str = "†";
 
 /// A table of a paper: the object once, then a row for each fit, the printed figures beside the found ones.
-pub fn paper_table<'a>(table: &'a PaperTable) -> Table {
+pub fn paper_table(table: &PaperTable) -> Table {
     let printed = table.rows.iter().any(|row| row.printed.is_some());
-    let mut columns = ["object", "fit"].map(table::Column::words).to_vec();
+    let mut columns = ["object", "fit"].map(Column::words).to_vec();
     for group in ["printed", "found"].into_iter().filter(|group| printed || *group == "found") {
-        let column = |column: &Column| table::Column::numbers(column.name()).unit(column.unit()).group(group);
-        columns.extend(table.columns.iter().map(column));
+        columns.extend(table.columns.iter().map(|what| column(*what, group)));
     }
-    let cells = |values: &[Option<f64>]| -> Vec<Cell> {
-        table.columns.iter().zip(values).map(|(column, value)| text(*column, *value).into()).collect()
-    };
-    let mut object = "";
-    let row = |row: &'a PaperRow| {
-        let first = row.object != object;
-        object = &row.object;
-        let mut all = vec![Cell::from(if first { &*row.object } else { "" }), Cell::from(&*row.fit)];
-        if printed {
-            let none = || vec![Cell::from(""); table.columns.len()];
-            let values = |printed: &Vec<f64>| cells(&printed.iter().map(|v| Some(*v)).collect::<Vec<_>>());
-            all.extend(row.printed.as_ref().map_or_else(none, values));
+    let cell = |(what, value): (&study::Column, Option<f64>)| Cell::from(text(*what, value));
+    let row = |(i, row): (usize, &PaperRow)| {
+        let is_first = i == 0 || table.rows[i - 1].object != row.object;
+        let mut cells = vec![Cell::from(if is_first { &*row.object } else { "" }), Cell::from(&*row.fit)];
+        match &row.printed {
+            Some(values) => cells.extend(table.columns.iter().zip(values.iter().copied().map(Some)).map(cell)),
+            None if printed => cells.extend(vec![Cell::from(""); table.columns.len()]),
+            None => {}
         }
-        let mut found = cells(&row.found);
-        if let (Some(last), false) = (found.last_mut(), row.stands) {
-            *last = last.clone().marked(&format!(" {FALLS}"));
-        }
-        all.append(&mut found);
-        all
+        cells.extend(table.columns.iter().zip(row.found.iter().copied()).map(cell));
+        let last = cells.pop().map(|last| if row.stands { last } else { last.marked(&format!(" {FALLS}")) });
+        cells.extend(last);
+        cells
     };
-    let rows: Vec<Vec<Cell>> = table.rows.iter().map(row).collect();
     let title = format!("{}: {}", heading(&table.name), table.title);
+    let rows = table.rows.iter().enumerate().map(row);
     Table::new(&table.name, title, columns, rows).with_notes(remarks(table))
+}
+
+/// The column of a figure, printed or found.
+fn column(what: study::Column, group: &str) -> Column {
+    Column::numbers(what.name()).unit(what.unit()).group(group)
 }
 
 /// All tables as Markdown, with their figures; `figures` are the names of files beside it.
 fn markdown(paper: &Paper, figures: &[(String, String)]) -> String {
     let mut text = format!("# {}\n", paper.title);
-    for table in &paper.tables {
-        text += &format!("\n## {}: {}\n\n", heading(&table.name), table.title);
-        text += &markdown_body(&paper_table(table));
+    for table in paper.tables.iter().map(paper_table) {
+        text += &format!("\n## {}\n\n{}", table.title, markdown_body(&table));
     }
     for (title, file) in figures {
         write!(text, "\n![{title}](<{file}>)\n").expect("a String grows");
@@ -104,20 +101,20 @@ pub fn write_paper(paper: &Paper, edition: Edition) -> Result<Vec<PathBuf>> {
     write_files(edition, &files)
 }
 
-fn figure(column: Column, value: f64) -> String {
+fn figure(column: study::Column, value: f64) -> String {
     match column {
-        Column::ERms | Column::EMax => format!("{value:.2}"),
-        Column::Young => format!("{value:.1}"),
-        Column::Poisson => format!("{value:.3}"),
-        Column::Seconds if value < 1e-2 => format!("{value:.2e}"),
-        Column::Seconds => format!("{value:.2}"),
-        Column::Frames => format!("{value:.0}"),
-        Column::YoungRatio => format!("{value:.3}"),
-        Column::PoissonShift => format!("{value:+.3}"),
+        study::Column::ERms | study::Column::EMax => format!("{value:.2}"),
+        study::Column::Young => format!("{value:.1}"),
+        study::Column::Poisson => format!("{value:.3}"),
+        study::Column::Seconds if value < 1e-2 => format!("{value:.2e}"),
+        study::Column::Seconds => format!("{value:.2}"),
+        study::Column::Frames => format!("{value:.0}"),
+        study::Column::YoungRatio => format!("{value:.3}"),
+        study::Column::PoissonShift => format!("{value:+.3}"),
     }
 }
 
-fn text(column: Column, value: Option<f64>) -> String {
+fn text(column: study::Column, value: Option<f64>) -> String {
     value.map_or("-".into(), |value| figure(column, value))
 }
 
@@ -125,7 +122,8 @@ fn text(column: Column, value: Option<f64>) -> String {
 fn remarks(table: &PaperTable) -> Vec<String> {
     let mut lines = Vec::new();
     let errors = |values: &[Option<f64>]| {
-        let shown = table.columns.iter().zip(values).filter(|(c, _)| matches!(c, Column::ERms | Column::EMax));
+        let shown =
+            table.columns.iter().zip(values).filter(|(c, _)| matches!(c, study::Column::ERms | study::Column::EMax));
         shown.map(|(column, value)| text(*column, *value)).collect::<Vec<_>>().join(" / ")
     };
     for object in table.objects() {
@@ -158,11 +156,8 @@ fn remarks(table: &PaperTable) -> Vec<String> {
 /// All figures in full, one row for each fit.
 fn raw(table: &PaperTable) -> String {
     let mut header = vec!["object".to_string(), "fit".into(), "stands".into()];
-    for column in &table.columns {
-        header.extend(
-            ["printed", "found"]
-                .map(|group| table::Column::numbers(column.name()).unit(column.unit()).group(group).plain_heading()),
-        );
+    for what in &table.columns {
+        header.extend(["printed", "found"].map(|group| column(*what, group).plain_heading()));
     }
     header.push("why".into());
     let row = |row: &PaperRow| {

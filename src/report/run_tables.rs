@@ -182,7 +182,7 @@ fn times(report: &Report) -> Table {
     let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
     let row = |fit: &FitRecord, load: &LoadRecord| {
         let solver = load.solver_lem.as_ref();
-        let known = |value: Option<usize>| value.map_or(Cell::from("–"), Cell::from);
+        let known = |value: Option<usize>| Cell::number(value.map(|value| value as f64), Fixed(0));
         let followed = load.followed.as_ref();
         vec![
             Cell::from(&*fit.name),

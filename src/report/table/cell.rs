@@ -19,11 +19,11 @@ pub struct Cell {
 /// How a number is written.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::report) enum Digits {
-    /// With this number of digits behind the point.
+    /// The number is written with this number of digits behind the point.
     Fixed(usize),
     /// The number is written with its sign and this number of digits behind the point.
     Signed(usize),
-    /// With this number of digits in all.
+    /// The number is written with this number of digits in all.
     Significant(usize),
 }
 

@@ -27,7 +27,7 @@ enum Alignment {
 /// Columns of the page that tables are fitted to; no table is broken unless a program sets it.
 static PAGE: AtomicUsize = AtomicUsize::new(usize::MAX);
 
-/// A heading of so many columns has its unit in the same line.
+/// The unit stands in the same line as the heading if both are no wider than this, or than the cells.
 const NARROW: usize = 12;
 
 /// Fits all tables from now on to a page of that many columns: a table that is wider goes on below, with its first column again.
@@ -177,7 +177,7 @@ fn block(strips: &[&Strip], page: Option<usize>) -> String {
     let mut table = comfy_table::Table::new();
     table.load_preset(NOTHING).set_style(TableComponent::HeaderLines, '-');
     let header = strips.iter().map(|strip| printable_lines(&strip.heading));
-    let count = strips.iter().map(|strip| strip.entries.len()).max().unwrap_or(0);
+    let count = strips.first().map_or(0, |strip| strip.entries.len());
     let rows = (0..count).map(|row| strips.iter().map(|strip| printable(&strip.entries[row])).collect::<Vec<_>>());
     table.set_content_arrangement(ContentArrangement::Disabled).set_header(header).add_rows(rows);
     if let Some(page) = page {

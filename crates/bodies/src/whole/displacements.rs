@@ -170,7 +170,7 @@ impl<'a> Displacements<'a> {
             };
             let mut loads = Vec::new();
             for (&l, u) in group.iter().zip(found) {
-                loads.push((l, Arc::new(self.object.forces(&u))));
+                loads.push((l, self.object.forces(&u)));
                 displacements[l] = u;
             }
             tangents.push(Tangent { equations, loads });
@@ -208,7 +208,7 @@ impl<'a> Displacements<'a> {
             else {
                 return Ok(None);
             };
-            let forces = Arc::new(self.object.forces_at(&x));
+            let forces = self.object.forces_at(&x);
             Ok(Some((u, Tangent { equations, loads: vec![(l, forces)] })))
         };
         let found: Result<Vec<_>> = self.targets.par_iter().enumerate().map(one).collect();

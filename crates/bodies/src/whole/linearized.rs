@@ -6,7 +6,6 @@ use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::Result;
 use crate::solve::Equations;
-use std::sync::Arc;
 
 /// A sum of squares that is minimised.
 pub trait LeastSquares {
@@ -37,11 +36,11 @@ pub struct Linearized<'a> {
 }
 
 /// The loads that share a factorisation.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Tangent {
     pub equations: Equations,
     /// The index of each load, and its F_sl.
-    pub loads: Vec<(usize, Arc<PartVectors>)>,
+    pub loads: Vec<(usize, PartVectors)>,
 }
 
 /// The relative error of gradients and of columns of J where equations are solved by iterations.
@@ -61,9 +60,8 @@ impl Linearized<'_> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
         for tangent in &self.tangents {
-            let force = |(load, forces): &(usize, Arc<PartVectors>)| {
-                forces.sum(change.iter().map(|c| -c), self.scales[*load].len())
-            };
+            let force =
+                |(load, forces): &(usize, PartVectors)| forces.sum(change.iter().map(|c| -c), self.scales[*load].len());
             let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
             let moves = tangent.equations.respond_all(&forces, tolerance)?;
             for ((load, _), mut u) in tangent.loads.iter().zip(moves) {
@@ -84,7 +82,7 @@ impl Linearized<'_> {
     pub fn adjoint(&self, w: &[Vec<f64>], tolerance: f64) -> Result<Vec<f64>> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
-            let pull = |(load, _): &(usize, Arc<PartVectors>)| {
+            let pull = |(load, _): &(usize, PartVectors)| {
                 w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
             };
             let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();

@@ -1,7 +1,8 @@
 //! A fit as its formula: one element, in double precision, one step after the other, and no shortcut.
 //!
 //! 1. [`stiffness`]: the stiffness of the finite element by quadrature, `R = Σ_q v_q B_qᵀ D B_q`.
-//! 2. [`gradients`]: spring s measures the change `g_s·u`, so that a constant k_s adds the stiffness `k_s g_s g_sᵀ`.
+//! 2. [`gradients`]: spring s measures the change `g_s·u`, so that constants k have the stiffness `K = Σ_s k_s g_s g_sᵀ`,
+//!    [`network`].
 //! 3. [`seen`]: a weight is what a norm sees of a matrix, `W A W`.
 //! 4. [`constants`]: `min_k ‖W (R − Σ_s k_s g_s g_sᵀ) W‖` in the Frobenius norm, by the normal equations.
 //!
@@ -62,6 +63,12 @@ pub fn gradients(element: &Element, springs: &Springs, x: &[f64]) -> Result<DMat
     let mut rows = Vec::new();
     springs.gradients(x, &geometry(element, x)?, &mut rows);
     Ok(DMatrix::from_column_slice(x.len(), springs.len(), &rows))
+}
+
+/// The stiffness of springs with the constants `k`: `K = Σ_s k_s g_s g_sᵀ`, N/m, with the columns g_s of `g`.
+pub fn network(g: &DMatrix<f64>, k: &[f64]) -> DMatrix<f64> {
+    let scaled = DMatrix::from_fn(g.nrows(), g.ncols(), |i, s| k[s] * g[(i, s)]);
+    scaled * g.transpose()
 }
 
 /// What a weight sees of a matrix A of the element with the stiffness `r` and nodes at `x`, `[nodes × dimension]`: `W A W`, or with

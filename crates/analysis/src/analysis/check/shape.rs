@@ -9,6 +9,7 @@ use crate::material::{Material, Moduli};
 use crate::mesh::{Mesh, MeshSource, gmsh, vtk};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
+use nalgebra::DMatrix;
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -38,9 +39,21 @@ pub fn geometry(element: &Element, x: &[f64]) -> Geometry {
     geometry
 }
 
-fn stiffness(element: &Element) -> Property {
+/// The number of motions of the nodes that are not rigid.
+pub fn deformations(element: &Element) -> usize {
     let (n, d) = (element.nodes(), element.dimension());
-    let expected = n * d - d * (d + 1) / 2;
+    n * d - d * (d + 1) / 2
+}
+
+/// The number of eigenvalues of R that are no rounding.
+pub fn rank(r: &DMatrix<f64>) -> usize {
+    let eigenvalues = r.symmetric_eigenvalues();
+    let floor = 1e-10 * eigenvalues.amax();
+    eigenvalues.iter().filter(|e| **e > floor).count()
+}
+
+fn stiffness(element: &Element) -> Property {
+    let expected = deformations(element);
     let mut least = expected;
     let shapes = shapes(element);
     if shapes.is_empty() {
@@ -52,9 +65,7 @@ fn stiffness(element: &Element) -> Property {
     }
     for x in shapes {
         let r = geometry(element, &x).stiffness(Moduli { lambda: 1.0, mu: 1.0 });
-        let eigenvalues = r.symmetric_eigenvalues();
-        let floor = 1e-10 * eigenvalues.amax();
-        least = least.min(eigenvalues.iter().filter(|e| **e > floor).count());
+        least = least.min(rank(&r));
     }
     let spurious = expected - least;
     let finding = format!("{least} of {expected}, {spurious} spurious modes");

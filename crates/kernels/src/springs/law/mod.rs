@@ -306,7 +306,7 @@ impl Force {
         }
     }
 
-    /// Gives each of so many groups this law.
+    /// Gives one law to all groups of springs; `groups` is their number.
     pub fn of_all(law: Law, groups: usize) -> Force {
         Force::Laws(std::iter::repeat_n(Arc::new(law), groups).collect())
     }

@@ -14,7 +14,7 @@ use crate::study::time::TimePlan;
 
 /// The displacements of the finite elements; those of the networks are with their fits.
 pub(super) struct Answers {
-    /// For each load, `[points · dimension]`, m.
+    /// The finite elements have these displacements under each load, `[points · dimension]`, m.
     displacements: Vec<Vec<f64>>,
     /// How far each load was followed; `None` at small deformation.
     followed: Vec<Option<Followed>>,

@@ -24,7 +24,7 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
 /// Runs the scene as [`run`] does; whole-object fits can be cancelled and continued.
 ///
 /// # Errors
-/// Those of [`run`]; or the checkpoint is wrong or cannot be written.
+/// An input is wrong, as for [`run`]; or the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     in_stages(scene, controls, progress).map_err(|e| scene.with_line(e))
 }

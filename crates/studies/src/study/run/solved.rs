@@ -88,7 +88,7 @@ impl Solved {
 /// The finite elements at small deformation under each load.
 ///
 /// # Errors
-/// As [`LinearBody::solve`].
+/// Some motion has no stiffness, the equations do not fit into memory, or iterations that were asked for stall.
 pub(super) fn solve_linear(posed: &Posed, progress: &mut Progress) -> Result<LinearBody> {
     let moduli = posed.material.moduli();
     LinearBody::solve(&posed.mesh, &moduli, &posed.cases, posed.scene.solver(), progress).map_err(|e| posed.in_scene(e))
