@@ -386,7 +386,8 @@ fn fits_that_shapes_do_not_determine_are_told() {
     reads(&found.unwrap_err().to_string(), "springs: … found none").unwrap();
 }
 
-/// Of a list of 100 deformation gradients 80 are fitted and 20 held out. A fit of fewer says so, and its errors name the keys of the scene.
+/// Of a list of 100 deformation gradients 80 are fitted and 20 held out, each once. A fit of fewer says so, one of more is refused, and
+/// errors name the keys of the scene.
 #[test]
 fn shapes_of_a_list_that_are_left_out_are_counted() {
     let folder = tempfile::tempdir().unwrap();
@@ -407,11 +408,21 @@ fn shapes_of_a_list_that_are_left_out_are_counted() {
         let notes = springfit::report::notes(&outcome);
         let says = notes.iter().any(|note| note.contains("the first 79 of the 80 shapes of the list"));
         assert_eq!(says, is_left_out, "{keys}: {notes:?}");
+        let count = outcome.fits[0].kind.sampled().map(|sampled| sampled.shapes);
+        assert_eq!(count, Some(if is_left_out { 79 } else { 80 }), "{keys}");
     }
     for (keys, key) in [
         ("stretch = [0.3, -0.1]", ":12: fit[0].shapes.stretch"),
         ("perturbation = 5", ":12: fit[0].shapes.perturbation"),
         ("count = 0", ":12: fit[0].shapes.count"),
+        (
+            "gradients = \"list.csv\"\ncount = 81",
+            "fit[0].shapes.count: expected at most 80, the shapes of the list that are fitted, found 81",
+        ),
+        (
+            "gradients = \"list.csv\"\nheld_out = 21",
+            "fit[0].shapes.held_out: expected at most 20, the shapes of the list that are held out, found 21",
+        ),
         ("families = [\"torsion\"]", ":12: fit[0].shapes.families"),
         ("families = []", ":12: fit[0].shapes.families"),
     ] {

@@ -36,3 +36,45 @@ fn lists_are_split() {
         }
     }
 }
+
+/// Each row of a list counts once, whatever the number that is asked for: the order of rows does not matter, nor does a number above
+/// theirs. States are used equally often. The tolerance is rounding of sums of 160 terms.
+#[test]
+fn rows_count_once() {
+    let element = Arc::new(Element::load("tri3").unwrap());
+    let springs = Springs::select(&element, None).unwrap();
+    let material = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
+    let energy = Energy::load("neo-hookean", material).unwrap();
+    let x = [0.0, 0.0, 1.0, 0.1, 0.3, 0.9];
+    let fitted = |source: Source, shapes: usize| -> SampledFits {
+        let sampling = Sampling { source, shapes, perturbation: 0.0, ..Sampling::default() };
+        let fit = SampledFit { sampling, ..SampledFit::default() };
+        fit_sampled(&element, &springs, &x, &[0, 1, 2], &energy, material.state(), &fit, &mut |_| {}).unwrap()
+    };
+    // A spread of gradients without an order: those of the golden ratio.
+    let spread = |i: usize, k: usize| 0.3 * ((i * (k + 1)) as f64 * 0.618_033_988_749_894_9).fract() - 0.15;
+    let list: Vec<[f64; 4]> =
+        (0..200).map(|i| [1.0 + spread(i, 0), spread(i, 1), spread(i, 2), 1.0 + spread(i, 3)]).collect();
+    // Rows 4, 9, 14, … are held out, and keep their places.
+    let own: Vec<usize> = (0..200).filter(|i| i % 5 != 4).collect();
+    let mut turned = list.clone();
+    own.iter().zip(own.iter().rev()).for_each(|(&to, &from)| turned[to] = list[from]);
+    let gradients = |list: &[[f64; 4]]| Source::Gradients(Arc::new(list.concat()));
+    let states = |list: &[[f64; 4]]| {
+        let place = |f: &[f64; 4]| -> Vec<f64> {
+            x.chunks_exact(2).flat_map(|x| [f[0] * x[0] + f[1] * x[1], f[2] * x[0] + f[3] * x[1]]).collect()
+        };
+        Source::States(Arc::new(list.iter().map(place).collect()))
+    };
+    for (once, others) in
+        [(gradients(&list), vec![gradients(&list), gradients(&turned)]), (states(&list), vec![states(&list)])]
+    {
+        let once = fitted(once, 160);
+        for source in others {
+            let found = fitted(source, 300);
+            assert_eq!((found.shapes, once.shapes), (160, 160));
+            let pairs = found.fits.constants.iter().zip(&once.fits.constants);
+            pairs.for_each(|(k, once)| assert!((k - once).abs() < 1e-12 * once.abs(), "{k} {once}"));
+        }
+    }
+}

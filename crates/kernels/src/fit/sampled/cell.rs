@@ -164,12 +164,14 @@ impl<'a> SampledCell<'a> {
         all
     }
 
+    /// The number of shapes of the part.
+    pub fn shapes(&self, part: Part) -> usize {
+        self.shapes.count(part)
+    }
+
     /// The sums over the shapes of one part, with J and r at `unknowns`.
     pub fn sums(&self, part: Part, unknowns: &[f64]) -> Result<Sums> {
-        let total = match part {
-            Part::Trained => self.fit.sampling.shapes,
-            Part::HeldOut => self.fit.sampling.held_out,
-        };
+        let total = self.shapes(part);
         let block = |first: usize| {
             let mut sums = Sums::of(self.count);
             let (mut sample, mut rows, mut lacking) = (Sample::default(), Vec::new(), Vec::new());

@@ -47,7 +47,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
         false => vec![false; outer.len()],
     };
     let descent = Descent { bounds, eliminated: &eliminated, nonnegative };
-    let total = cell.fit.sampling.shapes;
+    let total = cell.shapes(Part::Trained);
     let all = Drawn::new(cell, Part::Trained, (0..total).collect())?;
     let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
     let few = match starts > 1 && 2 * few < total {

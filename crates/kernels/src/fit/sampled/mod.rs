@@ -49,6 +49,8 @@ const MOST_NUMBERS: usize = 1 << 26;
 pub struct SampledFits {
     /// The constants and parameters.
     pub fits: CellFits,
+    /// The number of shapes of the fit, that of the cell with the most.
+    pub shapes: usize,
     /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`, with f the forces of the element and K those of
     /// its springs.
     pub trained: Vec<f64>,
@@ -135,6 +137,7 @@ pub fn fit_sampled(
     }
     let mut all = SampledFits {
         fits: CellFits::new(springs.clone()),
+        shapes: fitted.iter().map(|f| f.shapes).max().unwrap_or(0),
         trained: Vec::new(),
         held_out: Vec::new(),
         agreeing: fitted.iter().filter_map(|f| f.agreeing).reduce(f64::min),
@@ -160,6 +163,7 @@ struct CellFit {
     rank: Rank,
     converged: bool,
     agreeing: Option<f64>,
+    shapes: usize,
     trained: f64,
     held_out: f64,
 }
@@ -237,7 +241,7 @@ impl SampledCell<'_> {
             (false, _) => f64::NAN,
             (true, false) => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
             (true, true) => {
-                let shapes = Drawn::new(self, Part::HeldOut, (0..self.fit.sampling.held_out).collect())?;
+                let shapes = Drawn::new(self, Part::HeldOut, (0..self.shapes(Part::HeldOut)).collect())?;
                 shapes.sums(&unknowns, &vec![false; self.count()])?.sums.error(&vec![0.0; self.count()])
             }
         };
@@ -247,7 +251,7 @@ impl SampledCell<'_> {
             let expected = "a law with finite values at the sampled shapes and a finite slope at rest";
             return Err(Error::expected("force", expected, "one without").of_kind(ErrorKind::Infeasible));
         }
-        Ok(CellFit { constants, parameters, held_out, ..found })
+        Ok(CellFit { constants, parameters, shapes: self.shapes(Part::Trained), held_out, ..found })
     }
 
     fn has_functions(&self) -> bool {
@@ -272,7 +276,7 @@ impl SampledCell<'_> {
     /// The unknowns with the least residual forces in a norm that normal equations cannot express. All shapes are
     /// stored.
     fn in_norm(&self, bounded: bool) -> Result<Option<Vec<f64>>> {
-        let (shapes, count, seen) = (self.fit.sampling.shapes, self.count(), self.seen());
+        let (shapes, count, seen) = (self.shapes(Part::Trained), self.count(), self.seen());
         if shapes.saturating_mul(seen).saturating_mul(count) > MOST_NUMBERS {
             let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (seen * count));
             return Err(Error::expected("shapes", expected, shapes).of_kind(ErrorKind::Limit));

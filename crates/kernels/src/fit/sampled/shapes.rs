@@ -65,10 +65,11 @@ pub enum Source {
 pub struct Sampling {
     /// The source of the shapes.
     pub source: Source,
-    /// The number of shapes of the fit. A shorter list is used repeatedly, with different displacements of the nodes.
+    /// The number of shapes of the fit, at most. Of a list of gradients each is used once. States are used equally often, with different
+    /// displacements of the nodes: once each without them, and as often as this number allows with them.
     pub shapes: usize,
-    /// The number of other shapes on which the error is measured. Of a list of at least five shapes, every fifth is
-    /// kept for them.
+    /// The number of other shapes on which the error is measured, at most, by the same rule. Of a list of at least five shapes, every fifth
+    /// is kept for them.
     pub held_out: usize,
     /// The least and the largest amplitude of the families.
     pub stretch: [f64; 2],
@@ -96,6 +97,17 @@ impl Default for Sampling {
 pub enum Part {
     Trained,
     HeldOut,
+}
+
+impl Part {
+    /// How many shapes of a list of `count` belong to the part. A list that is too short to hold any out has all of them in both parts.
+    fn of(self, count: usize) -> usize {
+        match (self, count / APART) {
+            (Part::HeldOut, 1..) => count / APART,
+            (Part::HeldOut, 0) => count,
+            (Part::Trained, apart) => count - apart,
+        }
+    }
 }
 
 impl Sampling {
@@ -145,13 +157,12 @@ impl Sampling {
         }
     }
 
-    /// How many shapes of its list, in a body of this dimension, a fit uses if it has as many; those that are held out are others. `None`
-    /// without a list of gradients.
-    pub fn listed(&self, dimension: usize) -> Option<usize> {
+    /// How many shapes of its list, in a body of this dimension, belong to the fit and to its test. `None` without a list of gradients.
+    pub fn listed(&self, dimension: usize) -> Option<[usize; 2]> {
         match &self.source {
             Source::Gradients(list) => {
                 let all = list.len() / (dimension * dimension);
-                Some(all - all / APART)
+                Some([Part::Trained, Part::HeldOut].map(|part| part.of(all)))
             }
             Source::Families(_) | Source::States(_) => None,
         }
@@ -189,15 +200,33 @@ pub struct Shapes<'a> {
 }
 
 impl Shapes<'_> {
+    /// The number of shapes of the list; `None` without one.
+    fn listed(&self) -> Option<usize> {
+        match &self.sampling.source {
+            Source::Families(_) => None,
+            Source::Gradients(list) => Some(list.len() / (self.dimension * self.dimension)),
+            Source::States(states) => Some(states.len() * self.cells.len()),
+        }
+    }
+
     /// Whether there are shapes that the fit does not use.
     pub fn has_others(&self) -> bool {
-        let d = self.dimension;
-        let listed = match &self.sampling.source {
-            Source::Families(_) => APART,
-            Source::Gradients(list) => list.len() / (d * d),
-            Source::States(states) => states.len() * self.cells.len(),
+        let are_apart = self.listed().is_none_or(|listed| listed >= APART);
+        self.sampling.held_out > 0 && (are_apart || self.sampling.perturbation > 0.0)
+    }
+
+    /// The number of shapes of the part: no shape of a list counts more often than another.
+    pub fn count(&self, part: Part) -> usize {
+        let most = match part {
+            Part::Trained => self.sampling.shapes,
+            Part::HeldOut => self.sampling.held_out,
         };
-        self.sampling.held_out > 0 && (listed >= APART || self.sampling.perturbation > 0.0)
+        let Some(own) = self.listed().map(|listed| part.of(listed)) else { return most };
+        match &self.sampling.source {
+            // Displacements of the nodes differ each time, so that states that are used again are other shapes.
+            Source::States(_) if most > own && self.sampling.perturbation > 0.0 => most - most % own,
+            Source::Families(_) | Source::Gradients(_) | Source::States(_) => most.min(own),
+        }
     }
 
     /// The positions of the nodes in shape `i`, with the share `scale` of its deformation; `[nodes × dimension]`.

@@ -3,6 +3,7 @@
 use super::force::ForceRecipe;
 use super::functions::FitFunctions;
 use super::recipe::SampledRecipe;
+use crate::bound;
 use crate::error::{Error, Result};
 use crate::file;
 use crate::fit::{DeformationFamily, Norm, Source, Weights};
@@ -19,7 +20,9 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SampledEntry {
-    /// Each shape counts by the inverse square of its force (`relative`), or all shapes count alike (`none`).
+    /// Each shape counts by the inverse square of its force (`relative`), or all shapes count alike (`none`). The errors of the report are
+    /// weighted alike: with `relative` they are the root mean square of each shape's error relative to its own force, and with `none` the
+    /// root mean square of all errors relative to that of all forces, which the shapes with the largest forces decide.
     #[schemars(extend("enum" = Weights::NAMES, "default" = Weights::Relative.name()))]
     pub weight: Option<String>,
     /// Forces that do no work on homogeneous deformations have this scale.
@@ -62,17 +65,18 @@ pub struct ShapesEntry {
         "x-default" = "the first four",
     ))]
     pub families: Option<Vec<String>>,
-    /// The shapes have the deformation gradients of this CSV file, relative to the scene, row by row. Four of five are fitted, up to
-    /// `count`, and a shorter list is used repeatedly.
+    /// The shapes have the deformation gradients of this CSV file, relative to the scene, row by row. Four of five are fitted, each
+    /// once, and each fifth is held out; a list of less than five is fitted as a whole, and held out with other displacements of the nodes.
     #[schemars(extend("x-type" = "path"))]
     pub gradients: Option<PathBuf>,
-    /// The shapes are those that the finite elements take on the way to these loads of the scene.
+    /// The shapes are those that the finite elements take on the way to these loads of the scene. A cell that has fewer of them than `count`
+    /// uses each equally often, with other displacements of the nodes each time.
     pub loads: Option<Vec<String>>,
-    /// The springs are fitted to this number of shapes.
-    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.shapes))]
+    /// The springs are fitted to this number of shapes; to the first of them with `gradients`, which has to have as many to fit.
+    #[schemars(extend("x-default" = format!("{}, all with `gradients`", SampledRecipe::default().fit.sampling.shapes)))]
     pub count: Option<usize>,
-    /// The springs are tested on this number of other shapes.
-    #[schemars(extend("default" = SampledRecipe::default().fit.sampling.held_out))]
+    /// The springs are tested on this number of other shapes, by the same rule.
+    #[schemars(extend("x-default" = format!("{}, all with `gradients`", SampledRecipe::default().fit.sampling.held_out)))]
     pub held_out: Option<usize>,
     /// The amplitudes of `families` are between these two numbers; one number, such as 0.3, means −0.3 to 0.3.
     #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "number, or pair of numbers", "default" = 0.3))]
@@ -145,8 +149,12 @@ impl ShapesEntry {
         if let Some(path) = &self.gradients {
             let path = folder.join(path);
             let numbers = numbers_of(&file::read_text(&path)?).map_err(|e| e.in_file(&path))?;
+            // Each row is used once, whatever their number.
+            let most = numbers.len().clamp(1, bound::SHAPES as usize);
+            (sampling.shapes, sampling.held_out) = (most, most);
             sampling.source = Source::Gradients(Arc::new(numbers));
             recipe.gradients = Some(path);
+            (recipe.count, recipe.held_out) = (self.count, self.held_out);
         }
         if let Some(loads) = self.loads {
             if loads.is_empty() {

@@ -181,6 +181,7 @@ fn joined(mut regions: Vec<(Vec<usize>, SampledFits)>) -> SampledFits {
             }
         }
         if i > 0 {
+            all.shapes = all.shapes.max(found.shapes);
             all.fits.deficient += found.fits.deficient;
             all.fits.unreached += found.fits.unreached;
             all.fits.reused += found.fits.reused;

@@ -5,15 +5,16 @@ use crate::fit::{SampledFits, Spread};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The relative errors of the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` for each cell.
+/// The relative errors of the forces, `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` for each cell, with the weights w of the fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SampledOutcome {
-    /// The springs are fitted to this number of shapes.
+    /// The springs are fitted to this number of shapes, those of the element with the most.
     pub shapes: usize,
-    /// The shapes of a list that a fit of enough shapes would use; `None` if they are not from a list.
+    /// The shapes of a list of gradients that may be fitted; `None` if they are not from a list.
     #[serde(skip)]
     pub listed: Option<usize>,
-    /// The forces have these relative errors on the shapes of the fit.
+    /// The forces have these relative errors on the shapes of the fit: `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` with the weights w of the fit, so that
+    /// with `weight = "none"` the errors of all shapes are relative to the forces of all shapes.
     pub trained: Spread,
     /// The forces have these relative errors on the shapes that were held out; they are null if there are none.
     pub held_out: Option<Spread>,
@@ -32,8 +33,8 @@ impl SampledOutcome {
         let apart = found.iter().flat_map(|f| &f.held_out).all(|error| error.is_finite());
         let held_out = apart.then(|| spread(|f| &f.held_out));
         SampledOutcome {
-            shapes: recipe.fit.sampling.shapes,
-            listed: recipe.fit.sampling.listed(dimension),
+            shapes: found.iter().map(|found| found.shapes).max().unwrap_or(0),
+            listed: recipe.fit.sampling.listed(dimension).map(|[own, _]| own),
             trained: spread(|f| &f.trained),
             held_out,
             agreeing: found.iter().filter_map(|f| f.agreeing).reduce(f64::min),
@@ -74,7 +75,7 @@ impl SampledOutcome {
         });
         let left_out = self.listed.filter(|listed| self.shapes < *listed).map(|listed| {
             let shapes = self.shapes;
-            format!("fitted to the first {shapes} of the {listed} shapes of the list that are not held out: count = {listed} takes all")
+            format!("fitted to the first {shapes} of the {listed} shapes of the list that are not held out: all are taken without count")
         });
         unexplained.into_iter().chain(left_out).chain(loads).chain(agreeing).collect()
     }

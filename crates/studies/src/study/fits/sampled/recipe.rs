@@ -25,6 +25,10 @@ pub struct SampledRecipe {
     pub energy: Option<EnergyFunction>,
     /// The file from which deformation gradients were read.
     pub gradients: Option<PathBuf>,
+    /// How many gradients of the file are to be fitted, if the scene says so.
+    pub count: Option<usize>,
+    /// How many of them are to be held out, if the scene says so.
+    pub held_out: Option<usize>,
 }
 
 impl Default for SampledRecipe {
@@ -38,7 +42,16 @@ impl Default for SampledRecipe {
         ];
         let sampling = Sampling { source: Source::Families(families), perturbation: 0.02, ..Sampling::default() };
         let fit = SampledFit { sampling, weights: Weights::Relative, ..SampledFit::default() };
-        SampledRecipe { fit, force: ForceRecipe::Linear, loads: Vec::new(), law: None, energy: None, gradients: None }
+        SampledRecipe {
+            fit,
+            force: ForceRecipe::Linear,
+            loads: Vec::new(),
+            law: None,
+            energy: None,
+            gradients: None,
+            count: None,
+            held_out: None,
+        }
     }
 }
 
@@ -51,10 +64,19 @@ impl SampledRecipe {
     /// The fit of the springs of one element; `states` are positions of the mesh if the recipe names loads.
     ///
     /// # Errors
-    /// A group has no law.
+    /// A group has no law, or more gradients are asked for than their file has.
     pub fn resolve(&self, element: &Element, springs: &Springs, states: &Arc<Vec<Vec<f64>>>) -> Result<SampledFit> {
         let mut fit = self.fit.clone();
         fit.force = self.force.resolve(element, springs)?;
+        if let Some(listed) = fit.sampling.listed(element.dimension()) {
+            let [own, others] = [("count", self.count, "fitted"), ("held_out", self.held_out, "held out")];
+            for ((key, asked, part), listed) in [own, others].into_iter().zip(listed) {
+                if let Some(asked) = asked.filter(|asked| *asked > listed) {
+                    let expected = format!("at most {listed}, the shapes of the list that are {part}");
+                    return Err(Error::expected(format!("shapes.{key}"), expected, asked));
+                }
+            }
+        }
         if !self.loads.is_empty() {
             fit.sampling.source = Source::States(states.clone());
         }
@@ -80,6 +102,9 @@ impl SampledRecipe {
     /// The shapes, in words, for a list of stages.
     pub fn shapes(&self) -> String {
         let sampling = &self.fit.sampling;
-        format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out)
+        match &self.gradients {
+            Some(path) => format!(" to forces at the shapes of {}", path.display()),
+            None => format!(" to forces at {} shapes with {} held out", sampling.shapes, sampling.held_out),
+        }
     }
 }
