@@ -207,3 +207,37 @@ fn a_traction_on_a_sheet_in_space_is_said_to_act_on_its_outline() {
     assert!(is_told(&scene("traction = [1, 0, 0]")));
     assert!(!is_told(&scene("body = [1, 0, 0]")));
 }
+
+/// `u = A x` on the whole boundary, a rotation beside a stretch, is met by `u = A x` within (patch test). The tolerance, 1e-9 of the largest
+/// displacement, is that of the solver.
+#[test]
+fn a_displacement_that_is_linear_in_the_position_is_linear_within() {
+    let a = [[0.01, -0.1, 0.0], [0.1, 0.02, 0.03], [-0.02, 0.0, -0.01]];
+    for (element, size) in [("tet4", [3.0, 2.0, 1.0]), ("hex8", [3.0, 2.0, 1.0]), ("tet10", [1.0, 1.0, 2.0])] {
+        let outcome = outcome(&format!(
+            r#"
+[mesh]
+box = {{ element = "{element}", size = {size:?}, cells = [3, 4, 3] }}
+[material]
+young = "10 kPa"
+poisson = 0.3
+[[fit]]
+objective = "exact"
+[[load]]
+where = "x*({0} - x)*y*({1} - y)*z*({2} - z) < 1e-9"
+displacement = ["0.01*x - 0.1*y", "0.1*x + 0.02*y + 0.03*z", "-0.02*x - 0.01*z"]
+"#,
+            size[0], size[1], size[2]
+        ));
+        let (mesh, load) = (&outcome.mesh, &outcome.loads[0]);
+        let mut inner = 0;
+        for (p, u) in load.fem.chunks_exact(3).enumerate() {
+            inner += usize::from(!load.support.is_fixed(3 * p));
+            for (u, row) in u.iter().zip(a) {
+                let expected: f64 = row.iter().zip(mesh.point(p)).map(|(a, x)| a * x).sum();
+                assert!((u - expected).abs() < 1e-9 * 0.3, "{element}, point {p}: {u} {expected}");
+            }
+        }
+        assert!(inner >= 2 * 3 * 2, "{inner}");
+    }
+}

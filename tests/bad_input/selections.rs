@@ -119,12 +119,20 @@ fn loads_that_vary_and_measurements() {
                 "scene.toml: load[0]",
                 "found inf along y",
             ),
+            (load, "displacement = [0, \"1/x\", 0]", "scene.toml: load[0]", "found inf along y at [0.0, 1.0, 1.0] m"),
+            (load, "displacement = [0, \"1e40*x\", 0]", "scene.toml: load[0]", "at most 1e30 in size, found 1e40"),
+            (load, "displacement = [0, 1e40, \"x\"]", "scene.toml: load[0].displacement", "at most 1e30 m in size"),
+            (load, "displacement = [0, \"x*\", \"free\"]", "scene.toml: load[0].displacement[1]", "column 3"),
+            (load, "displacement = [0, \"0.1*w\", 0]", "scene.toml: load[0].displacement[1]", "name \"w\""),
             (load, "traction = [0, 0, 1]\nmeasured = { file = \"u.csv\" }", "u.csv", "cannot be read"),
         ],
     );
     refusals.expect_of_edits(
         PLATE,
-        &[("traction = [0, 1]", "traction = [0, \"z\"]", "scene.toml: load[0].traction[1]", "found z")],
+        &[
+            ("traction = [0, 1]", "traction = [0, \"z\"]", "scene.toml: load[0].traction[1]", "found z"),
+            ("traction = [0, 1]", "displacement = [\"free\", \"z\"]", "scene.toml: load[0].displacement[1]", "found z"),
+        ],
     );
     refusals.finish();
 }
@@ -149,6 +157,12 @@ fn loads_that_contradict_supports() {
                 edge,
                 "scene.toml: load[0].displacement[0]",
                 "moves point 0 at [0.0, 0.0, 0.0] m along x by 0.001 m",
+            ),
+            (
+                load,
+                "where = \"x == 0\"\ndisplacement = [\"0.1*(z - 1)\", \"free\", \"free\"]",
+                "scene.toml: load[0].displacement[0]",
+                "moves point 0 at [0.0, 0.0, 0.0] m along x by -0.1 m",
             ),
             (load, "group = \"zmin\"\ntraction = [0, 0, 1]", "scene.toml: load[0].traction", still),
             (load, free, "scene.toml: load[0].displacement", "a direction that is moved"),

@@ -24,7 +24,7 @@ pub enum Action {
     /// A force per volume on cells, N/m³.
     Body(Vec<Component>),
     /// A prescribed displacement of points, m; `None` leaves a direction free.
-    Displacement(Vec<Option<f64>>),
+    Displacement(Vec<Option<Component>>),
 }
 
 /// One direction of a load: constant, or a function of the position.
@@ -37,7 +37,8 @@ pub enum Component {
 }
 
 impl Component {
-    fn at(&self, x: &[f64]) -> f64 {
+    /// The value at the position x, `[dimension]`, m.
+    pub fn at(&self, x: &[f64]) -> f64 {
         match self {
             Component::Constant(value) => *value,
             Component::Varying(expression) => expression.evaluate(x),
@@ -156,10 +157,17 @@ pub fn nodal_forces(
             body.check("N/m³")?;
             forces
         }
-        Action::Displacement(_) => {
-            if part.points(mesh)?.is_empty() {
+        Action::Displacement(given) => {
+            let points = part.points(mesh)?;
+            if points.is_empty() {
                 return nothing("points");
             }
+            let free = Component::Constant(0.0);
+            let components: Vec<Component> = given.iter().map(|u| u.as_ref().unwrap_or(&free).clone()).collect();
+            finite_at(mesh, &components, points.iter().copied())?;
+            let values = Values::of(&components);
+            points.iter().for_each(|&p| _ = values.at(mesh.point(p)));
+            values.check("m")?;
             vec![0.0; mesh.points.len()]
         }
     };

@@ -109,6 +109,9 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
     Ok((fixed, cases))
 }
 
+/// A displacement that varies agrees with a held point where it differs by at most this share of its largest value: an expression such as
+/// `0.1*(x - 0.3)` is zero to rounding.
+const ROUNDING: f64 = 1e-12;
 /// Loads cancel each other if their sum is smaller than this share of the largest of them.
 const CANCELLED: f64 = 1e-12;
 
@@ -129,9 +132,13 @@ fn acting(
     if entries != d {
         return Err(Error::expected(key, format!("{d} entries for a mesh of dimension {d}"), entries));
     }
-    if let (Action::Traction(v) | Action::Body(v), 2) = (action, d)
-        && let Some(i) = v.iter().position(|c| matches!(c, Component::Varying(e) if e.uses(2)))
-    {
+    let uses_z = |c: &Component| matches!(c, Component::Varying(e) if e.uses(2));
+    let of_z = match action {
+        Action::Traction(v) | Action::Body(v) => v.iter().position(uses_z),
+        Action::Displacement(v) => v.iter().position(|c| c.as_ref().is_some_and(uses_z)),
+        Action::Force(_) => None,
+    };
+    if let (Some(i), 2) = (of_z, d) {
         return Err(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z"));
     }
     let selection: Selection = part.selection(d)?;
@@ -140,10 +147,16 @@ fn acting(
     let forces = nodal_forces(mesh, &selection, action, weights).map_err(|e| Error::new(e.problem()))?;
     let mut support = fixed.clone();
     if let Action::Displacement(given) = action {
-        for p in points {
-            for (k, u) in given.iter().enumerate().filter_map(|(k, u)| Some((k, (*u)?))) {
+        let moved = |p: usize| given.iter().map(move |u| Some(u.as_ref()?.at(mesh.point(p))));
+        let largest = points.iter().flat_map(|&p| moved(p)).flatten().fold(0.0, |a: f64, u| a.max(u.abs()));
+        for &p in &points {
+            for (k, u) in moved(p).enumerate().filter_map(|(k, u)| Some((k, u?))) {
                 let dof = p * d + k;
-                if fixed.prescribed[dof].is_some_and(|held| held != u) {
+                let rounding = if matches!(given[k], Some(Component::Varying(_))) { ROUNDING * largest } else { 0.0 };
+                if let Some(held) = fixed.prescribed[dof] {
+                    if (held - u).abs() <= rounding {
+                        continue;
+                    }
                     let (axis, title, place) = (["x", "y", "z"][k], mesh.point_title(p), mesh.point(p));
                     let problem = format!("moves {title} at {place:?} m along {axis} by {u:?} m, which [[fix]] holds");
                     return Err(Error::at(format!("displacement[{k}]"), problem));

@@ -245,7 +245,8 @@ impl Scene {
         let conditions = self.supports.iter().map(|(part, _)| part).chain(actions().map(|(part, _)| part));
         let varies = |action: &Action| match action {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
-            Action::Force(_) | Action::Displacement(_) => false,
+            Action::Displacement(v) => v.iter().any(|c| matches!(c, Some(Component::Varying(_)))),
+            Action::Force(_) => false,
         };
         let of_place = |entry: &MaterialEntry| {
             entry.condition.is_some() || entry.axes.is_some() || entry.fibre.is_some() || entry.varies()

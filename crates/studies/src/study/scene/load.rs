@@ -1,7 +1,7 @@
 //! A load of a scene.
 
 use super::part::Part;
-use super::value::{self, PrescribedComponent, Varying};
+use super::value::{self, PRESCRIBED, PrescribedComponent, Varying};
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::named::unknown;
@@ -90,7 +90,8 @@ pub struct LoadEntry {
     pub body: Option<Vec<Varying>>,
     /// A body force of this acceleration in m/s², times the density of the material, acts on the cells.
     pub gravity: Option<Vec<f64>>,
-    /// The part has this displacement in m: for each direction a number or `"free"`. At least one direction is moved.
+    /// The part has this displacement in m: for each direction a number, an expression of x, y, z in m, such as `"-0.1*y"`, or `"free"`. At
+    /// least one direction is moved.
     pub displacement: Option<Vec<PrescribedComponent>>,
     /// The load consists of these other loads at the same time: names of two or more loads of forces.
     pub sum: Option<Vec<String>>,
@@ -164,21 +165,47 @@ fn summed(names: &[String], loads: &[LoadCase]) -> Result<LoadKind> {
     Ok(LoadKind::Sum(names.iter().map(place).collect::<Result<_>>()?))
 }
 
+/// Checks the size of the components that are numbers. If others vary, the size of the load is known only on the mesh.
+fn sized(key: &str, v: &[&Varying], unit: &str) -> Result<()> {
+    let number = |v: &&Varying| if let Varying::Number(value) = v { Some(*value) } else { None };
+    let varies = v.iter().any(|v| number(v).is_none());
+    v.iter().filter_map(number).try_for_each(|value| range::bounded(key, value, unit).map(|_| ()))?;
+    range::largest(key, v.iter().filter_map(number).filter(|_| !varies), unit)
+}
+
+fn component(v: Varying) -> Result<Component> {
+    match v {
+        Varying::Number(value) => Ok(Component::Constant(value)),
+        Varying::Text(text) => Scope::new(&["x", "y", "z"]).expression(&text).map(Component::Varying),
+    }
+}
+
+/// The directions of a prescribed displacement.
+fn prescribed(v: Vec<PrescribedComponent>) -> Result<Vec<Option<Component>>> {
+    let given: Vec<&Varying> = v.iter().filter_map(|given| given.0.as_ref()).collect();
+    if given.is_empty() {
+        return Err(Error::expected("displacement", "a direction that is moved", "\"free\" in all"));
+    }
+    sized("displacement", &given, "m")?;
+    let one = |(i, v): (usize, PrescribedComponent)| {
+        let Some(v) = v.0 else { return Ok(None) };
+        let key = format!("displacement[{i}]");
+        component(v.clone()).map(Some).map_err(|e| match v {
+            // A word alone is more likely meant as "free".
+            Varying::Text(text) if text.chars().all(char::is_alphabetic) => {
+                Error::expected(key, PRESCRIBED, format!("\"{text}\""))
+            }
+            Varying::Text(_) | Varying::Number(_) => e.under(key),
+        })
+    };
+    v.into_iter().enumerate().map(one).collect()
+}
+
 impl LoadEntry {
     fn check(self, name: String, is_sum: bool) -> Result<LoadCase> {
         let varying = |key: &str, v: Vec<Varying>, unit: &str| -> Result<Vec<Component>> {
-            let scope = Scope::new(&["x", "y", "z"]);
-            let number = |v: &Varying| if let Varying::Number(value) = v { Some(*value) } else { None };
-            let component = |(i, v): (usize, Varying)| match v {
-                Varying::Number(value) => Ok(Component::Constant(value)),
-                Varying::Text(text) => {
-                    scope.expression(&text).map(Component::Varying).map_err(|e| e.under(format!("{key}[{i}]")))
-                }
-            };
-            // If components vary, their size is known only on the mesh.
-            let varies = v.iter().any(|v| number(v).is_none());
-            v.iter().filter_map(number).try_for_each(|value| range::bounded(key, value, unit).map(|_| ()))?;
-            range::largest(key, v.iter().filter_map(number).filter(|_| !varies), unit)?;
+            sized(key, &v.iter().collect::<Vec<_>>(), unit)?;
+            let component = |(i, v)| component(v).map_err(|e| e.under(format!("{key}[{i}]")));
             v.into_iter().enumerate().map(component).collect()
         };
         let mut actions = Vec::new();
@@ -198,11 +225,7 @@ impl LoadEntry {
             actions.push(Action::body(&v));
         }
         if let Some(v) = self.displacement {
-            range::largest("displacement", v.iter().filter_map(|g| g.0), "m")?;
-            if v.iter().all(|given| given.0.is_none()) {
-                return Err(Error::expected("displacement", "a direction that is moved", "\"free\" in all"));
-            }
-            actions.push(Action::Displacement(v.iter().map(|g| g.0).collect()));
+            actions.push(Action::Displacement(prescribed(v)?));
         }
         if is_sum {
             if !actions.is_empty() || self.group.is_some() || self.condition.is_some() {

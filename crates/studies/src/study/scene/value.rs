@@ -14,9 +14,12 @@ pub enum Varying {
     Text(String),
 }
 
-/// One direction of a prescribed displacement: a number in m, or `"free"`.
-#[derive(Debug, Clone, Copy)]
-pub struct PrescribedComponent(pub Option<f64>);
+/// One direction of a prescribed displacement: a number in m, an expression in x, y, z in m, or none if it is `"free"`.
+#[derive(Debug, Clone)]
+pub struct PrescribedComponent(pub Option<Varying>);
+
+/// What a direction of a prescribed displacement is.
+pub const PRESCRIBED: &str = "a finite number of metres, an expression of x, y, z, or \"free\"";
 
 /// A visitor of values that are numbers or texts.
 struct NumberOrText<T> {
@@ -50,9 +53,9 @@ impl<T> Visitor<'_> for NumberOrText<T> {
 impl<'de> Deserialize<'de> for PrescribedComponent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PrescribedComponent, D::Error> {
         deserializer.deserialize_any(NumberOrText {
-            expected: "a finite number of metres or \"free\"",
-            number: |v| v.is_finite().then_some(PrescribedComponent(Some(v))),
-            text: |v| if v == "free" { Ok(PrescribedComponent(None)) } else { Err(None) },
+            expected: PRESCRIBED,
+            number: |v| v.is_finite().then_some(PrescribedComponent(Some(Varying::Number(v)))),
+            text: |v| Ok(PrescribedComponent((v != "free").then(|| Varying::Text(v.into())))),
         })
     }
 }
@@ -101,7 +104,7 @@ macro_rules! schemas {
 
 schemas! {
     Varying: "number or expression", "A number, or an expression of x, y, z (m) such as \"1e5*x\".";
-    PrescribedComponent: "number or `\"free\"`", "A number of metres, or \"free\".";
+    PrescribedComponent: "number, expression or `\"free\"`", "A number of metres, an expression of x, y, z (m) such as \"-0.1*y\", or \"free\".";
 }
 
 /// A number in the SI unit, or a text with a unit.
