@@ -295,6 +295,15 @@ fn the_command_prints_formulas_and_refuses_what_has_none() {
 }
 
 /// What is printed in E and ν is what is printed in λ and μ: both texts are read as expressions.
+/// A group whose name ends in a digit is no part of the numbers of its nodes.
+#[test]
+fn names_that_end_in_a_digit_are_separated_from_nodes() {
+    let (_, text, _) = derive(&["quad8", "--objective", "offdiag"]);
+    assert!(text.contains("  mid-mid 1: 4-5 and 3 more like it\n") && text.contains("  edge 0-1 and"), "{text}");
+    let (_, text, _) = derive(&["quad8", "--objective", "offdiag", "--latex"]);
+    assert!(text.contains(r"k_{\text{mid-mid 2: 4-6}} &=") && text.contains(r"k_{\text{edge 0-1}} &="), "{text}");
+}
+
 #[test]
 fn constants_in_engineering_moduli_are_those_in_lame_s() {
     let names = ["a", "b", "c", "E", "nu", "lambda", "mu"];

@@ -80,7 +80,7 @@ impl Derivation<'_> {
         for fit in self.fits.iter().flatten() {
             writeln!(text, "% {}\n\\begin{{align*}}", objective(fit)).expect("a String grows");
             for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
-                let name = format!("k_{{\\text{{{} {}}}}}", latex(&class.group), nodes(&class.springs[0]));
+                let name = format!("k_{{\\text{{{}}}}}", named(&latex(&class.group), &class.springs[0]));
                 writeln!(text, "  {name} &= {} \\\\", self.constant_latex(constants)).expect("a String grows");
             }
             text += "\\end{align*}\n";
@@ -95,7 +95,7 @@ impl Derivation<'_> {
         for (class, constant) in &exact.pairs {
             let count = class.springs.len();
             let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
-            writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
+            writeln!(text, "  {}{like}", named(&class.group, &class.springs[0])).expect("a String grows");
             let constants = [zero.clone(), constant.clone()];
             self.constant_text(&constants, text);
         }
@@ -119,7 +119,7 @@ impl Derivation<'_> {
             "% exact: springs of rest length zero between all nodes, and springs on the content\n\\begin{align*}\n";
         for (class, constant) in &exact.pairs {
             let constants = [zero.clone(), constant.clone()];
-            let name = format!("k_{{\\text{{{} {}}}}}", latex(&class.group), nodes(&class.springs[0]));
+            let name = format!("k_{{\\text{{{}}}}}", named(&latex(&class.group), &class.springs[0]));
             writeln!(text, "  {name} &= {} \\\\", self.constant_latex(&constants)).expect("a String grows");
         }
         let content = exact.content.latex(&self.names(Notation::Latex));
@@ -158,7 +158,7 @@ impl Derivation<'_> {
         for (class, constants) in self.form.classes.iter().zip(&fit.constants) {
             let count = class.springs.len();
             let like = if count > 1 { format!(" and {} more like it", count - 1) } else { String::new() };
-            writeln!(text, "  {} {}{like}", class.group, nodes(&class.springs[0])).expect("a String grows");
+            writeln!(text, "  {}{like}", named(&class.group, &class.springs[0])).expect("a String grows");
             self.constant_text(constants, text);
         }
         writeln!(text, "  |R-K|^2 = {}", self.square(&fit.residual, Notation::Text)).expect("a String grows");
@@ -378,6 +378,9 @@ fn objective(fit: &ClosedFit) -> String {
     }
 }
 
-fn nodes(spring: &[usize]) -> String {
-    spring.iter().map(usize::to_string).collect::<Vec<_>>().join("-")
+/// The group of a spring and its nodes. A colon separates them where the group ends in a digit, as in "mid-mid 1: 4-5".
+fn named(group: &str, spring: &[usize]) -> String {
+    let nodes: Vec<String> = spring.iter().map(usize::to_string).collect();
+    let colon = if group.ends_with(|c: char| c.is_ascii_digit()) { ":" } else { "" };
+    format!("{group}{colon} {}", nodes.join("-"))
 }
