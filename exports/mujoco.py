@@ -3,6 +3,7 @@
     python run.py            two seconds of motion, then where the points are
     python run.py 5          five seconds
     python run.py --rest F   comes to rest and writes the positions to the file F
+    python run.py --load N   any of these under the load N of the scene as well
     python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
 
 What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoCo's energy of a tetrahedron is
@@ -10,13 +11,15 @@ What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoC
 and rest length L is M_aa = k/(2 L^2) in one tetrahedron that has the edge; a spring of constant K on the volume V is
 M = 2 K c c^T + 2 T C at rest, with c and C the first and second derivatives of V by e and T = K (V - rest). The energy is equal up
 to second order in e, so that small deformations are those of the network and large ones are not.
+Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
+to rest.
 """
 import sys
 from pathlib import Path
 
 import mujoco
 import numpy as np
-from settle import settle
+from settle import judge, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -111,14 +114,23 @@ def model(material=None):
     return m
 
 
+def start(m, forces=None):
+    """The body at rest, and forces on its points, [points, 3], N."""
+    d = mujoco.MjData(m)
+    if forces is not None:
+        free = m.flex_vertbodyid > 0
+        d.xfrc_applied[m.flex_vertbodyid[free], :3] = forces[free]
+    return d
+
+
 def positions(m, d):
     return d.flexvert_xpos.copy()
 
 
-def come_to_rest(material=None):
+def come_to_rest(material=None, forces=None):
     """Positions at rest."""
     m = model(material)
-    d = mujoco.MjData(m)
+    d = start(m, forces)
     weight = m.body_mass[m.dof_bodyid]
 
     def damp(factor):
@@ -130,12 +142,16 @@ def come_to_rest(material=None):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--rest"]:
-        np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
+    forces, given = taken(net, sys.argv[1:])
+    if given[:1] == ["--rest"]:
+        x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
+        np.save(given[1], x)
     else:
         m = model()
-        d = mujoco.MjData(m)
-        for _ in range(round(float((sys.argv[1:] or [2])[0]) / step)):
+        d = start(m, forces)
+        for _ in range(round(float((given or [2])[0]) / step)):
             mujoco.mj_step(m, d)
-        moved = np.linalg.norm(positions(m, d) - points, axis=1)
+        x = positions(m, d)
+        moved = np.linalg.norm(x - points, axis=1)
         print(f"{len(points)} points, {d.time:g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")
+    judge(net, x)

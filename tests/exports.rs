@@ -339,3 +339,72 @@ fn jolt_has_no_edge_without_force() {
     let body: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(body["edges"].as_array().unwrap().len(), count - 2);
 }
+
+/// The header and the bytes of an array in a file of NumPy.
+fn array(archive: &[u8], name: &str) -> (String, Vec<u8>) {
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(archive)).unwrap();
+    let mut bytes = Vec::new();
+    std::io::Read::read_to_end(&mut archive.by_name(&format!("{name}.npy")).unwrap(), &mut bytes).unwrap();
+    let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    (String::from_utf8(bytes[10..10 + length].to_vec()).unwrap(), bytes[10 + length..].to_vec())
+}
+
+fn reals(archive: &[u8], name: &str) -> Vec<f64> {
+    array(archive, name).1.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+fn wholes(archive: &[u8], name: &str) -> Vec<i32> {
+    array(archive, name).1.chunks_exact(4).map(|b| i32::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+/// `--gravity`, then that of the network, then 9.81 m/s² against the last axis: in arrays alone as in scripts, in space and in the plane.
+#[test]
+fn arrays_have_the_gravity_of_the_help() {
+    let plane = SCENE.replace("tet4", "tri3").replace("[1, 1, 1]", "[1, 1]").replace("[2, 2, 2]", "[2, 2]");
+    let plane = plane.replace("zmin", "ymin").replace("density", "plane = \"strain\"\ndensity");
+    let plane = networks(plane.split("[[fit]]\nname = \"patches\"").next().unwrap());
+    let mut moved = networks(SCENE).remove("exact").unwrap();
+    let of = |target: &str, network: &NetworkRecord, gravity: Option<&[f64]>| {
+        let files = target_named(target).unwrap().files(network, gravity).unwrap();
+        let bytes =
+            files.into_iter().find_map(|(_, content)| if let Content::Bytes(b) = content { Some(b) } else { None });
+        reals(&bytes.unwrap(), "gravity")
+    };
+    for target in ["npz", "newton"] {
+        assert_eq!(of(target, &moved, None), [0.0, 0.0, -9.81], "{target}");
+        assert_eq!(of(target, &moved, Some(&[1.0, 0.0, 0.0])), [1.0, 0.0, 0.0], "{target}");
+    }
+    assert_eq!(of("npz", &plane["exact"], None), [0.0, -9.81, 0.0]);
+    moved.gravity = Some(vec![0.0, 2.0, 0.0]);
+    assert_eq!(of("npz", &moved, None), [0.0, 2.0, 0.0]);
+}
+
+/// Forces by load and point, in sum those of the scene, and points that a load moves.
+#[test]
+fn arrays_have_the_loads_by_name() {
+    let loads = "[[load]]\nname = \"pöke\"\ngroup = \"zmax\"\nforce = [0, 3, -2]\n[[load]]\nname = \"turn\"\ngroup = \"zmax\"\n\
+                 displacement = [\"-0.1*y\", \"0.1*x\", \"free\"]\n";
+    let network = &networks(&format!("{SCENE}{loads}"))["exact"];
+    let bytes = &texts("npz", network)["network.npz"];
+    let (header, names) = array(bytes, "load_names");
+    assert!(header.contains("'descr': '<U4', 'fortran_order': False, 'shape': (2,)"), "{header}");
+    let letters: String =
+        names.chunks_exact(4).filter_map(|b| char::from_u32(u32::from_le_bytes(b.try_into().unwrap()))).collect();
+    assert_eq!(letters, "pöketurn");
+    let (of, points, forces) = (wholes(bytes, "load_of"), wholes(bytes, "load_points"), reals(bytes, "load_forces"));
+    assert_eq!((of.len(), points.len(), forces.len()), (9, 9, 27));
+    assert!(of.iter().all(|of| *of == 0) && points.iter().all(|&p| network.points[p as usize][2] == 1.0));
+    for (k, total) in [0.0, 3.0, -2.0].into_iter().enumerate() {
+        let sum: f64 = forces.iter().skip(k).step_by(3).sum();
+        assert!((sum - total).abs() < 1e-14, "{sum}");
+    }
+    let (of, points, moved) = (wholes(bytes, "moved_of"), wholes(bytes, "moved_points"), reals(bytes, "moved"));
+    assert_eq!((of.len(), points.len(), moved.len()), (9, 9, 27));
+    for (&p, u) in points.iter().zip(moved.chunks_exact(3)) {
+        let x = &network.points[p as usize];
+        assert!(u[0] == -0.1 * x[1] && u[1] == 0.1 * x[0] && u[2].is_nan(), "{x:?} {u:?}");
+    }
+    // Without loads the arrays are there, and empty.
+    let bytes = &texts("npz", &networks(SCENE)["exact"])["network.npz"];
+    assert!(array(bytes, "load_names").0.contains("'shape': (0,)") && reals(bytes, "load_forces").is_empty());
+}

@@ -50,7 +50,7 @@ impl Export {
         let gravity = self.gravity.as_deref().map(numbers).transpose()?;
         let is_network = self.network.extension().is_some_and(|ending| ending == "json");
         let mut inputs = vec![self.network.clone()];
-        let (network, has_loads) = if is_network { (self.read()?, false) } else { self.fitted(terminal, &mut inputs)? };
+        let network = if is_network { self.read()? } else { self.fitted(terminal, &mut inputs)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
         let written = write_files(&files, &folder, &inputs)?;
@@ -58,8 +58,17 @@ impl Export {
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
         }
-        if has_loads {
-            terminal.note("the loads of the scene are not exported: supports and gravity are");
+        if !network.loads.is_empty() {
+            let names: Vec<String> = network.loads.iter().map(|load| format!("\"{}\"", load.name)).collect();
+            let names = names.join(", ");
+            let has_arrays = files.iter().any(|(name, _)| *name == "network.npz");
+            terminal.note(&match (has_arrays, target.command.is_empty()) {
+                (true, false) => format!(
+                    "the loads {names} act where the script is given --load NAME, and are arrays of network.npz"
+                ),
+                (true, true) => format!("the loads {names} are arrays of network.npz"),
+                (false, _) => format!("the loads {names} are not exported: supports and gravity are"),
+            });
         }
         target.left_out(&network).iter().for_each(|words| terminal.note(words));
         if !target.command.is_empty() {
@@ -77,8 +86,8 @@ impl Export {
         read_network(&self.network)
     }
 
-    /// The network of one fit of a scene, and whether the scene has loads; adds the files of the scene to `inputs`.
-    fn fitted(&self, terminal: &mut Terminal, inputs: &mut Vec<PathBuf>) -> Result<(NetworkRecord, bool)> {
+    /// The network of one fit of a scene; adds the files of the scene to `inputs`.
+    fn fitted(&self, terminal: &mut Terminal, inputs: &mut Vec<PathBuf>) -> Result<NetworkRecord> {
         let scene = self.settings.scene(&self.network)?;
         inputs.extend(scene.inputs());
         let names = || scene.fits().iter().map(|fit| fit.name.as_str());
@@ -93,7 +102,7 @@ impl Export {
         let scene = scene.with_fits(fits);
         let mut outcome = run_with(&scene, &Controls::default(), &mut |event| terminal.show(event))?;
         outcome.command = Some(command());
-        Ok((NetworkFile::of(&outcome, &outcome.fits[0]).record(), !scene.loads().is_empty()))
+        Ok(NetworkFile::of(&outcome, &outcome.fits[0]).record())
     }
 }
 

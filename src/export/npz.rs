@@ -1,7 +1,7 @@
 //! Arrays of NumPy.
 
 use super::extent::check_parts;
-use super::job::Job;
+use super::job::{Job, spatial};
 use super::target::{Content, NamedFile, Target, content_dampers};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
@@ -17,8 +17,8 @@ pub const TARGET: Target = Target {
 };
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
-    let mut network = network.clone();
-    network.gravity = gravity.map(<[f64]>::to_vec).or(network.gravity);
+    let gravity = spatial(gravity, network)[..network.dimension].to_vec();
+    let network = NetworkRecord { gravity: Some(gravity), ..network.clone() };
     let mut bytes = Cursor::new(Vec::new());
     let parts = Parts::of(&network)?;
     check_parts(&parts)?;

@@ -40,10 +40,10 @@ pub fn write_files(files: &[NamedFile], folder: &Path, inputs: &[PathBuf]) -> Re
     edition.publish()
 }
 
-/// What a script in Python says where it takes in the rule by which bodies come to rest, and that rule.
-const SETTLING: [&str; 2] = ["from settle import settle\n", include_str!("../../exports/settle.py")];
+/// What a script in Python says where it takes in how bodies are loaded, come to rest and are judged, and that text.
+const SETTLING: [&str; 2] = ["from settle import judge, settle, taken\n", include_str!("../../exports/settle.py")];
 
-/// A script in Python, which stands alone: the rule by which it comes to rest is put where it is imported.
+/// A script in Python, which stands alone: what scripts have in common is put where it is imported.
 pub(super) fn script(text: &str) -> Content {
     let [import, rule] = SETTLING;
     Content::Bytes(text.replacen(import, &format!("\n\n{}\n\n", rule.trim_end()), 1).into_bytes())

@@ -135,8 +135,16 @@ fn numbers(kind: &str, bytes: &[u8]) -> Option<Vec<Value>> {
         "Int64" => words(bytes).map(|x| json!(i64::from_le_bytes(x))).collect(),
         "Int32" | "<i4" => words(bytes).map(|x| json!(i32::from_le_bytes(x))).collect(),
         "UInt8" => words::<1>(bytes).map(|x| json!(x[0])).collect(),
-        _ => return None,
+        _ => {
+            let letters: usize = kind.strip_prefix("<U")?.parse().ok()?;
+            bytes.chunks_exact(4 * letters).map(|text| json!(letters_of(text))).collect()
+        }
     })
+}
+
+/// A text in UTF-32, filled up with zeros.
+fn letters_of(bytes: &[u8]) -> String {
+    words(bytes).map(u32::from_le_bytes).take_while(|&c| c != 0).filter_map(char::from_u32).collect()
 }
 
 /// The bytes in groups of the same number.

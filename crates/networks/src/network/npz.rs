@@ -2,11 +2,12 @@
 
 use super::lists::ListedRecord;
 use super::parts::Parts;
-use super::record::NetworkRecord;
+use super::record::{HeldRecord, NetworkRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
 use crate::mesh::Mesh;
 use crate::model::Network;
+use std::collections::HashMap;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 use zip::ZipWriter;
@@ -24,6 +25,9 @@ use zip::write::SimpleFileOptions;
 /// | `surface` | t × 3, i32 | triangles |
 /// | `fixed` | i32 | points that are held in all directions |
 /// | `held` | n × 3, f64 | prescribed displacements, m; NaN where a point is free |
+/// | `load_names` | l, text | the loads of the scene |
+/// | `load_of`, `load_points`, `load_forces` | f, i32; f, i32; f × 3, f64 | each a force on a point: the place of the load, the point, N |
+/// | `moved_of`, `moved_points`, `moved` | h, i32; h, i32; h × 3, f64 | each a point that is held under a load in another way than in `held`: the place of the load, the point, m; NaN where it is free |
 /// | `gravity` | 3, f64 | m/s²; zero where there is none |
 /// | `damping` | f64 | Rayleigh's α, 1/s |
 /// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
@@ -54,11 +58,9 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
     to: impl Write + Seek,
 ) -> io::Result<()> {
     let d = network.dimension;
-    let spatial = |x: &[f64]| [0, 1, 2].map(|k| x.get(k).copied().unwrap_or(0.0));
     let free = vec![[f64::NAN; 3]; network.points.len()];
     let held = network.held.iter().fold(free, |mut held, given| {
-        let values = given.displacement.iter().map(|u| u.unwrap_or(f64::NAN));
-        held[given.point].iter_mut().zip(values).for_each(|(held, value)| *held = value);
+        held[given.point] = prescribed(given);
         held
     });
     let fixed = network.held.iter().filter(|given| given.displacement.iter().all(Option::is_some));
@@ -81,11 +83,41 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
     file.whole("surface", &[network.surface.len(), 3], network.surface.iter().flatten().copied())?;
     file.whole("fixed", &[fixed.clone().count()], fixed.map(|given| given.point))?;
     file.real("held", &[network.points.len(), 3], held.into_iter().flatten())?;
+    loads_of(network, &mut file)?;
     let gravity = network.gravity.as_deref().unwrap_or_default();
     file.real("gravity", &[3], spatial(gravity))?;
     file.real("damping", &[], [network.damping.mass])?;
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
     file.finish().map(drop)
+}
+
+/// The coordinates of a vector, with z = 0 in the plane.
+fn spatial(x: &[f64]) -> [f64; 3] {
+    [0, 1, 2].map(|k| x.get(k).copied().unwrap_or(0.0))
+}
+
+/// The displacement of a held point, NaN where it is free; in the plane also along z.
+fn prescribed(held: &HeldRecord) -> [f64; 3] {
+    [0, 1, 2].map(|k| held.displacement.get(k).copied().flatten().unwrap_or(f64::NAN))
+}
+
+/// Writes the loads: forces on points, and the points whose support is another one than without the load.
+fn loads_of<S, C>(network: &NetworkRecord<S, C>, file: &mut ArrayFile<impl Write + Seek>) -> io::Result<()> {
+    let names: Vec<&str> = network.loads.iter().map(|load| load.name.as_str()).collect();
+    file.texts("load_names", &names)?;
+    let all = || network.loads.iter().enumerate();
+    let forces = || all().flat_map(|(of, load)| load.forces.iter().map(move |force| (of, force)));
+    let count = forces().count();
+    file.whole("load_of", &[count], forces().map(|(of, _)| of))?;
+    file.whole("load_points", &[count], forces().map(|(_, force)| force.point))?;
+    file.real("load_forces", &[count, 3], forces().flat_map(|(_, force)| spatial(&force.force)))?;
+    let usual: HashMap<usize, &HeldRecord> = network.held.iter().map(|held| (held.point, held)).collect();
+    let own = |held: &&HeldRecord| usual.get(&held.point) != Some(held);
+    let moved = || all().flat_map(|(of, load)| load.held.iter().filter(own).map(move |held| (of, held)));
+    let count = moved().count();
+    file.whole("moved_of", &[count], moved().map(|(of, _)| of))?;
+    file.whole("moved_points", &[count], moved().map(|(_, held)| held.point))?;
+    file.real("moved", &[count, 3], moved().flat_map(|(_, held)| prescribed(held)))
 }
 
 /// A file of arrays of NumPy that is being made.
@@ -105,6 +137,19 @@ impl<W: Write + Seek> ArrayFile<W> {
     /// The file is too large, or the writer fails.
     pub fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
         self.array(name, "<f8", shape, values.into_iter().map(f64::to_le_bytes))
+    }
+
+    /// Adds a list of texts, each filled up with zeros to the longest, in UTF-32.
+    ///
+    /// # Errors
+    /// The file is too large, or the writer fails.
+    pub fn texts(&mut self, name: &str, texts: &[&str]) -> io::Result<()> {
+        let longest = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
+        let filled = |text: &&str| -> Vec<u32> {
+            text.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest).collect()
+        };
+        let letters = texts.iter().flat_map(filled).map(u32::to_le_bytes);
+        self.array(name, &format!("<U{longest}"), &[texts.len()], letters)
     }
 
     /// Adds an array of 32-bit whole numbers.

@@ -3,6 +3,7 @@
     python run.py            two seconds of motion, then where the points are
     python run.py 5          five seconds
     python run.py --rest F   comes to rest and writes the positions to the file F
+    python run.py --load N   any of these under the load N of the scene as well
     python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
 
 What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoCo's energy of a tetrahedron is
@@ -10,6 +11,8 @@ What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoC
 and rest length L is M_aa = k/(2 L^2) in one tetrahedron that has the edge; a spring of constant K on the volume V is
 M = 2 K c c^T + 2 T C at rest, with c and C the first and second derivatives of V by e and T = K (V - rest). The energy is equal up
 to second order in e, so that small deformations are those of the network and large ones are not.
+Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
+to rest.
 """
 import sys
 from pathlib import Path
@@ -20,8 +23,9 @@ import numpy as np
 
 def settle(advance, energy, damp, periods):
     """Advances until a body is at rest. The first maximum of the kinetic energy is after a quarter of the slowest motion; from then on
-    all velocities are multiplied so that this motion hardly swings, for so many quarters as long."""
-    highest = quarter = count = 0
+    all velocities are multiplied so that this motion hardly swings, for so many quarters as long. The program ends with 1 where the
+    kinetic energy is then above a ten-thousandth of that maximum, which is within reach of numbers of 32 bits."""
+    highest = quarter = count = moving = 0
     while not quarter or count <= periods * quarter:
         advance()
         moving = energy()
@@ -33,6 +37,43 @@ def settle(advance, energy, damp, periods):
             continue
         quarter = quarter or max(count, 3)
         damp(np.exp(-np.pi / quarter))
+    if moving > 1e-4 * highest:
+        sys.exit(f"the body has not come to rest: its kinetic energy is still {moving / highest:.2g} of the highest")
+
+
+def taken(net, arguments):
+    """The forces [points, 3], N, of the load that --load names, and the other arguments."""
+    forces = np.zeros((len(net["points"]), 3))
+    if "--load" not in arguments:
+        return forces, arguments
+    place = arguments.index("--load")
+    name, names = "".join(arguments[place + 1 : place + 2]), net["load_names"].tolist()
+    if name not in names:
+        sys.exit(f"--load: expected one of {names}, found {name!r}")
+    number = names.index(name)
+    if np.any(net["moved_of"] == number):
+        sys.exit(f"--load: expected a load of forces, found {name!r}, which moves points: move them in the program")
+    own = net["load_of"] == number
+    forces[net["load_points"][own]] = net["load_forces"][own]
+    return forces, arguments[:place] + arguments[place + 2 :]
+
+
+def inverted(net, x):
+    """The number of simplices of the mesh that are inside out at the positions x."""
+    cells = net["tets"]
+    if not len(cells):
+        return 0
+    d = cells.shape[1] - 1
+    content = lambda x: np.linalg.det(x[cells[:, 1:], :d] - x[cells[:, :1], :d])
+    return int(np.sum(~(content(np.asarray(x, float)) * content(net["points"]) > 0)))
+
+
+def judge(net, x):
+    """Ends with 1 and says why if the motion has diverged, or cells of the mesh are inside out at the positions x."""
+    if not np.all(np.isfinite(x)):
+        sys.exit("the motion has diverged")
+    if count := inverted(net, x):
+        sys.exit(f"{count} of {len(net['tets'])} cells are inside out: the load is beyond what the springs stand")
 
 
 folder = Path(__file__).parent
@@ -128,14 +169,23 @@ def model(material=None):
     return m
 
 
+def start(m, forces=None):
+    """The body at rest, and forces on its points, [points, 3], N."""
+    d = mujoco.MjData(m)
+    if forces is not None:
+        free = m.flex_vertbodyid > 0
+        d.xfrc_applied[m.flex_vertbodyid[free], :3] = forces[free]
+    return d
+
+
 def positions(m, d):
     return d.flexvert_xpos.copy()
 
 
-def come_to_rest(material=None):
+def come_to_rest(material=None, forces=None):
     """Positions at rest."""
     m = model(material)
-    d = mujoco.MjData(m)
+    d = start(m, forces)
     weight = m.body_mass[m.dof_bodyid]
 
     def damp(factor):
@@ -147,12 +197,16 @@ def come_to_rest(material=None):
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--rest"]:
-        np.save(sys.argv[2], come_to_rest(tuple(map(float, sys.argv[3:])) or None))
+    forces, given = taken(net, sys.argv[1:])
+    if given[:1] == ["--rest"]:
+        x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
+        np.save(given[1], x)
     else:
         m = model()
-        d = mujoco.MjData(m)
-        for _ in range(round(float((sys.argv[1:] or [2])[0]) / step)):
+        d = start(m, forces)
+        for _ in range(round(float((given or [2])[0]) / step)):
             mujoco.mj_step(m, d)
-        moved = np.linalg.norm(positions(m, d) - points, axis=1)
+        x = positions(m, d)
+        moved = np.linalg.norm(x - points, axis=1)
         print(f"{len(points)} points, {d.time:g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")
+    judge(net, x)
