@@ -372,3 +372,56 @@ fn a_thickness_that_varies_is_no_modulus() {
         assert!((frobenius.young.unwrap() / 1e4 - 1.0).abs() < 0.1, "{plane} {thickness}: {frobenius:?}");
     }
 }
+
+/// Sheets that meet in a T: 14 points of a narrow sheet with a stub across it, as one of the cells (of which the plane through all points
+/// crosses the others), and a patch of a second layer on a sheet, whose rim is not in equilibrium under an affine strain. The exact network
+/// is the material at any thickness, and is not recommended about itself.
+#[test]
+fn sheets_that_meet_or_lie_over_others_are_the_material() {
+    let grid = |text: &str, points: &[[f64; 3]], cells: &[[usize; 4]]| {
+        let lines = |rows: Vec<String>| rows.join("\n");
+        let points_text = lines(points.iter().map(|[x, y, z]| format!("{x} {y} {z}")).collect());
+        let cells_text = lines(cells.iter().map(|[a, b, c, d]| format!("4 {a} {b} {c} {d}")).collect());
+        let (n, m) = (points.len(), cells.len());
+        format!(
+            "# vtk DataFile Version 3.0\n{text}\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} double\n{points_text}\nCELLS {m} {}\n\
+             {cells_text}\nCELL_TYPES {m}\n{}\n",
+            5 * m,
+            "9\n".repeat(m)
+        )
+    };
+    let z = 0.166667;
+    let mut tee: Vec<[f64; 3]> =
+        [4.0, 6.0, 8.0, 10.0, 12.0, 14.0].iter().flat_map(|y| [[2.0, *y, z], [2.0, *y, -z]]).collect();
+    tee.extend([[4.0, 12.0, z], [4.0, 12.0, -z]]);
+    let mut of_tee: Vec<[usize; 4]> = (0..5).map(|i| [2 * i + 1, 2 * i, 2 * i + 2, 2 * i + 3]).collect();
+    of_tee.push([9, 8, 12, 13]);
+    // 5 x 5 cells whose last column is bent up; the second layer has one point of its own.
+    let mut sheet: Vec<[f64; 3]> = Vec::new();
+    for j in 0..6 {
+        sheet.extend((0..7).map(|i| [f64::from(i.min(5)), f64::from(j), f64::from((i - 5).max(0))]));
+    }
+    let place = |i: usize, j: usize| 7 * j + i;
+    let cell = |(i, j): (usize, usize)| [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+    let mut of_sheet: Vec<[usize; 4]> = (0..5).flat_map(|j| (0..6).map(move |i| (i, j))).map(cell).collect();
+    sheet.push([2.1, 2.1, 0.0]);
+    for (i, j) in [(1, 1), (2, 1), (1, 2), (2, 2)] {
+        of_sheet.push(cell((i, j)).map(|p| if p == place(2, 2) { 42 } else { p }));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for (name, points, cells) in [("tee", &tee, &of_tee), ("sheet", &sheet, &of_sheet)] {
+        std::fs::write(folder.path().join("m.vtk"), grid(name, points, cells)).unwrap();
+        for thickness in ["1e-6", "1e-3", "0.1", "10"] {
+            let text = format!(
+                "[mesh]\nfile = \"m.vtk\"\n[material]\nyoung = 1e4\npoisson = 0.3\nthickness = {thickness}\n\
+                 [[fit]]\nobjective = \"exact\"\n"
+            );
+            let scene = Scene::parse(&text, &folder.path().join("s.toml")).unwrap();
+            let outcome = run(&scene, &mut |_| {}).unwrap();
+            let material = Material::for_body(2, 1e4, 0.3, None, Some(1.0)).unwrap();
+            is_material(&outcome.fits[0].as_material, material, &format!("{name} {thickness}"));
+            let notes = springfit::report::notes(&outcome).join("\n");
+            assert!(!notes.contains("is not the material"), "{notes}");
+        }
+    }
+}

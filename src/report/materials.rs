@@ -33,8 +33,9 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
         (None, Some(young), None) => format!("the materials there have {young:.4e} Pa"),
         (None, None, _) => "the materials differ from cell to cell".into(),
     };
-    // Exact networks are those of isotropic materials.
-    let remedy = if outcome.material.materials().is_ok() { ". The objective \"exact\" has no such error" } else { "" };
+    // Exact networks are those of isotropic materials, and are not recommended in place of themselves.
+    let has_remedy = outcome.material.materials().is_ok() && fit.kind.exact().is_none();
+    let remedy = if has_remedy { ". The objective \"exact\" has no such error" } else { "" };
     Some(format!("{name}: the network is not the material: {off} ({of}; {asked}){remedy}"))
 }
 

@@ -12,6 +12,8 @@ pub(super) struct Plane {
     directions: DMatrix<f64>,
     /// The root mean square distance of the points from it, relative to their extent.
     pub(super) height: f64,
+    /// The least cosine of the angle between it and a cell. Where sheets or curves meet it may be zero although the height is small.
+    pub(super) along: f64,
 }
 
 impl Plane {
@@ -19,18 +21,17 @@ impl Plane {
     pub(super) fn of(sample: &Sample, d: usize) -> Plane {
         let space = sample.mesh.dimension;
         if d == space {
-            return Plane { directions: DMatrix::identity(d, d), height: 0.0 };
+            return Plane { directions: DMatrix::identity(d, d), height: 0.0, along: 1.0 };
         }
-        let x = DMatrix::from_column_slice(space, sample.points.len(), &sample.mesh.points);
-        let mean = x.column_mean();
-        let centred = DMatrix::from_fn(space, x.ncols(), |k, p| x[(k, p)] - mean[k]);
-        let svd = centred.svd(true, false);
-        let directions = svd.u.expect("it was asked for");
-        let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
-        order.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
-        let columns: Vec<DVector<f64>> = order[..d].iter().map(|&k| directions.column(k).into_owned()).collect();
-        let height = order.get(d).map_or(0.0, |&k| svd.singular_values[k] / svd.singular_values[order[0]]);
-        Plane { directions: DMatrix::from_columns(&columns), height }
+        let (directions, height) = fitted(&sample.mesh.points, space, d);
+        let cells = sample.mesh.blocks.iter().flat_map(|block| block.cells());
+        let along = cells.map(|nodes| {
+            let x: Vec<f64> = nodes.iter().flat_map(|&p| sample.mesh.point(p)).copied().collect();
+            let (of_cell, _) = fitted(&x, space, d);
+            directions.tr_mul(&of_cell).singular_values().min()
+        });
+        let along = along.fold(1.0, f64::min);
+        Plane { directions, height, along }
     }
 
     /// The projection of a coordinate axis onto the plane.
@@ -52,6 +53,21 @@ impl Plane {
         }
         DMatrix::from_columns(&axes)
     }
+}
+
+/// Orthonormal directions, `[space × d]`, of the plane or line that fits points best, and their root mean square distance from it,
+/// relative to their extent.
+fn fitted(points: &[f64], space: usize, d: usize) -> (DMatrix<f64>, f64) {
+    let x = DMatrix::from_column_slice(space, points.len() / space, points);
+    let mean = x.column_mean();
+    let centred = DMatrix::from_fn(space, x.ncols(), |k, p| x[(k, p)] - mean[k]);
+    let svd = centred.svd(true, false);
+    let directions = svd.u.expect("it was asked for");
+    let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
+    order.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
+    let columns: Vec<DVector<f64>> = order[..d].iter().map(|&k| directions.column(k).into_owned()).collect();
+    let height = order.get(d).map_or(0.0, |&k| svd.singular_values[k] / svd.singular_values[order[0]]);
+    (DMatrix::from_columns(&columns), height)
 }
 
 /// The order in which the coordinate axes give the samples their axes: first those that lie in the planes. The axes of

@@ -26,6 +26,10 @@ const POINTS: usize = 30;
 /// Motions in the plane of a cap with this height see its cells tilted by 10° at most, by which their stiffness changes
 /// by 1.5 %, as that of the finite elements does.
 const FLAT: f64 = 0.05;
+/// Samples with a cell whose angle to their plane has a smaller cosine than this have fewer points: where sheets meet, as in a T, the
+/// plane through all points crosses some of them, and a strain in it meets no stiffness there. The bound is 30°; smoothly bent sheets
+/// of the height above stay below it.
+const ALONG: f64 = 0.866;
 /// Heights above the plane of a sample, relative to its size, that are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
@@ -129,7 +133,7 @@ pub fn network_material(
         };
         let found = tensor(sample, &piece, &directions);
         let (found, asked) = match own.moduli() {
-            CellMap::Uniform(one) if plane.height > ROUNDING => {
+            CellMap::Uniform(one) if plane.height > ROUNDING || sample.is_joined => {
                 let asked = of_material(&one, dimension);
                 (flattened(found, body_tensor(sample, CellMap::Uniform(one), &directions), &asked), asked)
             }
@@ -190,7 +194,7 @@ fn flat_sample(stars: &Stars, seed: usize, dimension: usize) -> (Sample, Plane) 
     let counts = std::iter::successors(Some(POINTS), |count| Some(count / 2)).take_while(|count| *count > 0);
     let mut samples = counts.map(|count| with_plane(stars.sample(seed, count)));
     samples
-        .find(|(_, plane)| plane.height <= FLAT)
+        .find(|(_, plane)| plane.height <= FLAT && plane.along >= ALONG)
         .unwrap_or_else(|| with_plane(stars.single(stars.around(seed).next().expect("every point belongs to a cell"))))
 }
 

@@ -29,6 +29,9 @@ pub(super) struct Sample {
     pub(super) cells: Vec<Vec<usize>>,
     /// The points that are not on the surface of the body and whose cells are all in the sample.
     pub(super) interior: Vec<usize>,
+    /// Whether three cells or more share a side, as where sheets meet or cells lie over others. Cells of one material are then not in
+    /// equilibrium under an affine strain.
+    pub(super) is_joined: bool,
 }
 
 impl<'a> Stars<'a> {
@@ -137,8 +140,24 @@ impl<'a> Stars<'a> {
             is_held[end] |= is_single;
         }
         let interior = (0..points.len()).filter(|&place| !is_held[place]).collect();
-        Sample { mesh, points, places, cells: own, interior }
+        let is_joined = is_joined(&mesh);
+        Sample { mesh, points, places, cells: own, interior, is_joined }
     }
+}
+
+/// Whether three cells or more share a side.
+fn is_joined(mesh: &Mesh) -> bool {
+    let mut counts: HashMap<Vec<usize>, usize> = HashMap::new();
+    for block in &mesh.blocks {
+        for nodes in block.cells() {
+            for side in block.element.sides() {
+                let mut points: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
+                points.sort_unstable();
+                *counts.entry(points).or_default() += 1;
+            }
+        }
+    }
+    counts.values().any(|count| *count > 2)
 }
 
 /// The end points of cells that are lines, which have no sides, and whether only one cell ends there.
