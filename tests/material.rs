@@ -422,6 +422,8 @@ fn sheets_that_meet_or_lie_over_others_are_the_material() {
             is_material(&outcome.fits[0].as_material, material, &format!("{name} {thickness}"));
             let notes = springfit::report::notes(&outcome).join("\n");
             assert!(!notes.contains("is not the material"), "{notes}");
+            // The four cells of the second layer and those below them; sheets that meet are not told.
+            assert_eq!(outcome.mesh.quality.overlapping, if name == "sheet" { 8 } else { 0 });
         }
     }
 }

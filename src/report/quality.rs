@@ -62,6 +62,13 @@ pub(super) fn quality_lines(quality: &Quality) -> Vec<String> {
             "{count} points lie on edges or faces whose cells do not have them as nodes (hanging nodes)"
         ));
     }
+    if quality.overlapping > 0 {
+        let (cells, _, _) = with_verbs(quality.overlapping, "cell");
+        let lie = if quality.overlapping == 1 { "lies" } else { "lie" };
+        lines.push(format!(
+            "{cells} {lie} over others on the same side of an edge or face that they share: the body is there twice"
+        ));
+    }
     if let Some(count) = quality.pieces.filter(|count| *count > 1) {
         lines.push(format!("the mesh has {count} pieces that share no node"));
     }

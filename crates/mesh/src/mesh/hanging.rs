@@ -26,9 +26,9 @@ struct Host<'a> {
 impl Mesh {
     /// The number of points on an edge or a face of a cell that does not have them, anywhere on it. Points at the
     /// position of one of its own do not count. Only sides on the boundary are tested: no point lies on a side that two
-    /// cells share, unless a cell is folded.
-    pub(super) fn hanging(&self, places: &Places) -> usize {
-        let hosts = self.hosts();
+    /// cells share, unless a cell is folded. Cells that lie over others of what they share are added to `overlapping`.
+    pub(super) fn hanging(&self, places: &Places, overlapping: &mut HashSet<CellIndex>) -> usize {
+        let hosts = self.hosts(overlapping);
         let mut candidates: Vec<usize> = hosts.iter().flat_map(|host| host.points.iter().copied()).collect();
         candidates.sort_unstable();
         candidates.dedup();
@@ -68,7 +68,7 @@ impl Mesh {
         hanging.len()
     }
 
-    fn hosts(&self) -> Vec<Host<'_>> {
+    fn hosts(&self, overlapping: &mut HashSet<CellIndex>) -> Vec<Host<'_>> {
         let element = |at: CellIndex| &*self.blocks[at.block].element;
         if self.cell_dimension() == 1 {
             let host = |at: CellIndex| {
@@ -81,6 +81,7 @@ impl Mesh {
         }
         let mut hosts = Vec::new();
         self.each_side_set(|sides| {
+            self.add_overlapping(sides, overlapping);
             if let [index] = sides {
                 let element = element(index.cell);
                 let side = element.cell.sides()[index.side];

@@ -31,6 +31,7 @@ mod mesh;
 mod nastran;
 mod numbering;
 mod numpy;
+mod overlaps;
 mod places;
 mod polytope;
 mod quality;

@@ -85,6 +85,8 @@ pub struct Quality {
     /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`, and for
     /// meshes that are generated or divided.
     pub hanging: Option<usize>,
+    /// The number of cells that lie over others on the same side of an edge or a face that they share.
+    pub overlapping: usize,
     /// The fill of a surface, beside it.
     pub filled: Option<Filled>,
     /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.

@@ -84,7 +84,9 @@ impl Mesh {
         let left_out = self.quality.skipped + self.quality.duplicates + self.quality.folded > 0;
         let places = if left_out { Places::of(self) } else { places };
         self.quality.coincident = places.as_ref().map(Places::coincident);
-        self.quality.hanging = places.map(|places| self.hanging(&places));
+        let mut overlapping = HashSet::new();
+        self.quality.hanging = places.map(|places| self.hanging(&places, &mut overlapping));
+        self.quality.overlapping = overlapping.len();
         self.quality.pieces = Some(self.pieces().len());
         Ok(())
     }
