@@ -729,16 +729,7 @@ fn lumped_masses_are_positive() {
         // The reference cell itself, pulled to another shape.
         let points: Vec<f64> = points.iter().enumerate().map(|(i, x)| x * (1.0 + 0.3 * (i % d) as f64)).collect();
         let block = springfit::mesh::CellBlock { element: Arc::new(element), connectivity: (0..nodes).collect() };
-        let mesh = Mesh {
-            dimension: d,
-            points,
-            blocks: vec![block],
-            groups: Default::default(),
-            reversed: 0,
-            unused_points: 0,
-            numbering: None,
-            quality: Default::default(),
-        };
+        let mesh = Mesh::of_cells(d, points, vec![block]);
         let rows = masses(&mesh, 1000.0, 0.5);
         let hrz = lumped_masses(&mesh, 1000.0, 0.5, Lumping::Hrz);
         assert_eq!(lumped_masses(&mesh, 1000.0, 0.5, Lumping::RowSum), rows);

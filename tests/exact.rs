@@ -38,16 +38,11 @@ fn valid(element: &Element, random: &mut Random) -> Vec<f64> {
 
 /// A mesh of one cell with its nodes at `x`, `[nodes × space]`.
 fn single(element: &Arc<Element>, x: &[f64]) -> Mesh {
-    Mesh {
-        dimension: element.space(),
-        points: x.to_vec(),
-        blocks: vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
-        groups: Default::default(),
-        reversed: 0,
-        unused_points: 0,
-        numbering: None,
-        quality: Default::default(),
-    }
+    Mesh::of_cells(
+        element.space(),
+        x.to_vec(),
+        vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
+    )
 }
 
 fn cells(mesh: &Mesh, material: Material, fit: ExactFit) -> CellFits {

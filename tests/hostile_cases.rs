@@ -1,5 +1,6 @@
 //! Small inputs that were once answered wrongly: each stands for a kind, which a test of its subject proves.
 
+use springfit::study::{Scene, Standard, run};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -115,4 +116,99 @@ fn too_little_memory_ends_in_words() {
         assert!(!said.contains("panicked"), "{megabytes} MB: {said}");
     }
     assert!(tried > 10, "{tried}");
+}
+
+/// A soft half that hardly changes its volume beside a hard one: linear elements lock, and are no measure of the networks.
+const LOCKING: &str = r#"
+[mesh]
+box = { element = "tet4", size = [10, 1, 1], cells = [20, 2, 2] }
+scale = "mm"
+[[material]]
+where = "x > 5e-3 - 1e-9"
+young = "200 GPa"
+poisson = 0.3
+[[material]]
+young = "1 kPa"
+poisson = 0.4999
+[[fit]]
+objective = "exact"
+[[fit]]
+objective = "exact"
+volume = "patches"
+[[fix]]
+group = "xmin"
+[[load]]
+name = "shear"
+group = "xmax"
+traction = [0, 10, 0]
+"#;
+
+#[test]
+fn elements_that_lock_are_no_measure() {
+    let errors = |reference: &str| {
+        let scene = Scene::parse(&(LOCKING.to_string() + reference), Path::new("bar.toml")).unwrap();
+        let outcome = run(&scene, &mut |_| {}).unwrap();
+        let tips = outcome.fits.iter().map(|fit| fit.loads[0].error.unwrap().tip).collect::<Vec<f64>>();
+        (tips, outcome.loads[0].measured)
+    };
+    // The tip of the exact network has 0.7 % of the motion under the truth, that of the patches 35 to 37 %.
+    let (tips, measured) = errors("");
+    assert!((tips[0] - 99.3).abs() < 0.1 && (63.0..66.0).contains(&tips[1]), "{tips:?}");
+    let measured = measured.unwrap();
+    assert_eq!((measured.standard, measured.points), (Standard::QuadraticHalved, 189));
+    let own = measured.uncertainty.unwrap();
+    assert!(own.rms > 0.5 && own.tip < 5.0, "{own:?}");
+    // Where the scene asks for it.
+    let (tips, measured) = errors("[reference]\nfrom = \"cells\"\n");
+    assert!(tips[0] < 0.01 && tips[1] > 1000.0 && measured.is_none(), "{tips:?}");
+}
+
+/// The program says first that it compares with elements that do not lock, or that it cannot.
+#[test]
+fn what_errors_are_relative_to_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |text: &str| {
+        fs::write(folder.path().join("s.toml"), text).unwrap();
+        let (output, said) = springfit(folder.path(), "run s.toml --out out");
+        assert!(output.status.success(), "{said}");
+        String::from_utf8_lossy(&output.stdout).into_owned() + &said
+    };
+    let said = run(LOCKING);
+    for words in [
+        "shear, quadratic",
+        "finite elements",
+        "of quadratic elements on these cells, halved at 189 points, which themselves are right to",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let point =
+        LOCKING.replace("group = \"xmax\"\ntraction", "where = \"x > 0.00999 && y > 0.00099 && z > 0.00099\"\nforce");
+    let said = run(&point);
+    assert!(said.contains("acts on points alone") && !said.contains("quadratic elements on"), "{said}");
+    let large = "mesh = { box = { element = \"tet4\", size = [1, 0.1, 0.1], cells = [80, 8, 8] } }\nmaterial = { young = 1e4, poisson = 0.45 }\n\
+                 fit = [{ objective = \"exact\" }]\nfix = [{ group = \"xmin\" }]\nload = [{ group = \"xmax\", traction = [1, 0, 0] }]\n";
+    let said = run(large);
+    assert!(
+        said.contains("quadratic elements would take more than 3 times as long") && !said.contains(", quadratic"),
+        "{said}"
+    );
+}
+
+/// A load that moves the body by twice its size is refused as a result in the first line.
+#[test]
+fn what_is_far_beyond_the_linear_theory_is_not_trusted() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("s.toml"),
+        SQUARE.to_string()
+            + "fix = [{ group = \"xmin\" }]\nload = [{ name = \"pull\", group = \"xmax\", traction = [3e4, 0] }]\n",
+    )
+    .unwrap();
+    let (output, said) = springfit(folder.path(), "run s.toml --out out");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        printed
+            .starts_with("NOT TRUSTED: the linear finite elements move by more than the body's own size under pull ("),
+        "{printed}{said}"
+    );
 }

@@ -13,9 +13,8 @@ use std::sync::Arc;
 
 fn one_cell(element: &Element, points: Vec<f64>) -> Mesh {
     let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
-    let (groups, quality) = Default::default();
     let dimension = element.dimension();
-    Mesh { dimension, points, blocks: vec![block], groups, reversed: 0, unused_points: 0, numbering: None, quality }
+    Mesh::of_cells(dimension, points, vec![block])
 }
 
 /// Reference positions under an affine map.

@@ -49,9 +49,7 @@ fn strains_and_rotations_are_those_of_the_gradient() {
             .collect();
         let connectivity = (0..element.nodes()).collect();
         let blocks = vec![CellBlock { element: Arc::new(element), connectivity }];
-        let (groups, quality) = Default::default();
-        let mesh =
-            Mesh { dimension: d, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality };
+        let mesh = Mesh::of_cells(d, points, blocks);
         let found = Deformation::largest(&mesh, &u);
         let strain = ((&h + h.transpose()) / 2.0).symmetric_eigenvalues().amax();
         let rotation = ((&h - h.transpose()) / 2.0).norm() / 2f64.sqrt();

@@ -85,6 +85,7 @@ mod sampled_search;
 mod sampling;
 mod schema;
 mod searches;
+mod selections;
 mod settings;
 mod shapes;
 mod shards;

@@ -60,16 +60,11 @@ fn lifted(mesh: &Mesh, is_bent: bool) -> Mesh {
 
 /// A mesh of one cell with its nodes at `x`.
 fn single(element: &Arc<Element>, x: Vec<f64>) -> Mesh {
-    Mesh {
-        dimension: element.space(),
-        points: x,
-        blocks: vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
-        groups: Default::default(),
-        reversed: 0,
-        unused_points: 0,
-        numbering: None,
-        quality: Default::default(),
-    }
+    Mesh::of_cells(
+        element.space(),
+        x,
+        vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
+    )
 }
 
 fn fitted(mesh: &Mesh, material: Material, entry: FitEntry) -> FitOutcome {

@@ -85,16 +85,11 @@ fn errors_of_cells_side_by_side_are_those_of_their_matrices() {
             for (name, fits) in fits(&element, &points, &nodes, material) {
                 let errors = element_errors(&element, &points, &nodes, material.moduli(), &fits).unwrap();
                 let what = format!("{} {name} {material:?}", element.name);
-                let mesh = Mesh {
-                    dimension: d,
-                    points: points.clone(),
-                    blocks: vec![CellBlock { element: element.clone(), connectivity: nodes.clone() }],
-                    groups: Default::default(),
-                    reversed: 0,
-                    unused_points: 0,
-                    numbering: None,
-                    quality: Default::default(),
-                };
+                let mesh = Mesh::of_cells(
+                    d,
+                    points.clone(),
+                    vec![CellBlock { element: element.clone(), connectivity: nodes.clone() }],
+                );
                 let size = points.len();
                 let r = dense(size, &finite_elements(&mesh, material.moduli()));
                 let k = dense(size, &Network::assemble(&mesh, std::slice::from_ref(&fits)).stiffness(&points));

@@ -71,16 +71,11 @@ fn check(network: &Network, points: &[f64], random: &mut Random, name: &str) {
 
 /// A mesh of one cell with its nodes at `x`, `[nodes × space]`.
 fn single(element: &Arc<Element>, x: Vec<f64>) -> Mesh {
-    Mesh {
-        dimension: element.space(),
-        points: x,
-        blocks: vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
-        groups: Default::default(),
-        reversed: 0,
-        unused_points: 0,
-        numbering: None,
-        quality: Default::default(),
-    }
+    Mesh::of_cells(
+        element.space(),
+        x,
+        vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
+    )
 }
 
 fn valid(element: &Element, random: &mut Random) -> Vec<f64> {

@@ -14,7 +14,6 @@ use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{Elastic, Entries, Network};
 use springfit::springs::Springs;
 use springfit::study::{EffectiveModuli, Lattice};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 const THIRD: f64 = 1.0 / 3.0;
@@ -80,16 +79,7 @@ fn all_close(found: &[f64], expected: f64, digits: f64) {
 
 fn single(element: &Element, x: &[f64]) -> Mesh {
     let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
-    Mesh {
-        dimension: element.space(),
-        points: x.to_vec(),
-        blocks: vec![block],
-        groups: BTreeMap::new(),
-        reversed: 0,
-        unused_points: 0,
-        numbering: None,
-        quality: Default::default(),
-    }
+    Mesh::of_cells(element.space(), x.to_vec(), vec![block])
 }
 
 fn boxed(element: &Element, size: &[f64], cells: usize) -> Mesh {

@@ -90,7 +90,7 @@ fn standard_body(standard: &StandardScene, poisson: f64, progress: &mut Progress
     let refined = [told, Setting::parse(standard.truth.trim())?];
     let refined = Scene::parse_with(standard.text, Path::new(&path), &refined)?.with_fits(Vec::new());
     let limits = converge(&refined, None, progress)?.loads;
-    let outcome = run(&scene, progress)?;
+    let outcome = run(&scene.clone().judged_by_cells(), progress)?;
     let missing = |what: &str| Error::new(format!("{path} has no {what}"));
     let masses = outcome.masses.as_deref().ok_or_else(|| missing("density"))?;
     let support = outcome.support.as_ref().ok_or_else(|| missing("support"))?;

@@ -47,13 +47,7 @@ pub fn convergence_tables(convergence: &Convergence) -> Vec<Table> {
 
 fn load_title(convergence: &Convergence, load: &LoadConvergence) -> String {
     let truth = truth_text(load.truth.as_ref(), convergence.reference.as_deref());
-    let trust = match load.truth {
-        Some(_) if !convergence.is_one_problem => {
-            "; it is not to be trusted, because the levels are different problems (see the notes)"
-        }
-        _ => "",
-    };
-    format!("{}: {truth}{trust}", load.name)
+    format!("{}: {truth}", load.name)
 }
 
 fn load_rows(convergence: &Convergence, load: &LoadConvergence) -> Vec<Vec<String>> {

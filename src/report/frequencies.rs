@@ -2,7 +2,7 @@
 
 use super::table::Digits::{Signed, Significant};
 use super::table::{Cell, Column, Table};
-use crate::study::{FrequencyOutcome, Outcome};
+use crate::study::{FrequencyOutcome, Outcome, Standard};
 
 /// One row per model, a network's frequencies with their distance from those of the finite elements.
 pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
@@ -40,7 +40,8 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
     let note = |model: &FrequencyOutcome| {
         model.reason.as_ref().map(|why| format!("{}: no natural frequencies: {why}", model.name))
     };
-    let has_finer = outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.is_of_finer));
+    let has_finer =
+        outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.standard == Standard::FinerBody));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
     let compared = (has_finer && outcome.frequencies.len() > 1).then(|| words.to_string());
     outcome.frequencies.iter().filter_map(note).chain(compared).collect()

@@ -61,7 +61,7 @@ pub struct Report {
     pub deformations: Vec<DeformationRecord>,
     /// The scene did not ask for these stages; each entry has the reason.
     pub left_out: Vec<String>,
-    /// Each entry is a load under which displacements were measured.
+    /// Each entry is a load whose errors are not relative to the finite elements of the mesh, but to a measurement or to a finer solution.
     pub measured: Vec<MeasuredRecord>,
     /// Each entry has what the tension test of the finite elements gives under a load; the list is empty without `[gauge]`.
     pub gauge: Vec<Option<Reading>>,

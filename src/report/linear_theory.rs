@@ -2,7 +2,7 @@
 
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome};
+use crate::study::{BodyLoad, ModelMotion, Outcome, extent};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +46,26 @@ fn of_load(load: &BodyLoad) -> Option<(&BodyLoad, Deformation)> {
 
 fn moved(outcome: &Outcome) -> Option<&ModelMotion> {
     outcome.motion.as_ref()?.models.first()
+}
+
+/// That no figure under a load is to be trusted: linear finite elements move by more than the body's own size.
+pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
+    let (d, size) = (outcome.mesh.dimension, extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
+    let length = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
+    let moved = |load: &BodyLoad| load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
+    let linear = outcome.loads.iter().filter(|load| load.deformation.is_some());
+    let beyond: Vec<String> = linear
+        .map(|load| (load, moved(load)))
+        .filter(|(_, moved)| !(*moved <= size))
+        .map(|(load, moved)| format!("{} ({:.0} % of the body)", load.name, 100.0 * moved / size))
+        .collect();
+    (!beyond.is_empty()).then(|| {
+        format!(
+            "NOT TRUSTED: the linear finite elements move by more than the body's own size under {}: the load or a unit is wrong, or \
+             the body needs a law at large deformation",
+            beyond.join(", ")
+        )
+    })
 }
 
 /// Which loads the linear theory is too small for, and the motion.

@@ -2,21 +2,37 @@
 
 use crate::number::finite;
 use crate::solve::Solved;
-use crate::study::{BodyLoad, Followed, LoadOutcome, Reading};
+use crate::study::{BodyLoad, Followed, LoadOutcome, Reading, Standard};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A load under which displacements were measured.
+/// A load whose errors are not relative to the finite elements of the mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeasuredRecord {
     /// The load has this name.
     pub load: String,
-    /// This number of points has a measured displacement.
+    /// Errors are relative to displacements from there.
+    #[serde(default)]
+    pub standard: Standard,
+    /// This number of points has a known displacement; 0 says that the errors are not known.
     pub points: usize,
-    /// The finite elements have this root mean square distance from the measured displacements, percent of the largest.
+    /// The finite elements have this root mean square distance from the known displacements, percent of the largest.
     pub fem_e_rms: Option<f64>,
-    /// The finite elements have this largest distance from the measured displacements, percent of the largest.
+    /// The finite elements have this largest distance from the known displacements, percent of the largest.
     pub fem_e_max: Option<f64>,
+    /// The finite elements have this error at the point that moves most, percent of the largest displacement.
+    #[serde(default)]
+    pub fem_e_tip: Option<f64>,
+    /// The finite elements have this error of the compliance, percent; it is null where displacements were measured.
+    #[serde(default)]
+    pub fem_e_energy: Option<f64>,
+    /// The known displacements are themselves right to about this root mean square distance, percent of the largest; it is null where that
+    /// is not known.
+    #[serde(default)]
+    pub uncertainty_rms: Option<f64>,
+    /// The known displacements are themselves right to about this largest distance, percent of the largest.
+    #[serde(default)]
+    pub uncertainty_max: Option<f64>,
 }
 
 /// The answer of a network to a load.
@@ -48,14 +64,19 @@ pub struct LoadRecord {
 }
 
 impl MeasuredRecord {
-    /// `None` if nothing was measured under the load.
+    /// `None` if errors under the load are relative to the finite elements.
     pub(super) fn of(load: &BodyLoad) -> Option<MeasuredRecord> {
         let measured = load.measured?;
         Some(MeasuredRecord {
             load: load.name.clone(),
+            standard: measured.standard,
             points: measured.points,
             fem_e_rms: measured.error.and_then(|e| finite(e.rms)),
             fem_e_max: measured.error.and_then(|e| finite(e.max)),
+            fem_e_tip: measured.error.and_then(|e| finite(e.tip)),
+            fem_e_energy: measured.work_error.and_then(finite),
+            uncertainty_rms: measured.uncertainty.and_then(|e| finite(e.rms)),
+            uncertainty_max: measured.uncertainty.and_then(|e| finite(e.max)),
         })
     }
 }

@@ -2,13 +2,13 @@
 
 use super::agreement::{Agreement, agreements};
 use super::frequencies::frequency_notes;
-use super::linear_theory::linear_notes;
+use super::linear_theory::{distrust, linear_notes};
 use super::materials::material_note;
 use super::motion::motion_notes;
-use crate::mesh::Filled;
+use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, GaugeResult, Outcome};
+use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
@@ -21,12 +21,16 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
     let finite = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
     let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
     let measured = outcome.loads.iter().filter_map(|load| {
-        let measured = load.measured?;
+        let measured = load.measured.filter(|measured| measured.points > 0)?;
         let error = measured.error.map_or("-".into(), |e| format!("e_rms / e_max {:.2} / {:.2} %", e.rms, e.max));
-        let by = if measured.is_of_finer { "of the finer body" } else { "measured" };
+        let own = measured
+            .uncertainty
+            .map_or(String::new(), |e| format!(", which themselves are right to about {:.2} / {:.2} %", e.rms, e.max));
         Some(format!(
-            "errors under {} are relative to the displacements {by} at {} points; finite elements: {error}",
-            load.name, measured.points
+            "errors under {} are relative to the displacements {} at {} points{own}; finite elements: {error}",
+            load.name,
+            measured.standard.words(),
+            measured.points
         ))
     });
     let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
@@ -35,10 +39,10 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
         let why = "it requires a force along its axis that acts on one side of it only";
         format!("the gauge has no reading under {}: {why}", load.name)
     });
-    let notes = outcome
-        .assumed
-        .iter()
-        .cloned()
+    let notes = distrust(outcome)
+        .into_iter()
+        .chain(outcome.assumed.iter().cloned())
+        .chain(spurious(outcome))
         .chain(fibres(outcome))
         .chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off))
         .chain(outcome.of_loads.iter().cloned())
@@ -50,6 +54,19 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
         .chain(own)
         .chain(starts.iter().map(agreed));
     notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
+}
+
+/// That the rule of an element leaves motions without stiffness.
+fn spurious(outcome: &Outcome) -> Vec<String> {
+    let note = |block: &CellBlock| {
+        let (name, modes) = (&block.element.name, spurious_modes(&block.element).filter(|modes| *modes > 0)?);
+        let count = if modes == 1 { "1 motion that deforms".into() } else { format!("{modes} motions that deform") };
+        Some(format!(
+            "the rule of {name} gives {count} a cell no stiffness (spurious modes): finite elements and fits do not see them, and errors relative to \
+             R have no meaning there"
+        ))
+    };
+    outcome.mesh.blocks.iter().filter_map(note).collect()
 }
 
 /// That what is linear does not know the fibres of the law.

@@ -3,12 +3,12 @@
 use super::fit_record::FitRecord;
 use super::frequencies::frequencies;
 use super::json::Report;
-use super::load_record::LoadRecord;
+use super::load_record::{LoadRecord, MeasuredRecord};
 use super::motion::motions;
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::{First, Third};
 use super::table::{Cell, Column, Table};
-use crate::study::{Reading, SampledOutcome};
+use crate::study::{BODY, Reading, SampledOutcome};
 
 impl Table {
     /// All tables for which the report has results.
@@ -86,13 +86,19 @@ fn standing(report: &Report) -> Option<String> {
     words.into_iter().find(|(status, _)| all(status)).map(|(_, words)| words.to_string())
 }
 
+/// What errors under a load are relative to, unless it is the finite elements of the mesh.
+fn measured<'a>(report: &'a Report, load: &LoadRecord) -> Option<&'a MeasuredRecord> {
+    report.measured.iter().find(|known| known.load == load.name)
+}
+
 fn errors(report: &Report) -> Table {
     let loads = loads(report);
     // A gauge that reads has a reading of the finite elements.
     let is_read = |load: usize| report.gauge.get(load).is_some_and(Option::is_some);
     let mut columns = vec![Column::words("fit")];
     for (i, load) in loads.iter().enumerate() {
-        let column = |title| Column::numbers(title).unit("%").group(&*load.name);
+        let standard = measured(report, load).map_or("", |known| known.standard.heading());
+        let column = |title| Column::numbers(title).unit("%").group(format!("{}{standard}", load.name));
         columns.extend(["e_rms", "e_max"].map(|title| column(title).priority(First)));
         columns.extend(["e_tip", "e_energy"].map(column));
         if is_read(i) {
@@ -100,9 +106,12 @@ fn errors(report: &Report) -> Table {
             columns.extend([gauge("E").unit("Pa"), gauge("ν")]);
         }
     }
+    let errors = |[rms, max, tip, energy]: [Option<f64>; 4]| -> Vec<Cell> {
+        let error = |error| Cell::number(error, Fixed(2));
+        vec![error(rms), error(max), error(tip), Cell::number(energy, Signed(2))]
+    };
     let cells = |(i, load): (usize, &LoadRecord)| {
-        let mut cells = [load.e_rms, load.e_max, load.e_tip].map(|error| Cell::number(error, Fixed(2))).to_vec();
-        cells.push(Cell::number(load.e_energy, Signed(2)));
+        let mut cells = errors([load.e_rms, load.e_max, load.e_tip, load.e_energy]);
         if is_read(i) {
             let reading = |of: fn(Reading) -> f64| load.gauge.map(of);
             cells.push(Cell::number(reading(|reading| reading.young), Significant(5)));
@@ -113,7 +122,22 @@ fn errors(report: &Report) -> Table {
     let row = |fit: &FitRecord| {
         std::iter::once(Cell::from(&*fit.name)).chain(fit.loads.iter().enumerate().flat_map(cells)).collect()
     };
-    let rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
+    let mut rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
+    if !report.measured.is_empty() && !rows.is_empty() {
+        let of_body = |(i, load): (usize, &LoadRecord)| {
+            let known = measured(report, load);
+            let mut cells = known.map_or_else(
+                || errors([Some(0.0); 4]),
+                |known| errors([known.fem_e_rms, known.fem_e_max, known.fem_e_tip, known.fem_e_energy]),
+            );
+            if let Some(reading) = report.gauge.get(i).copied().flatten() {
+                cells.push(Cell::number(Some(reading.young), Significant(5)));
+                cells.push(Cell::number(Some(reading.poisson), Fixed(3)));
+            }
+            cells
+        };
+        rows.push(std::iter::once(Cell::from(BODY)).chain(loads.iter().enumerate().flat_map(of_body)).collect());
+    }
     let title = "Errors of the displacements in percent of the largest; e_energy is that of the compliance";
     Table::new("errors", title, columns, rows)
 }

@@ -1,6 +1,7 @@
 //! What was modelled, and the tables of a run on the terminal.
 
 use super::json::Report;
+use super::linear_theory::distrust;
 use super::quality::{changes, counted, quality_lines};
 use super::region_record::RegionRecord;
 use super::table::{Table, run_text};
@@ -35,7 +36,8 @@ pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
     let given =
         if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
-    let mut text = format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
+    let mut text = distrust(outcome).map_or(String::new(), |words| format!("{}\n", printable(&words)));
+    text += &format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
     for line in changes(mesh) {
         writeln!(text, "{line}").expect("a String grows");
     }

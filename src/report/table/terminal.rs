@@ -55,8 +55,7 @@ pub(in crate::report) fn run_text(tables: &[Table]) -> String {
     let mut below = String::new();
     for table in tables {
         let beside = strips(table, Priority::First..=Priority::First);
-        let names = usize::from(!first.is_empty());
-        first.extend(beside.into_iter().skip(names));
+        beside_each_other(&mut first, beside);
         let own = strips(table, Priority::Second..=Priority::Second);
         if !own.is_empty() {
             below += &format!("\n{}\n{}", ascii(&table.title), within(own, page));
@@ -64,6 +63,21 @@ pub(in crate::report) fn run_text(tables: &[Table]) -> String {
         below += &notes(table);
     }
     within(first, page) + &below
+}
+
+/// Puts the columns of a table beside those of others with the same first rows; what has more rows names them.
+fn beside_each_other(first: &mut Vec<Strip>, mut beside: Vec<Strip>) {
+    if first.is_empty() || beside.is_empty() {
+        first.extend(beside);
+        return;
+    }
+    let names = beside.remove(0);
+    if names.entries.len() > first[0].entries.len() {
+        first[0].entries = names.entries;
+    }
+    first.extend(beside);
+    let rows = first[0].entries.len();
+    first.iter_mut().for_each(|strip| strip.entries.resize(rows, String::new()));
 }
 
 fn notes(table: &Table) -> String {

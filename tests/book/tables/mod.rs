@@ -11,6 +11,7 @@ mod motion;
 mod paper;
 mod readme;
 mod stability;
+mod truths;
 mod whole;
 
 use super::markdown::{page, pages, root};
@@ -42,7 +43,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 13] = [
+const MAKERS: [Maker; 14] = [
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),
     ("elements", choice::elements, true, Kept::ToRounding),
@@ -56,6 +57,7 @@ const MAKERS: [Maker; 13] = [
     ("membrane", motion::membrane, false, Kept::ToRounding),
     ("paper-1", paper::first, true, Kept::Roughly),
     ("stability", stability::table, true, Kept::Magnitude),
+    ("truths", truths::table, true, Kept::ToRounding),
 ];
 
 /// A scene of the folder `scenes`.

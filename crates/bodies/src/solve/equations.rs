@@ -70,6 +70,7 @@ impl Equations {
         support: &Support,
         (solver, loads): (StaticSolver, usize),
     ) -> Result<Option<Equations>> {
+        let solver = solver.suited(mesh, moduli);
         if solver.iterates(mesh, loads) {
             let found = BlockStiffness::of_body(mesh, moduli, 1, 1)
                 .and_then(|stiffness| Equations::iterated(stiffness, &mesh.points, support, solver));

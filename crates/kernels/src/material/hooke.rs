@@ -147,6 +147,17 @@ impl Hooke {
         }
     }
 
+    /// The least stiffness against one strain alone, Pa: μ, or the least entry on the diagonal of D.
+    pub fn least_diagonal(&self) -> f64 {
+        match self {
+            Hooke::Isotropic(moduli) => moduli.mu,
+            Hooke::Anisotropic(stiffness) => {
+                let s = strains(stiffness.dimension);
+                stiffness.entries.iter().step_by(s + 1).fold(f64::INFINITY, |least, entry| least.min(*entry))
+            }
+        }
+    }
+
     /// D by rows in this dimension, and the λ of [`Stiffness::lambda`].
     pub fn entries(&self, dimension: usize) -> (Vec<f64>, f64) {
         match self {

@@ -28,6 +28,9 @@ const FARTHEST: f64 = 3.0;
 /// The multiples that are tried.
 const MULTIPLES: [f64; 9] = [1.0 + 1e-8, 1.02, 1.08, 1.2, 1.4, 1.6, 2.0, 2.5, FARTHEST];
 const ITERATIONS: usize = 30;
+/// A shape function below this vanishes at a point: places in cells are found to rounding, and cells that were halved six times have
+/// functions of 1/64.
+const VANISHING: f64 = 1e-6;
 
 impl Embedding {
     /// Finds the cells of `points`, `[points × dimension]`, m.
@@ -65,6 +68,13 @@ impl Embedding {
         let d = self.dimension;
         let at = |row: &[(usize, f64)], k: usize| row.iter().map(|(a, n)| n * values[a * d + k]).sum();
         self.rows.iter().flat_map(|row| (0..d).map(move |k| at(row, k))).collect()
+    }
+
+    /// The given points, ascending, where only functions of selected points of the mesh do not vanish: those on its selected points, and on
+    /// edges, sides and cells with all points selected.
+    pub(super) fn carried_by(&self, is_selected: &[bool]) -> Vec<usize> {
+        let is_carried = |row: &[(usize, f64)]| row.iter().all(|&(a, n)| is_selected[a] || n.abs() < VANISHING);
+        (0..self.rows.len()).filter(|&p| is_carried(&self.rows[p])).collect()
     }
 
     /// The forces on the points of the mesh that do the same work as forces on the given points, both `[points · dimension]`.

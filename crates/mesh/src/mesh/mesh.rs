@@ -3,6 +3,7 @@
 use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
+use crate::symbolic::Predicate;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -17,6 +18,9 @@ pub struct Mesh {
     pub blocks: Vec<CellBlock>,
     /// The groups by name.
     pub groups: BTreeMap<String, Group>,
+    /// Conditions with the points that they select, ascending, where these were chosen on a coarser mesh of the body, see
+    /// [`Mesh::choose`].
+    pub conditions: Vec<(Predicate, Vec<usize>)>,
     /// The number of cells that were numbered in the opposite order and have been reversed.
     pub reversed: usize,
     /// The number of points of the file that belong to no cell and were removed.
@@ -67,6 +71,13 @@ pub struct SideIndex {
     pub side: usize,
 }
 
+impl Group {
+    /// Whether it has points and no sides, edges or cells.
+    pub fn is_of_points(&self) -> bool {
+        self.sides.is_empty() && self.edges.is_empty() && self.cells.is_empty()
+    }
+}
+
 impl CellBlock {
     /// The points of a cell, `[nodes]`.
     ///
@@ -84,10 +95,15 @@ impl CellBlock {
 }
 
 impl Mesh {
+    /// Points, `[points × dimension]`, m, and cells on them, without groups. The cells are not checked.
+    pub fn of_cells(dimension: usize, points: Vec<f64>, blocks: Vec<CellBlock>) -> Mesh {
+        let (groups, conditions, quality) = Default::default();
+        Mesh { dimension, points, blocks, groups, conditions, reversed: 0, unused_points: 0, numbering: None, quality }
+    }
+
     /// Points without cells, of which a mesh is built.
     pub(super) fn of_points(dimension: usize, points: Vec<f64>) -> Mesh {
-        let (blocks, groups, quality) = Default::default();
-        Mesh { dimension, points, blocks, groups, reversed: 0, unused_points: 0, numbering: None, quality }
+        Mesh::of_cells(dimension, points, Vec::new())
     }
 
     /// The number of points.
@@ -209,6 +225,10 @@ impl Mesh {
             renumber(&mut group.points);
             group.points.dedup();
             group.sides.iter_mut().chain(&mut group.edges).for_each(renumber);
+        }
+        for (_, points) in &mut self.conditions {
+            points.retain(|&p| new[p] != usize::MAX);
+            points.iter_mut().for_each(|p| *p = new[*p]);
         }
     }
 }

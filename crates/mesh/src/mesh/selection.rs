@@ -1,5 +1,6 @@
 //! Parts of a mesh, selected by group name or by a condition on the coordinates.
 
+use super::embedding::Embedding;
 use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
 use crate::error::{Error, Result};
 use crate::named::unknown;
@@ -11,7 +12,7 @@ pub enum Selection {
     /// The points, sides and cells of the group with this name.
     Group(String),
     /// The points whose coordinates x, y (, z) in m satisfy the condition, and the boundary sides and the cells with
-    /// all points selected.
+    /// all points selected. A mesh on which the condition was chosen before its cells were divided has the same part, see [`Mesh::choose`].
     Where(Predicate),
     /// All points, boundary sides and cells.
     Everything,
@@ -25,9 +26,10 @@ impl Selection {
     pub fn points(&self, mesh: &Mesh) -> Result<Vec<usize>> {
         Ok(match self {
             Selection::Group(name) => group(mesh, name)?.points.clone(),
-            Selection::Where(condition) => {
-                (0..mesh.point_count()).filter(|&p| condition.holds(mesh.point(p))).collect()
-            }
+            Selection::Where(condition) => match mesh.conditions.iter().find(|(chosen, _)| chosen == condition) {
+                Some((_, points)) => points.clone(),
+                None => (0..mesh.point_count()).filter(|&p| condition.holds(mesh.point(p))).collect(),
+            },
             Selection::Everything => (0..mesh.point_count()).collect(),
         })
     }
@@ -68,6 +70,29 @@ impl Selection {
                 Ok(whole_cells(mesh, &is_selected(mesh, &self.points(mesh)?)))
             }
         }
+    }
+}
+
+impl Mesh {
+    /// Chooses what conditions select, on this mesh and on all into which its cells are divided: a point of a divided cell is selected where
+    /// all points whose shape functions do not vanish there are. What is held, loaded or of one material is therefore the same part of the body
+    /// on every mesh, whatever the condition says between the points of this one.
+    pub fn choose(&mut self, conditions: impl IntoIterator<Item = Predicate>) {
+        for condition in conditions {
+            let selection = Selection::Where(condition.clone());
+            let points = selection.points(self).expect("a condition is no group that may be missing");
+            if !self.conditions.iter().any(|(chosen, _)| *chosen == condition) {
+                self.conditions.push((condition, points));
+            }
+        }
+    }
+
+    /// Takes what conditions select over from a coarser mesh of the same body, in whose cells the points of this one have these places.
+    pub fn choose_as_on(&mut self, coarse: &Mesh, places: &Embedding) {
+        let taken = |(condition, points): &(Predicate, Vec<usize>)| {
+            (condition.clone(), places.carried_by(&is_selected(coarse, points)))
+        };
+        self.conditions = coarse.conditions.iter().map(taken).collect();
     }
 }
 

@@ -242,16 +242,7 @@ fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
         CellBlock { element: block.element.clone(), connectivity }
     };
     let blocks = mesh.blocks.iter().map(&mut first).collect();
-    Mesh {
-        dimension: mesh.dimension,
-        points,
-        blocks,
-        groups: BTreeMap::new(),
-        reversed: 0,
-        unused_points: 0,
-        numbering: None,
-        quality: mesh.quality.clone(),
-    }
+    Mesh { quality: mesh.quality.clone(), ..Mesh::of_cells(mesh.dimension, points, blocks) }
 }
 
 /// The seconds of the loads with the finite elements and with each network.

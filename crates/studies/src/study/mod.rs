@@ -21,6 +21,7 @@ mod fits;
 mod fitting;
 mod forecast;
 mod keys;
+mod locking;
 mod masses;
 mod outcome;
 mod own_name;
@@ -34,7 +35,7 @@ mod stretches;
 mod sweep;
 mod time;
 
-pub use crate::analysis::check::{Inspection, Mark, Property, inspect};
+pub use crate::analysis::check::{Inspection, Mark, Property, inspect, spurious_modes};
 pub use crate::analysis::metrics::{DisplacementError, displacement_error};
 pub use crate::analysis::moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use crate::analysis::shapes::random_shapes;
@@ -63,7 +64,7 @@ pub use forecast::{ExpectedStage, Forecast};
 pub use masses::{PointMasses, point_masses};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
-    MotionEnding, MotionOutcome, Outcome, Reading, Record, TimedForce, TimedPull, standing_word,
+    MotionEnding, MotionOutcome, Outcome, Reading, Record, Standard, TimedForce, TimedPull, standing_word,
 };
 pub use own_name::BODY;
 pub use paper::{

@@ -9,3 +9,4 @@ mod springs;
 
 pub use inspection::{Inspection, inspect};
 pub use property::{Mark, Property};
+pub use shape::spurious_modes;

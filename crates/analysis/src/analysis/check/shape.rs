@@ -52,6 +52,15 @@ pub fn rank(r: &DMatrix<f64>) -> usize {
     eigenvalues.iter().filter(|e| **e > floor).count()
 }
 
+/// The number of motions of the nodes that deform a cell of this element and have no stiffness at the points of its rule, of the reference
+/// shape; `None` if that is tangled.
+pub fn spurious_modes(element: &Element) -> Option<usize> {
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, &element.positions).ok()?;
+    let r = geometry.stiffness(Moduli { lambda: 1.0, mu: 1.0 });
+    Some(deformations(element).saturating_sub(rank(&r)))
+}
+
 fn stiffness(element: &Element) -> Property {
     let expected = deformations(element);
     let mut least = expected;

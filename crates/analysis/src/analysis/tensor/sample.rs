@@ -1,7 +1,7 @@
 //! Samples of a mesh: the cells around some neighbouring points.
 
-use crate::mesh::{CellBlock, Mesh, Quality, Selection};
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use crate::mesh::{CellBlock, Mesh, Selection};
+use std::collections::{HashMap, VecDeque};
 
 /// The number of points of a sample at which no further cells are added, because its equations are solved densely.
 const ENOUGH: usize = 150;
@@ -119,16 +119,11 @@ impl<'a> Stars<'a> {
             let connectivity = cells.iter().flat_map(|cell| block.cell(*cell)).map(|point| places[point]).collect();
             CellBlock { element: block.element.clone(), connectivity }
         };
-        let mesh = Mesh {
-            dimension: self.mesh.dimension,
-            points: points.iter().flat_map(|&point| self.mesh.point(point)).copied().collect(),
-            blocks: self.mesh.blocks.iter().zip(&own).map(block).collect(),
-            groups: BTreeMap::new(),
-            reversed: 0,
-            unused_points: 0,
-            numbering: None,
-            quality: Quality::default(),
-        };
+        let mesh = Mesh::of_cells(
+            self.mesh.dimension,
+            points.iter().flat_map(|&point| self.mesh.point(point)).copied().collect(),
+            self.mesh.blocks.iter().zip(&own).map(block).collect(),
+        );
         let mut is_held: Vec<bool> =
             points.iter().map(|&p| self.around(p).any(|cell| cells.binary_search(&cell).is_err())).collect();
         for side in Selection::Everything.sides(&mesh).expect("everything is no group") {

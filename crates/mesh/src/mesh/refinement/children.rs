@@ -38,6 +38,13 @@ pub fn children(cell: Cell, diagonal: usize) -> Vec<Child> {
     }
 }
 
+/// A reference cell as a whole.
+pub fn whole(cell: Cell) -> Vec<Child> {
+    let d = cell.dimension();
+    let edge = |k: usize| (0..d).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
+    vec![Child { cell, map: Affine { origin: vec![0.0; d], edges: (0..d).map(edge).collect() } }]
+}
+
 /// The cell halved in all directions.
 fn halved(origin: Vec<f64>) -> Affine {
     let d = origin.len();

@@ -1,4 +1,5 @@
-//! The tetrahedra that fill the gaps between the pyramids of a divided pyramid.
+//! Elements that take the place of others: the tetrahedra that fill the gaps between the pyramids of a divided pyramid, and elements
+//! with quadratic functions.
 
 use crate::element::{Cell, Element, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
@@ -15,11 +16,40 @@ pub fn filling(element: &Element, cell: Cell, known: &[Arc<Element>]) -> Result<
     if let Some(found) = known.iter().find(|other| fits(other)) {
         return Ok(found.clone());
     }
-    let shipped = SHIPPED.iter().filter_map(|file| Element::shipped(file).ok());
-    shipped.into_iter().find(fits).map(Arc::new).ok_or_else(|| {
+    shipped(fits).ok_or_else(|| {
         let expected = format!("an element of tetrahedra whose triangles have the nodes of those of {}", element.name);
         Error::expected("mesh", expected, "none").of_kind(ErrorKind::Unsupported)
     })
+}
+
+/// The shipped element with the same cell whose nodes are the corners and the middles of the edges. On sides it has the same functions as that
+/// of any other cell, so that cells of several kinds stay connected.
+///
+/// # Errors
+/// The element has further nodes than its corners, or no shipped element is the quadratic one.
+pub fn quadratic(element: &Element) -> Result<Arc<Element>> {
+    let (cell, linear) = (element.cell, element.cell.corners().len());
+    let expected = |words: &str| Error::expected("mesh", words, &element.name).of_kind(ErrorKind::Unsupported);
+    if element.nodes() != linear {
+        return Err(expected("cells whose nodes are their corners"));
+    }
+    let corners = cell.corners();
+    let middle = |[a, b]: [usize; 2]| corners[a].iter().zip(corners[b]).map(|(a, b)| (a + b) / 2.0).collect();
+    let edges: Vec<[usize; 2]> = if cell.dimension() == 1 { vec![[0, 1]] } else { cell.edges() };
+    let middles: Vec<Vec<f64>> = edges.into_iter().map(middle).collect();
+    let wanted = |at: &[f64]| {
+        let is_at = |place: &[f64]| place.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9);
+        corners.iter().any(|place| is_at(place)) || middles.iter().any(|place| is_at(place))
+    };
+    let fits = |other: &Element| {
+        let mut places = other.positions.chunks_exact(other.dimension());
+        other.cell == cell && other.nodes() == linear + middles.len() && places.all(wanted)
+    };
+    shipped(fits).ok_or_else(|| expected("cells of which an element with quadratic functions is shipped"))
+}
+
+fn shipped(fits: impl Fn(&Element) -> bool) -> Option<Arc<Element>> {
+    SHIPPED.iter().filter_map(|file| Element::shipped(file).ok()).find(fits).map(Arc::new)
 }
 
 /// The positions of the nodes of the first triangular side, in units of 2⁻²⁰ of its legs, sorted.

@@ -1,4 +1,4 @@
-//! Uniform refinement: every cell is divided so that all edges are halved.
+//! Finer meshes of the same body: every cell is divided so that all edges are halved, or gets quadratic functions.
 
 mod children;
 mod filling;
@@ -12,10 +12,10 @@ use crate::element::{Cell, Element};
 use crate::error::Result;
 use crate::springs::distance;
 use children::DIAGONALS;
-use filling::filling;
+use filling::{filling, quadratic};
 use memberships::Memberships;
 use pattern::Pattern;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// Lengths that differ by less than this share are equal, so that rounding does not choose the diagonal.
@@ -29,15 +29,35 @@ impl Mesh {
     /// kept: curved cells stay curved if the shape functions of the parts can represent this, and polygons stay
     /// polygons. A tetrahedron is divided along its shortest diagonal. The sides, edges and cells of a group are
     /// divided with the cells, and their new points belong to the group. Points of a group that are on none of them
-    /// stay in it. Old points keep their numbers.
+    /// stay in it. A group of points alone, and what a condition selects (see [`Mesh::choose`]), also has the new points on edges, sides and
+    /// cells all of whose points it has. Old points keep their numbers.
     ///
     /// # Errors
     /// A cell cannot be divided; a group has sides that no cell has; or a part of a curved cell has no volume.
     pub fn refined(&self) -> Result<Mesh> {
-        let mut fine = Mesh { blocks: Vec::new(), numbering: None, ..self.clone() };
         let mut elements: Vec<Arc<Element>> = self.blocks.iter().map(|block| block.element.clone()).collect();
-        let divisions: Vec<Division> =
-            self.blocks.iter().map(|block| Division::of(&block.element, &mut elements)).collect::<Result<_>>()?;
+        let divisions = self.blocks.iter().map(|block| Division::of(&block.element, &mut elements));
+        let divisions = divisions.collect::<Result<_>>()?;
+        self.divided(elements, divisions)
+    }
+
+    /// The same cells with quadratic functions: each has a point in the middle of every edge besides its corners. Groups and what conditions
+    /// select have the new points as in [`Mesh::refined`].
+    ///
+    /// # Errors
+    /// A cell has other nodes than its corners, or is of a kind of which no element with quadratic functions is shipped.
+    pub fn elevated(&self) -> Result<Mesh> {
+        let elements =
+            self.blocks.iter().map(|block| quadratic(&block.element)).collect::<Result<Vec<Arc<Element>>>>()?;
+        let pairs = self.blocks.iter().zip(&elements).enumerate();
+        let divisions = pairs.map(|(index, (block, element))| Division::of_whole(&block.element, element, index));
+        let divisions = divisions.collect::<Result<_>>()?;
+        self.divided(elements, divisions)
+    }
+
+    /// The mesh with each block divided; `elements` are those of the blocks of the new mesh.
+    fn divided(&self, elements: Vec<Arc<Element>>, divisions: Vec<Division>) -> Result<Mesh> {
+        let mut fine = Mesh { blocks: Vec::new(), numbering: None, ..self.clone() };
         fine.blocks.extend(elements.into_iter().map(|element| CellBlock { element, connectivity: Vec::new() }));
         let mut memberships = Memberships::of(self);
         let mut glue = Glue::default();
@@ -68,6 +88,10 @@ impl Mesh {
             }
         }
         fine.groups = memberships.into_groups()?;
+        for group in fine.groups.values_mut().filter(|group| group.is_of_points()) {
+            glue.complete(&mut group.points);
+        }
+        fine.conditions.iter_mut().for_each(|(_, points)| glue.complete(points));
         fine.drop_unused_points();
         fine.unused_points = self.unused_points;
         fine.orient(false).map_err(|e| e.followed_by(" after the cells were divided"))?;
@@ -112,7 +136,8 @@ impl Division {
         let element_of = |cell: Cell| Ok(if cell == element.cell { &**element } else { &*filling });
         let is_tetrahedron = element.cell == Cell::Tetrahedron;
         let ways = if is_tetrahedron { DIAGONALS.len() } else { 1 };
-        let patterns = (0..ways).map(|way| Pattern::of(element, way, &element_of)).collect::<Result<Vec<_>>>()?;
+        let pattern = |way: usize| Pattern::of(element, children::children(element.cell, way), &element_of);
+        let patterns = (0..ways).map(pattern).collect::<Result<Vec<_>>>()?;
         let end = |pair: [usize; 2]| -> Vec<(usize, f64)> {
             let corners = element.cell.corners();
             let at: Vec<f64> = corners[pair[0]].iter().zip(corners[pair[1]]).map(|(a, b)| (a + b) / 2.0).collect();
@@ -120,6 +145,12 @@ impl Division {
         };
         let diagonals = if is_tetrahedron { DIAGONALS.map(|ends| ends.map(end)).to_vec() } else { Vec::new() };
         Ok(Division { patterns, diagonals, filling: filling_block })
+    }
+
+    /// A cell that stays whole and gets another element of the same kind, in the block with this index.
+    fn of_whole(element: &Element, other: &Element, block: usize) -> Result<Division> {
+        let pattern = Pattern::of(element, children::whole(element.cell), &|_| Ok(other))?;
+        Ok(Division { patterns: vec![pattern], diagonals: Vec::new(), filling: block })
     }
 
     /// The division of the cell with these nodes: along its shortest diagonal, the first of equal ones.
@@ -163,5 +194,13 @@ impl Glue {
             fine.points.extend(at);
             fine.point_count() - 1
         })
+    }
+
+    /// Adds the new points where only functions of these points do not vanish.
+    fn complete(&self, points: &mut Vec<usize>) {
+        let old: HashSet<usize> = points.iter().copied().collect();
+        let carried = self.known.iter().filter(|(nodes, _)| nodes.iter().all(|(node, _)| old.contains(node)));
+        points.extend(carried.map(|(_, &point)| point));
+        points.sort_unstable();
     }
 }

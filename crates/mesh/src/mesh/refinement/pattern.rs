@@ -1,6 +1,6 @@
 //! The division of one element into smaller ones.
 
-use super::children::children;
+use super::children::Child;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
@@ -22,18 +22,17 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// `element_of` gives the element of each kind of cell in the division.
+    /// The division of an element into these parts; `element_of` gives the element of each kind of cell in it.
     ///
     /// # Errors
-    /// The cell has no division into known cells, or the element shares no points with its neighbours: shape functions
+    /// There are no parts, or the element shares no points with its neighbours: shape functions
     /// of nodes that are not on a side do not vanish there.
     pub fn of<'a>(
         element: &'a Element,
-        diagonal: usize,
+        parts: Vec<Child>,
         element_of: &dyn Fn(Cell) -> Result<&'a Element>,
     ) -> Result<Pattern> {
         let d = element.dimension();
-        let parts = children(element.cell, diagonal);
         if parts.is_empty() {
             let expected = "cells that can be divided into cells of their own kind";
             return Err(Error::expected("mesh", expected, &element.name).of_kind(ErrorKind::Unsupported));

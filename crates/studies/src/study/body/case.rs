@@ -3,7 +3,7 @@
 use crate::analysis::metrics::{DisplacementError, displacement_error, product};
 use crate::mesh::Field;
 use crate::model::Support;
-use crate::study::outcome::Measured;
+use crate::study::outcome::{Measured, Standard};
 
 /// A load case on a mesh: its support and nodal forces.
 pub struct Case {
@@ -19,8 +19,20 @@ pub struct Case {
     pub measured: Option<Field>,
     /// Whether these are from a file.
     pub is_measured: bool,
+    /// What is known of the finer solution that gives them otherwise.
+    pub finer: Option<FinerSolution>,
     /// The standard deviation of their noise, m.
     pub noise: Option<f64>,
+}
+
+/// A solution of the same body that is nearer to the truth than that of the finite elements of the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct FinerSolution {
+    pub standard: Standard,
+    /// J; see [`Case::work`].
+    pub work: Option<f64>,
+    /// Its own error, by the difference of two levels; `None` if there is one.
+    pub uncertainty: Option<DisplacementError>,
 }
 
 impl Case {
@@ -31,13 +43,17 @@ impl Case {
         Some(work).filter(|work| work.is_finite())
     }
 
-    /// By how many percent the compliance of a network exceeds that of the finite elements; `None` for measured
+    /// By how many percent the compliance of a model exceeds that of the finite elements, or of the finer solution; `None` for measured
     /// displacements. Under forces it is proportional to the work, under prescribed displacements to its inverse: of a network that
     /// is too soft forces do more work, and less work moves it as far.
     pub fn work_error(&self, fem: Option<f64>, found: Option<f64>) -> Option<f64> {
-        let ratio = if self.is_prescribed { fem? / found? } else { found? / fem? };
+        let known = match (&self.measured, &self.finer) {
+            (None, _) => fem,
+            (Some(_), finer) => finer.as_ref()?.work,
+        };
+        let ratio = if self.is_prescribed { known? / found? } else { found? / known? };
         let error = 100.0 * (ratio - 1.0);
-        Some(error).filter(|error| self.measured.is_none() && error.is_finite())
+        Some(error).filter(|error| error.is_finite())
     }
 
     /// The error of displacements: at the measured points if the load was measured, otherwise relative to the finite
@@ -54,10 +70,16 @@ impl Case {
         displacement_error(&wanted, &own, dimension)
     }
 
-    /// The number of measured points, and the error there of the finite elements, whose displacements are `fem`.
-    pub fn measured(&self, fem: &[f64], dimension: usize) -> Option<Measured> {
+    /// What errors are relative to, unless it is the finite elements, whose displacements are `fem` and whose work is `work`.
+    pub fn measured(&self, fem: &[f64], work: Option<f64>, dimension: usize) -> Option<Measured> {
         let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
         let points = self.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();
-        Some(Measured { points, is_of_finer: !self.is_measured, error: self.error(fem, fem, dimension) })
+        Some(Measured {
+            points,
+            standard: self.finer.map_or(Standard::Measurement, |finer| finer.standard),
+            error: self.error(fem, fem, dimension),
+            work_error: self.work_error(work, work),
+            uncertainty: self.finer.and_then(|finer| finer.uncertainty),
+        })
     }
 }

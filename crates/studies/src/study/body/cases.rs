@@ -86,12 +86,13 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
         }
         let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_))));
         let (is_measured, noise) = (load.measured.is_some(), load.measured.as_ref().and_then(|entry| entry.sigma));
-        let measured = None;
+        let (measured, finer) = (None, None);
         if let Some(sigma) = noise.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
             let expected = "a standard deviation above zero, m";
             return Err(at(Error::expected("sigma", expected, sigma).under("measured")));
         }
-        cases.push(Case { name: load.name.clone(), support, forces, is_prescribed, measured, is_measured, noise });
+        let name = load.name.clone();
+        cases.push(Case { name, support, forces, is_prescribed, measured, is_measured, finer, noise });
     }
     for (i, load) in scene.loads().iter().enumerate() {
         if let LoadKind::Sum(parts) = &load.kind {

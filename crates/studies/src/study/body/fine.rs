@@ -1,14 +1,16 @@
 //! A finer mesh of the body of a scene, whose finite elements the networks are compared with.
 
 use super::answer::{check_residual, largest_residual, not_definite};
-use super::case::Case;
+use super::case::{Case, FinerSolution};
 use super::cases::{applied_cases, held};
+use crate::analysis::metrics::square;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
 use crate::mesh::{CellBlock, CellIndex, Embedding, Field, Mesh};
-use crate::model::{Lumping, Moments, Support, lumped_masses};
+use crate::model::{Lumping, Moments, Support, finite_elements, lumped_masses};
 use crate::solve::{Equations, KnownEquations, StaticSolver};
 use crate::study::fits::{Answers, Finer, RegionFactors};
+use crate::study::outcome::Standard;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::whole::{BodyRegions, NodalLoad};
@@ -26,6 +28,7 @@ pub struct FineBody {
     /// The support of the `[[fix]]` entries.
     support: Support,
     material: MaterialMap,
+    standard: Standard,
     solver: StaticSolver,
     /// The loads of the scene on it.
     cases: OnceLock<Vec<Case>>,
@@ -41,6 +44,8 @@ pub struct FineBody {
 const OTHER: f64 = 1.4;
 /// The relative difference of the contents from which on it is reported.
 const ALIKE: f64 = 0.02;
+/// Total forces that differ by less than this share of the forces are one force.
+const SAME_FORCE: f64 = 1e-3;
 /// Solutions for each frequency, about.
 const VIBRATING: usize = 8;
 /// Loads that whole-object fits ask for under a support, about: those that they fit, those that choose ρ and those that none has seen.
@@ -54,9 +59,11 @@ impl FineBody {
     /// # Errors
     /// The mesh is wrong, is of another body, or lacks the parts that are held.
     pub fn of(scene: &Scene, mesh: &Mesh, progress: &mut Progress) -> Result<Option<FineBody>> {
-        let Some(entry) = scene.reference() else { return Ok(None) };
+        let Some(entry) = scene.reference().filter(|entry| !entry.is_of_cells()) else { return Ok(None) };
         let at = |e: Error| e.placed(|e| scene.at("reference", e));
-        let fine = entry.build(scene.path(), mesh).map_err(at)?;
+        let mut chosen = mesh.clone();
+        scene.choose(&mut chosen);
+        let mut fine = entry.build(scene.path(), &chosen).map_err(at)?;
         if fine.dimension != mesh.dimension {
             let expected = format!("a mesh of dimension {}", mesh.dimension);
             return Err(at(Error::expected("mesh", expected, fine.dimension)));
@@ -68,6 +75,10 @@ impl FineBody {
             |e: Error| at(Error::at("mesh", format!("is not one of the same body: {}", e.problem())).of_kind(e.kind()));
         let embedding = Embedding::of(&fine.points, mesh).map_err(another)?;
         let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
+        // Bodies whose surfaces are not the same have points that no cell of the other has; conditions are then asked on the finer mesh.
+        if entry.mesh.is_some() && embedding.outside == 0 && sampling.outside == 0 {
+            fine.choose_as_on(&chosen, &embedding);
+        }
         let support = held(scene, &fine)?;
         let material = scene.material_of(&fine)?;
         Ok(Some(FineBody {
@@ -76,6 +87,7 @@ impl FineBody {
             sampling,
             support,
             material,
+            standard: entry.standard(),
             solver: scene.solver(),
             cases: OnceLock::new(),
             known: Mutex::default(),
@@ -92,13 +104,21 @@ impl FineBody {
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
         let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
         let found = self.displacements(&own, progress).map_err(|e| e.placed(|e| scene.at("reference", e)))?;
+        let entries =
+            own.iter().any(|own| own.is_prescribed).then(|| finite_elements(&self.mesh, self.material.moduli()));
+        let dimension = self.mesh.dimension;
         for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
+            if let Some(note) = other_force(case, own, dimension) {
+                progress(Event::Note(&note));
+            }
             if !case.is_prescribed {
                 case.forces = self.embedding.restrict(&own.forces);
             }
             if !case.is_measured {
                 let displacements = self.sampling.interpolate(&fine).into_iter().map(Some).collect();
                 case.measured = Some(Field { displacements });
+                let work = own.work(&fine, || entries.as_ref().map(|entries| square(entries, &fine)));
+                case.finer = Some(FinerSolution { standard: self.standard, work, uncertainty: None });
             }
         }
         self.cases.get_or_init(|| own);
@@ -125,6 +145,24 @@ impl FineBody {
     fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
         self.equations.under(support, || self.solved(&self.material.moduli(), support, loads))
     }
+}
+
+/// That the total force of a load on the finer mesh is another one than on the mesh of the scene.
+fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
+    let total = |forces: &[f64], k: usize| forces.iter().skip(k).step_by(dimension).sum::<f64>();
+    let totals = |case: &Case| -> Vec<f64> { (0..dimension).map(|k| total(&case.forces, k)).collect() };
+    let norm = |total: &[f64]| total.iter().map(|f| f * f).sum::<f64>().sqrt();
+    let (own, other) = (totals(case), totals(fine));
+    let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
+    let acting = case.forces.iter().map(|f| f.abs()).sum::<f64>();
+    (norm(&apart) > SAME_FORCE * acting).then(|| {
+        format!(
+            "the total force of {} is {:.4e} N on the finer mesh and {:.4e} N on the mesh; networks get that of the finer mesh",
+            case.name,
+            norm(&other),
+            norm(&own)
+        )
+    })
 }
 
 /// What differs between a mesh and a finer one of the same body.
@@ -176,6 +214,7 @@ impl Finer for FineBody {
             is_prescribed: false,
             measured: None,
             is_measured: false,
+            finer: None,
             noise: None,
         };
         let cases: Vec<Case> = loads().into_iter().map(case).collect();

@@ -48,6 +48,7 @@ impl LinearBody {
         solver: StaticSolver,
         progress: &mut Progress,
     ) -> Result<LinearBody> {
+        let solver = solver.suited(mesh, moduli);
         if !cases.is_empty() && solver.iterates(mesh, cases.len()) {
             if let Err(error) = Iterated::check_size(mesh, cases) {
                 if !solver.gives_way(&error) {
@@ -96,9 +97,9 @@ impl LinearBody {
         self.answers.iter().map(|answer| &answer.displacement)
     }
 
-    /// The displacements under each load, without the equations.
-    pub fn into_displacements(self) -> Vec<Vec<f64>> {
-        self.answers.into_iter().map(|answer| answer.displacement).collect()
+    /// The displacements under each load and their work, J (see [`Case::work`]), without the equations.
+    pub fn into_answers(self) -> (Vec<Vec<f64>>, Vec<Option<f64>>) {
+        self.answers.into_iter().map(|answer| (answer.displacement, answer.work)).unzip()
     }
 
     /// The equations of each support of the loads.

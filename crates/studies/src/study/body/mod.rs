@@ -10,6 +10,7 @@ mod iterated;
 mod large;
 mod linear;
 mod load_notes;
+mod truth;
 
 pub use case::Case;
 pub use cases::{applied_cases, load_cases};
@@ -18,3 +19,4 @@ pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;
 pub use load_notes::load_notes;
+pub use truth::judge_by_truth;

@@ -1,6 +1,5 @@
 //! The convergence of finite elements and networks as the mesh of a scene is refined.
 
-mod conditions;
 mod levels;
 mod limit;
 mod outcome;

@@ -19,8 +19,6 @@ pub struct Convergence {
     pub reference: Option<String>,
     /// What must be known of the levels and the reference, one sentence each.
     pub notes: Vec<String>,
-    /// Whether all levels are of one problem: no condition selects another part of the body on a finer mesh.
-    pub is_one_problem: bool,
     /// The meshes, from that of the scene to the finest.
     pub levels: Vec<Level>,
     /// The results under each load.

@@ -1,6 +1,5 @@
 //! Whether a scene that gives the reference solution is of the same body, material, supports and loads.
 
-use super::conditions::ROUNDING;
 use crate::error::{Error, Result};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
@@ -9,6 +8,8 @@ use crate::study::body::applied_cases;
 use crate::study::extent::extent;
 use crate::study::scene::Scene;
 
+/// Contents that differ by less than this share are equal up to rounding.
+const ROUNDING: f64 = 1e-6;
 /// Bodies whose sizes differ by less than this share may be one curved body with cells of other shapes.
 const CURVED: f64 = 0.1;
 

@@ -1,6 +1,5 @@
 //! Runs a scene on a sequence of meshes.
 
-use super::conditions::Selected;
 use super::levels::plan;
 use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
 use super::quantities::Quantities;
@@ -36,7 +35,7 @@ const USUAL_LEVELS: usize = 4;
 /// load.
 ///
 /// A box has twice as many cells in each direction on the next level. The cells of any other mesh are divided as by
-/// [`Mesh::refined`], so that the body remains that of the first mesh. Only fits and loads are run: no motion, gauge or
+/// [`Mesh::refined`], so that the body remains that of the first mesh. Conditions are asked on the first mesh, see [`Mesh::choose`]. Only fits and loads are run: no motion, gauge or
 /// output.
 ///
 /// # Errors
@@ -82,9 +81,8 @@ fn of_levels(
     }
     let title = scene.title().into();
     let (extent, notes, levels, loads) = Default::default();
-    let (law, reference, is_one_problem) = (None, None, true);
-    let mut convergence = Convergence { scene: title, extent, law, reference, notes, is_one_problem, levels, loads };
-    let mut before: Vec<Selected> = Vec::new();
+    let (law, reference) = (None, None);
+    let mut convergence = Convergence { scene: title, extent, law, reference, notes, levels, loads };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
@@ -113,11 +111,7 @@ fn of_levels(
         convergence.levels.push(Level { size, cells, points, unknowns, seconds });
         let counted = if cells == 1 { "1 cell".into() } else { format!("{cells} cells") };
         progress(Event::Note(&format!("{number}: {counted}, {unknowns} unknowns, {seconds:.1} s")));
-        let selected = Selected::all(refined, mesh);
-        let changes: Vec<String> = selected.iter().zip(&before).filter_map(|(now, then)| now.change(then)).collect();
-        convergence.is_one_problem &= changes.is_empty();
-        let mut notes: Vec<String> = changes.into_iter().map(|change| format!("{number}: {change}")).collect();
-        before = selected;
+        let mut notes = Vec::new();
         if level == 0 {
             convergence.extent = extent_of(mesh);
             notes.extend(outcome.assumed.iter().chain(&outcome.of_loads).cloned());
@@ -168,7 +162,7 @@ pub fn refinements(scene: &Scene, levels: Option<usize>) -> Result<Vec<Scene>> {
         let problem = "expected at least one [[load]] to converge under, found none";
         return Err(scene.placed(Error::at("load", problem)));
     }
-    let scene = scene.clone().without_motion().without_gauge().with_output(Output::default());
+    let scene = scene.clone().without_motion().without_gauge().with_output(Output::default()).judged_by_cells();
     let count = plan(&scene, levels, USUAL_LEVELS)?;
     Ok((0..count).map(|level| scene.clone().halved(level as u32)).collect())
 }
@@ -218,7 +212,6 @@ fn to_reference(
         // With the first level.
         if convergence.reference.is_none() {
             convergence.reference = Some(known.scene.clone());
-            convergence.is_one_problem &= known.is_one_problem;
             convergence.notes.extend(known.notes.iter().map(|note| format!("reference, {note}")));
             convergence.notes.extend(differs.iter().map(|differs| format!("{DIFFERS}: {differs}")));
         }

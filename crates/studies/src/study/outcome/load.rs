@@ -30,16 +30,57 @@ pub struct BodyLoad {
     pub deformation: Option<Deformation>,
 }
 
-/// Displacements that were measured under a load.
+/// Displacements that the errors under a load are relative to, in place of those of the finite elements of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Measured {
-    /// The number of points at which at least one component is known.
+    /// The number of points at which at least one component is known; 0 if nothing is known of the answer of the body.
     pub points: usize,
-    /// Whether the displacements are those of a finer body, and no measurement.
-    pub is_of_finer: bool,
+    /// Where they are from.
+    pub standard: Standard,
     /// The error of the finite elements; `None` if no measured point moves.
     pub error: Option<DisplacementError>,
+    /// By how many percent the compliance of the finite elements exceeds theirs, as for a network; `None` of a measurement.
+    pub work_error: Option<f64>,
+    /// Their own error, estimated by the difference of two levels; `None` if it is not known.
+    pub uncertainty: Option<DisplacementError>,
+}
+
+/// What gives the displacements that errors are relative to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Standard {
+    /// A file of measured displacements.
+    #[default]
+    Measurement,
+    /// The finite elements of a finer mesh.
+    FinerBody,
+    /// Finite elements with quadratic functions on the cells of the mesh.
+    Quadratic,
+    /// Finite elements with quadratic functions on the halved cells of the mesh.
+    QuadraticHalved,
+}
+
+impl Standard {
+    /// What heads the columns of errors, after the name of the load.
+    pub fn heading(self) -> &'static str {
+        match self {
+            Standard::Measurement => ", measured",
+            Standard::FinerBody => ", finer body",
+            Standard::Quadratic | Standard::QuadraticHalved => ", quadratic",
+        }
+    }
+
+    /// In words, as in "relative to the displacements …".
+    pub fn words(self) -> &'static str {
+        match self {
+            Standard::Measurement => "measured",
+            Standard::FinerBody => "of the finer body",
+            Standard::Quadratic => "of quadratic elements on these cells",
+            Standard::QuadraticHalved => "of quadratic elements on these cells, halved",
+        }
+    }
 }
 
 /// A load, and the response of a network.

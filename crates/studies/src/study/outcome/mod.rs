@@ -10,6 +10,6 @@ mod scene;
 pub use fit::{FitOutcome, MatrixErrors, standing_word};
 pub use frequencies::FrequencyOutcome;
 pub use gauge::{GaugeResult, Reading};
-pub use load::{BodyLoad, Followed, LoadOutcome, Measured};
+pub use load::{BodyLoad, Followed, LoadOutcome, Measured, Standard};
 pub use motion::{ModelMotion, MotionEnding, MotionOutcome, Record, TimedForce, TimedPull, mean_and_largest};
 pub use scene::Outcome;

@@ -145,7 +145,7 @@ impl Paper {
             Some(place) => place,
             None => {
                 let scene = Scene::load(&folder.join(file))?;
-                self.scenes.push(PaperScene { stem, outcome: run(&scene, progress)? });
+                self.scenes.push(PaperScene { stem, outcome: run(&scene.judged_by_cells(), progress)? });
                 self.scenes.len() - 1
             }
         };

@@ -18,6 +18,8 @@ pub(super) struct Answers {
     displacements: Vec<Vec<f64>>,
     /// How far each load was followed; `None` at small deformation.
     followed: Vec<Option<Followed>>,
+    /// The works of the loads along the displacements, J; `None` at large deformation.
+    works: Vec<Option<f64>>,
     /// The energies of the laws, at large deformation.
     laws: Option<EnergyMap>,
     masses: Option<PointMasses>,
@@ -28,36 +30,40 @@ impl Answers {
     ///
     /// # Errors
     /// The equations do not fit into memory, or iterations that were asked for stall.
-    pub fn of(posed: &Posed, solved: Solved, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<Answers> {
+    pub fn of(posed: &mut Posed, solved: Solved, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<Answers> {
         let Solved { large, linear, masses, .. } = solved;
-        let (displacements, followed, laws) = match large {
+        let (displacements, works, followed, laws) = match large {
             Some(large) => {
                 at_large(posed, &large, fits, progress)?;
-                (large.displacements, large.followed.into_iter().map(Some).collect(), Some(large.laws))
+                let works = vec![None; posed.cases.len()];
+                (large.displacements, works, large.followed.into_iter().map(Some).collect(), Some(large.laws))
             }
             None => {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
+                // After the fits, which are to the finite elements of the mesh.
+                posed.judge_by_truth(progress);
                 at_small(posed, &body, fits, progress)?;
-                (body.into_displacements(), vec![None; posed.cases.len()], None)
+                let (displacements, works) = body.into_answers();
+                (displacements, works, vec![None; posed.cases.len()], None)
             }
         };
         if let Some(gauged) = &posed.gauged {
             fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
         }
-        Ok(Answers { displacements, followed, laws, masses })
+        Ok(Answers { displacements, works, followed, laws, masses })
     }
 
     /// All that was found, without what happens over time; with the plan of that, and the laws that it needs.
     pub fn outcome(self, posed: Posed, fits: Vec<FitOutcome>) -> (Outcome, TimePlan, Option<EnergyMap>) {
-        let Answers { displacements, followed, laws, masses } = self;
-        let Posed { scene, mesh, material, support, cases, gauged, plan, .. } = posed;
-        let answers = cases.iter().zip(displacements).zip(followed).enumerate();
-        let loads = answers.map(|(i, ((case, fem), followed))| BodyLoad {
+        let Answers { displacements, works, followed, laws, masses } = self;
+        let Posed { scene, mesh, material, support, cases, gauged, plan, of_reference, .. } = posed;
+        let answers = cases.iter().zip(displacements.into_iter().zip(works)).zip(followed).enumerate();
+        let loads = answers.map(|(i, ((case, (fem, work)), followed))| BodyLoad {
             name: case.name.clone(),
             support: case.support.clone(),
             forces: case.forces.clone(),
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
-            measured: case.measured(&fem, mesh.dimension),
+            measured: case.measured(&fem, work, mesh.dimension),
             deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),
             followed,
             fem,
@@ -70,7 +76,7 @@ impl Answers {
             command: None,
             source: scene.mesh().title(),
             assumed: scene.assumption(&mesh),
-            of_loads: load_notes(scene, &mesh),
+            of_loads: load_notes(scene, &mesh).into_iter().chain(of_reference).collect(),
             left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
             mesh,
             material,

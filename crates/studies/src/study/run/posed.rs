@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Support;
-use crate::study::body::{Case, Gauged, load_cases};
+use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
 use crate::study::outcome::FitOutcome;
@@ -27,6 +27,8 @@ pub(super) struct Posed<'a> {
     pub gauged: Option<Gauged>,
     /// What is asked for over time.
     pub plan: TimePlan,
+    /// What must be known of the solution that errors are relative to, one sentence each.
+    pub of_reference: Vec<String>,
 }
 
 impl<'a> Posed<'a> {
@@ -47,7 +49,8 @@ impl<'a> Posed<'a> {
         }
         let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
         let plan = TimePlan::of(scene, &mesh, &material, &support)?;
-        Ok(Posed { scene, mesh, material, support, cases, energy, gauged, plan })
+        let of_reference = Vec::new();
+        Ok(Posed { scene, mesh, material, support, cases, energy, gauged, plan, of_reference })
     }
 
     /// The error in the scene's file, unless it names another place.
@@ -64,6 +67,14 @@ impl<'a> Posed<'a> {
             cases => cases.iter().all(|case| holds(&case.support, point)),
         };
         (0..self.mesh.point_count()).map(held).collect()
+    }
+
+    /// Makes errors relative to quadratic elements where the cells of the mesh lock and the scene does not say what they are relative to.
+    pub fn judge_by_truth(&mut self, progress: &mut Progress) {
+        if self.scene.reference().is_none() {
+            let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, progress);
+            self.of_reference.extend(notes);
+        }
     }
 
     /// The moduli of each network as a whole, if the scene asks for them.

@@ -19,7 +19,7 @@ use crate::bound::{self, check_count};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::material::{CellMap, EnergyMap, Material, MaterialMap};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::{BodyConstants, assumed};
@@ -236,7 +236,21 @@ impl Scene {
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume.
     pub fn build_mesh(&self) -> Result<Mesh> {
-        self.mesh.build(self.path()).map_err(|e| self.with_line(e))
+        self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))
+    }
+
+    /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
+    /// in this dimension are left to the places where they are asked.
+    pub fn choose(&self, mesh: &mut Mesh) {
+        let loaded = self.loads.iter().filter_map(|load| Some(load.single()?.0.clone()));
+        let held = self.supports.iter().map(|(part, _)| part.clone());
+        let of_material = self.material_parts().into_iter().map(|(_, part)| part);
+        let d = mesh.dimension;
+        let conditions = held.chain(loaded).chain(of_material).filter_map(|part| match part.selection(d) {
+            Ok(Selection::Where(condition)) => Some(condition),
+            Ok(Selection::Group(_) | Selection::Everything) | Err(_) => None,
+        });
+        mesh.choose(conditions);
     }
 
     /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.

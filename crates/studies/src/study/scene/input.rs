@@ -4,7 +4,7 @@ use super::elements::{load_element, load_elements};
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, Embedding, FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
 use crate::range;
 use crate::study::extent::extent;
 use schemars::JsonSchema;
@@ -269,21 +269,31 @@ impl DiscEntry {
 
 impl MeshInput {
     /// Reads or generates the mesh of the scene at `scene`. A box is refined by its numbers of cells, any other mesh
-    /// cell by cell.
+    /// cell by cell. `choose` chooses what conditions select on the mesh that is not refined.
     ///
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume or cannot be divided.
-    pub fn build(&self, scene: &Path) -> Result<Mesh> {
-        let mut mesh = self.build_coarse(scene)?;
+    pub fn build(&self, scene: &Path, choose: &dyn Fn(&mut Mesh)) -> Result<Mesh> {
+        let mut mesh = self.build_coarse(scene, 0)?;
+        if self.halvings == 0 {
+            return Ok(mesh);
+        }
+        choose(&mut mesh);
         if self.generated.is_none() {
             for _ in 0..self.halvings {
                 mesh = mesh.refined().map_err(|e| e.in_file(scene))?;
             }
+            return Ok(mesh);
         }
-        Ok(mesh)
+        let mut fine = self.build_coarse(scene, self.halvings)?;
+        if !mesh.conditions.is_empty() {
+            fine.choose_as_on(&mesh, &Embedding::of(&fine.points, &mesh).map_err(|e| e.in_file(scene))?);
+        }
+        Ok(fine)
     }
 
-    fn build_coarse(&self, scene: &Path) -> Result<Mesh> {
+    /// The mesh, a box with its cells halved this number of times.
+    fn build_coarse(&self, scene: &Path, halvings: u32) -> Result<Mesh> {
         let folder = scene.parent().unwrap_or(Path::new(""));
         let at = |key: &'static str| move |e: Error| e.placed(|e| e.under(key).in_file(scene));
         if let Some(file) = &self.file {
@@ -307,7 +317,7 @@ impl MeshInput {
         let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
-        let factor = 1usize.checked_shl(self.halvings).unwrap_or(usize::MAX);
+        let factor = 1usize.checked_shl(halvings).unwrap_or(usize::MAX);
         let cells = entry.cells.iter().map(|n| n.saturating_mul(factor)).collect();
         let spec = BoxMesh { element, size: scaled(&entry.size), cells, origin: scaled(&origin) };
         spec.build().map_err(at("mesh.box"))

@@ -3,6 +3,7 @@
 use super::distribution::Distribution;
 use super::document::Scene;
 use super::output::Output;
+use super::reference::ReferenceEntry;
 use crate::solve::Newton;
 use crate::study::fits::NamedFit;
 
@@ -35,6 +36,11 @@ impl Scene {
     /// Removes the motion of the scene.
     pub fn without_motion(self) -> Scene {
         Scene { motion: None, ..self }
+    }
+
+    /// Makes errors relative to the finite elements of the mesh, also where they lock.
+    pub fn judged_by_cells(self) -> Scene {
+        Scene { reference: Some(ReferenceEntry::of_cells()), ..self }
     }
 
     /// Halves the edges of all cells this many more times.

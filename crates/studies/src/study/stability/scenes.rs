@@ -41,6 +41,7 @@ pub fn stability_of_scene(scene: &Scene, progress: &mut Progress) -> Result<Stab
         return Err(scene.at("fit", Error::new("expected a fit of single cells, found none")));
     }
     let plain = scene.clone().with_fits(fits).with_output(Output::default()).without_motion().without_gauge();
+    let plain = plain.judged_by_cells();
     let base = run(&plain, &mut |_| {})?;
     let mut cases: Vec<(Family, String, Scene, bool)> = Vec::new();
     for factor in STIFFER {

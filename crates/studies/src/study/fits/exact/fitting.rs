@@ -6,14 +6,15 @@ use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, ExactEnergy, ShearSprings, VolumeSprings, fit_exact};
-use crate::material::{Energy, Material, MaterialMap, State};
-use crate::mesh::{CellBlock, Mesh};
+use crate::material::{Energy, Material, MaterialMap};
+use crate::mesh::Mesh;
 use crate::model::{Network, edge_springs, fibre_springs_of_regions, patch_springs};
 use crate::positive::{PositiveFit, Route, nearest_positive};
 use crate::springs::Springs;
 use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{CellMethod, FitKind, Task};
 use crate::study::fits::record::KindRecord;
+use crate::study::locking::Locking;
 use crate::study::progress::{Event, Progress};
 use std::time::Instant;
 
@@ -127,9 +128,6 @@ impl CellMethod for ExactRecipe {
     }
 }
 
-/// Poisson's ratio from which on linear cells are noticeably too stiff.
-const LOCKS: f64 = 0.4;
-
 /// Whether the content of a cell is that of its one quadrature point, as in linear triangles and tetrahedra.
 fn has_one_point(element: &Element) -> bool {
     element.tabulation.weights.len() == 1
@@ -143,29 +141,17 @@ fn measured(mesh: &Mesh, volume: VolumeSprings) -> VolumeSprings {
     }
 }
 
-/// The largest Poisson's ratio from 0.4 on of linear cells that integrate changes of volume like all others and whose network does as
-/// well, and the keys of springs that do not lock there. Plane stress does not lock.
+/// The largest Poisson's ratio of cells that lock and whose network does as well, and the keys of springs that do not lock there.
 fn locking(mesh: &Mesh, material: &MaterialMap, volume: VolumeSprings) -> Option<(f64, &'static str)> {
     let is_like_the_body = |element: &Element| match volume {
         VolumeSprings::Points => true,
         VolumeSprings::Cells => has_one_point(element),
         VolumeSprings::Patches => false,
     };
-    if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
-        return None;
-    }
-    let of_block = |(index, block): (usize, &CellBlock)| {
-        let element = &block.element;
-        let is_linear = is_like_the_body(element)
-            && element.nodes() == element.cell.corners().len()
-            && element.tabulation.volumetric.is_empty();
-        let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
-        let largest = ratios.fold(0.0, f64::max);
-        let remedy = match element.cell.is_simplex() {
-            true => "shear = \"edges\" with volume = \"patches\"",
-            false => "volume = \"cells\"",
-        };
-        (is_linear && largest >= LOCKS).then_some((largest, remedy))
+    let found = Locking::of(mesh, material, &is_like_the_body)?;
+    let remedy = match found.of_simplices {
+        true => "shear = \"edges\" with volume = \"patches\"",
+        false => "volume = \"cells\"",
     };
-    mesh.blocks.iter().enumerate().filter_map(of_block).max_by(|a, b| a.0.total_cmp(&b.0))
+    Some((found.poisson, remedy))
 }

@@ -1,0 +1,40 @@
+//! Whether the cells of a body lock: whether linear functions cannot keep a volume that the material keeps.
+
+use crate::element::Element;
+use crate::material::{MaterialMap, State};
+use crate::mesh::{CellBlock, Mesh};
+
+/// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
+const LOCKS: f64 = 0.4;
+
+/// Cells that lock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Locking {
+    /// The largest Poisson's ratio of these cells.
+    pub poisson: f64,
+    /// Whether the cells with this ratio are triangles or tetrahedra.
+    pub of_simplices: bool,
+}
+
+impl Locking {
+    /// Finds the cells of these elements that lock: those from Poisson's ratio 0.4 on whose nodes are their corners and that integrate changes
+    /// of volume like all others. Plane stress does not lock.
+    pub fn of(mesh: &Mesh, material: &MaterialMap, is_asked: &dyn Fn(&Element) -> bool) -> Option<Locking> {
+        if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
+            return None;
+        }
+        let of_block = |(index, block): (usize, &CellBlock)| {
+            let element = &block.element;
+            let is_linear = is_asked(element)
+                && element.nodes() == element.cell.corners().len()
+                && element.tabulation.volumetric.is_empty();
+            if !is_linear {
+                return None;
+            }
+            let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
+            let poisson = ratios.fold(0.0, f64::max);
+            (poisson >= LOCKS).then_some(Locking { poisson, of_simplices: element.cell.is_simplex() })
+        };
+        mesh.blocks.iter().enumerate().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
+    }
+}
