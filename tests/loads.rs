@@ -200,7 +200,7 @@ fn a_traction_on_a_sheet_in_space_is_said_to_act_on_its_outline() {
              thickness = 0.01\n[[fit]]\nobjective = \"exact\"\n[[fix]]\nwhere = \"x < 0.1\"\n[[fix]]\nwhere = \"x > -2\"\naxes = [\"z\"]\n\
              [[load]]\nname = \"pull\"\nwhere = \"x > 0.1\"\n{load}\n"
         );
-        let scene = springfit::study::Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
+        let scene = Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
         springfit::report::notes(&springfit::study::run(&scene, &mut |_| {}).unwrap())
     };
     let is_told = |notes: &[String]| notes.iter().any(|note| note.contains("traction pull acts on the outline"));
@@ -240,4 +240,35 @@ displacement = ["0.01*x - 0.1*y", "0.1*x + 0.02*y + 0.03*z", "-0.02*x - 0.01*z"]
         }
         assert!(inner >= 2 * 3 * 2, "{inner}");
     }
+}
+
+/// A force on points that are held, and displacements that were measured where the support holds others, are told.
+#[test]
+fn what_a_support_takes_from_a_load_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let notes = |load: &str| {
+        let text = format!(
+            "mesh = {{ box = {{ element = \"hex8\", size = [0.3, 0.1, 0.1], cells = [6, 2, 2] }} }}\nmaterial = {{ young = 1e4, poisson = 0.3 }}\n\
+             fit = [{{ objective = \"exact\" }}]\nfix = [{{ where = \"x < 0.16\" }}]\nload = [{{ name = \"push\", {load} }}]\n"
+        );
+        let scene = Scene::parse(&text, &folder.path().join("s.toml")).unwrap();
+        run(&scene, &mut |_| {}).unwrap().of_loads
+    };
+    // Half of the upper side, and the line of points between the halves.
+    let found = notes("where = \"z > 0.0999\", traction = [0, 0, -1]");
+    assert!(found.len() == 1 && found[0].contains("58 % of the force of push acts on held points"), "{found:?}");
+    assert!(notes("group = \"xmax\", traction = [0, 0, -1]").is_empty());
+    let table = |u: f64| {
+        std::fs::write(folder.path().join("u.csv"), format!("point,ux,uy,uz\n0,{u:?},0,0\n62,0.01,0,0\n")).unwrap()
+    };
+    let measured = "group = \"xmax\", traction = [1, 0, 0], measured = { file = \"u.csv\" }";
+    table(0.005);
+    let found = notes(measured);
+    assert!(
+        found.len() == 1
+            && found[0].contains("along x was measured as 5.000e-3 m, where the support holds it at 0.000e0 m"),
+        "{found:?}"
+    );
+    table(1e-4);
+    assert!(notes(measured).is_empty());
 }

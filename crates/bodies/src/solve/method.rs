@@ -42,17 +42,22 @@ const FROM: [usize; 2] = [50_000, 15_000];
 const PER_LOAD: [usize; 2] = [1_250, 250];
 /// Shear moduli in this ratio leave iterations with much of the forces: they end by the energy, which the stiff cells have next to none of.
 const CONTRAST: f64 = 1e5;
+/// λ/μ (here of Poisson's ratio 0.497) from which on levels on quadratic cells take hundreds of iterations, or stall.
+const INCOMPRESSIBLE: f64 = 200.0;
 /// Unknowns whose factor takes about a minute.
 const FACTORED: usize = 300_000;
 
 impl StaticSolver {
-    /// The solver of a body with these moduli: where it may choose, it factorises equations of cells that differ by orders of magnitude.
+    /// The solver of a body with these moduli: where it may choose, it factorises equations of cells that differ by orders of magnitude, and
+    /// those of quadratic cells that hardly change their volume.
     pub fn suited(self, mesh: &Mesh, moduli: &CellMap<Hooke>) -> StaticSolver {
-        if self.method != StaticMethod::Auto || moduli.uniform().is_some() || mesh.points.len() > FACTORED {
+        if self.method != StaticMethod::Auto || mesh.points.len() > FACTORED {
             return self;
         }
         let [least, largest] = moduli.map(Hooke::least_diagonal).range();
-        match largest > CONTRAST * least {
+        let is_linear = mesh.blocks.iter().all(|block| block.element.nodes() == block.element.cell.corners().len());
+        let keeps_volume = |hooke: &Hooke| hooke.moduli().is_some_and(|of| of.lambda > INCOMPRESSIBLE * of.mu);
+        match largest > CONTRAST * least || (!is_linear && moduli.values().any(keeps_volume)) {
             true => StaticSolver { method: StaticMethod::Cholesky, ..self },
             false => self,
         }

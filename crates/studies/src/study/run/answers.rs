@@ -76,7 +76,7 @@ impl Answers {
             command: None,
             source: scene.mesh().title(),
             assumed: scene.assumption(&mesh),
-            of_loads: load_notes(scene, &mesh).into_iter().chain(of_reference).collect(),
+            of_loads: load_notes(scene, &mesh, &cases).into_iter().chain(of_reference).collect(),
             left_out: stages(scene).into_iter().filter_map(|(what, why)| Some(format!("{what}: {}", why?))).collect(),
             mesh,
             material,
