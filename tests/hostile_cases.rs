@@ -194,6 +194,25 @@ fn what_errors_are_relative_to_is_said() {
     );
 }
 
+/// No element with quadratic functions is shipped for a pentagon: its errors are not known, and are not 0.00.
+#[test]
+fn errors_without_a_reference_are_not_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = "# vtk DataFile Version 3.0\np\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n1.3 0.9 0\n0.5 1.5 0\n-0.3 0.9 0\n\
+                CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n7\n";
+    fs::write(folder.path().join("p.vtk"), mesh).unwrap();
+    let text = "mesh = { file = \"p.vtk\" }\nmaterial = { young = 1e4, poisson = 0.45, plane = \"strain\", thickness = 1 }\n\
+                fit = [{ objective = \"exact\" }]\nfix = [{ where = \"y < 0.1\" }]\nload = [{ where = \"y > 0.8\", traction = [0, 1] }]\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let (output, said) = springfit(folder.path(), "run s.toml --out out");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("no reference that does not is solved") && said.contains("errors are not known"), "{said}");
+    let errors = printed.split("Errors of the displacements").nth(1).unwrap().split("Largest").next().unwrap();
+    assert!(!errors.contains("0.00"), "{errors}");
+    let report = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
+    assert!(report.contains("\"e_rms\": null") && report.contains("\"points\": 0"), "{report}");
+}
+
 /// A load that moves the body by twice its size is refused as a result in the first line.
 #[test]
 fn what_is_far_beyond_the_linear_theory_is_not_trusted() {

@@ -260,3 +260,57 @@ fn a_spring_on_a_linear_simplex_is_that_of_its_point() {
         assert_eq!(notes(&cells).join(" ").contains("differs from the finite elements"), !is_same, "{element}");
     }
 }
+
+/// What the program says of a bar of this many cells across that is bent, and of the same bar that is pulled.
+#[test]
+fn a_body_of_one_cell_across_that_bends_is_told() {
+    let notes = |element: &str, across: usize, traction: &str, more: &str| {
+        let text = format!(
+            "mesh = {{ box = {{ element = \"{element}\", size = [0.2, 0.02, 0.02], cells = [10, {across}, {across}] }} }}\n\
+             material = {{ young = 1e6, poisson = 0.3 }}\nfit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\n\
+             load = [{{ name = \"load\", group = \"xmax\", traction = {traction} }}]\n{more}"
+        );
+        let scene = Scene::parse(&text, Path::new("bar.toml")).unwrap();
+        springfit::report::notes(&run(&scene, &mut |_| {}).unwrap()).join("\n")
+    };
+    let words = "about one cell across and bends under load";
+    for element in ["tet4", "hex8"] {
+        assert!(notes(element, 1, "[0, 0, 10]", "").contains(words), "{element}");
+        assert!(!notes(element, 1, "[10, 0, 0]", "").contains(words), "{element}");
+        assert!(!notes(element, 2, "[0, 0, 10]", "").contains(words), "{element}");
+        let judged = notes(element, 1, "[0, 0, 10]", "reference = { from = \"quadratic\" }\n");
+        assert!(!judged.contains(words) && judged.contains("of quadratic elements on these cells at"), "{judged}");
+    }
+    assert!(!notes("hex20", 1, "[0, 0, 10]", "").contains(words));
+}
+
+/// Errors at large deformation are to the finite elements of the mesh, which is told where they lock; a sum of loads with a force on points is no
+/// load of a continuous body.
+#[test]
+fn what_is_compared_with_cells_that_lock_is_told() {
+    let notes = |material: &str, loads: &str| {
+        let text = format!(
+            "mesh = {{ box = {{ element = \"tet4\", size = [0.04, 0.02, 0.02], cells = [4, 2, 2] }} }}\nmaterial = {{ young = 1e4, poisson = 0.45{material} }}\n\
+             fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\nload = [{loads}]\n"
+        );
+        let outcome = run(&Scene::parse(&text, Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap();
+        (
+            outcome.loads.iter().map(|load| load.measured.is_some()).collect::<Vec<_>>(),
+            springfit::report::notes(&outcome).join("\n"),
+        )
+    };
+    let pull = "{ name = \"pull\", group = \"xmax\", traction = [100, 0, 0] }";
+    let (judged, said) = notes(", law = \"stable-neo-hookean\"", pull);
+    assert!(
+        judged == [false]
+            && said.contains("errors at large deformation are relative to the finite elements of the mesh"),
+        "{said}"
+    );
+    let poke = "{ name = \"poke\", where = \"x > 0.0399 && y > 0.0199 && z > 0.0199\", force = [0.001, 0, 0] }";
+    let (judged, said) = notes("", &format!("{pull}, {poke}, {{ name = \"both\", sum = [\"pull\", \"poke\"] }}"));
+    assert_eq!(judged, [true, false, false], "{said}");
+    assert!(
+        said.contains("the load poke acts on points alone") && said.contains("the load both acts on points alone"),
+        "{said}"
+    );
+}

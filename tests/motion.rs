@@ -3,7 +3,7 @@
 use crate::messages::reads;
 use springfit::mesh::MeshSource;
 use springfit::report;
-use springfit::study::{Event, MotionEnding, Outcome, Scene, run, stages};
+use springfit::study::{Event, ModelMotion, MotionEnding, Outcome, Scene, run, stages};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -572,4 +572,24 @@ fn of_an_indefinite_network_no_error_is_that_of_the_fit() {
     assert!(sound.growth.is_none() && sound.linear_error.is_some());
     let notes = report::notes(&outcome).join("\n");
     assert_eq!(notes.matches("the fit's is").count(), 1, "{notes}");
+}
+
+/// What implicit Euler takes of the energy is told with its figure; Newmark's method takes none of a linear model.
+#[test]
+fn what_an_integrator_takes_is_told() {
+    let found = |integrator: &str| {
+        let outcome = outcome(&edited(BLOCK, "\"newmark\"", &format!("\"{integrator}\"")));
+        let motion = outcome.motion.as_ref().unwrap();
+        let drift = |model: &ModelMotion| model.records.last().unwrap().account.balance.as_ref().unwrap().drift;
+        let lost = motion.models.iter().map(|model| -drift(model)).fold(0.0, f64::max);
+        (lost, report::notes(&outcome).join("\n"))
+    };
+    for integrator in ["implicit-euler", "bdf2"] {
+        let (lost, said) = found(integrator);
+        let words = format!("{integrator} has taken {:.0} % of the largest energy from", 100.0 * lost);
+        assert_eq!(said.contains(&words), lost > 0.01, "{lost}: {said}");
+        assert!(lost > 0.01 || integrator == "bdf2", "{lost}");
+    }
+    let (lost, said) = found("newmark");
+    assert!(lost < 1e-6 && !said.contains("has taken"), "{lost}: {said}");
 }

@@ -93,7 +93,9 @@ impl Comparison {
         let elements = outcome.mesh.cell_count().max(1) as f64;
         let mut columns = vec![Column::words("fit"), Column::numbers("time").unit("µs/element")];
         for load in &outcome.loads {
-            columns.extend(["e_rms", "e_max"].map(|error| Column::numbers(error).unit("%").group(&*load.name)));
+            let standard = load.measured.map_or("", |measured| measured.standard.heading());
+            let group = format!("{}{standard}", load.name);
+            columns.extend(["e_rms", "e_max"].map(|error| Column::numbers(error).unit("%").group(&*group)));
         }
         columns.extend(["springs", "k < 0"].map(Column::numbers));
         columns.extend([Column::numbers("error of C").unit("%"), Column::words("network")]);

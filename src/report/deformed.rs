@@ -31,6 +31,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
             fit.and_then(|fit| fit.loads.get(place)).and_then(|l| Some((*name, l.displacement.as_ref()?, l.error)));
         panels.extend(found.filter(|_| panels.iter().all(|(known, ..)| known != name)));
     }
+    let standard = outcome.loads[place].measured.map_or("", |measured| measured.standard.heading());
     let largest = fem.chunks_exact(d).map(norm).fold(0.0, f64::max);
     if panels.is_empty() || largest == 0.0 {
         return None;
@@ -75,7 +76,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
                 .set("text-anchor", "middle")
                 .set("font-size", size)
         };
-        let error = error.map_or(String::new(), |e| format!("e_rms {:.2} %, e_max {:.2} %", e.rms, e.max));
+        let error = error.map_or(String::new(), |e| format!("e_rms {:.2} %, e_max {:.2} %{standard}", e.rms, e.max));
         document = document
             .add(path(&rest, "#999", "0.6 2.4", 0.8))
             .add(path(&body, "#0072b2", "5 3", 1.1))

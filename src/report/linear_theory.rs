@@ -2,7 +2,7 @@
 
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome, extent};
+use crate::study::{BodyLoad, ModelMotion, Outcome, extent, is_one_cell_across};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,6 +64,24 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
             "NOT TRUSTED: the linear finite elements move by more than the body's own size under {}: the load or a unit is wrong, or \
              the body needs a law at large deformation",
             beyond.join(", ")
+        )
+    })
+}
+
+/// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.
+const BENDS: f64 = 1.5;
+
+/// That a body of one cell across bends, which linear cells resist too much.
+pub(super) fn bending_note(outcome: &Outcome) -> Option<String> {
+    let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
+    let bends = |load: &&BodyLoad| load.deformation.is_some_and(|of| of.rotation > BENDS * of.strain);
+    let loads: Vec<&str> =
+        outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
+    (!loads.is_empty() && is_one_cell_across(&outcome.mesh)).then(|| {
+        format!(
+            "the body is about one cell across and bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
+             from = \"quadratic\" compares with quadratic elements",
+            loads.join(", ")
         )
     })
 }

@@ -5,8 +5,9 @@ use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::quality::counted;
 use super::table::Digits::{Fixed, Significant};
 use super::table::{Cell, Column, Table, csv};
+use crate::dynamics::Integrator;
 use crate::scalar::norm;
-use crate::study::{ModelMotion, MotionEnding, MotionRecipe, Outcome, Record, motion_title};
+use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record, motion_title};
 
 /// One row per model.
 pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRecord]) -> Table {
@@ -103,6 +104,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
     let Some(motion) = &outcome.motion else { return Vec::new() };
     let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
     let mut notes = step_notes(&motion.recipe);
+    notes.extend(loss(motion));
     for model in &motion.models {
         let name = &model.name;
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {
@@ -135,6 +137,28 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
         }
     }
     notes
+}
+
+/// The share of the energy from which on what an integrator takes is reported.
+const LOST: f64 = 0.01;
+
+/// How much energy an integrator that damps has taken from the model that lost most, where that is known. A vibration has lost half of that share
+/// of its amplitude.
+fn loss(motion: &MotionOutcome) -> Option<String> {
+    let integrator = motion.recipe.options.integrator;
+    if !matches!(integrator, Integrator::ImplicitEuler | Integrator::Bdf2) {
+        return None;
+    }
+    let lost = |model: &ModelMotion| Some((-model.records.last()?.account.balance.as_ref()?.drift, model.name.clone()));
+    let (lost, name) = motion.models.iter().filter_map(lost).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (lost > LOST).then(|| {
+        format!(
+            "{} has taken {:.0} % of the largest energy from {name} (drift of the energy), and about half of that share from the amplitude of a \
+             vibration: integrator = \"newmark\" takes none, and smaller steps take less",
+            integrator.name(),
+            100.0 * lost
+        )
+    })
 }
 
 /// One line per state written: `t` in s, energies, work and what was dissipated in J, the drift as a share of the largest energy,

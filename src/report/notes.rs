@@ -2,7 +2,7 @@
 
 use super::agreement::{Agreement, agreements};
 use super::frequencies::frequency_notes;
-use super::linear_theory::{distrust, linear_notes};
+use super::linear_theory::{bending_note, distrust, linear_notes};
 use super::materials::material_note;
 use super::motion::motion_notes;
 use crate::mesh::{CellBlock, Filled};
@@ -48,6 +48,7 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
         .chain(outcome.of_loads.iter().cloned())
         .chain(lumping(outcome))
         .chain(finite)
+        .chain(bending_note(outcome))
         .chain(linear_notes(outcome))
         .chain(silent)
         .chain(measured)

@@ -12,7 +12,7 @@ use crate::solve::{Equations, KnownEquations, factor_cost};
 use crate::study::locking::Locking;
 use crate::study::outcome::Standard;
 use crate::study::progress::{Event, Progress};
-use crate::study::scene::{LoadCase, Scene};
+use crate::study::scene::{LoadCase, LoadKind, Scene};
 
 /// The truth takes at most this many times what the finite elements and the networks of the scene take, or a time that nobody notices.
 const DEAREST: f64 = 3.0;
@@ -53,10 +53,11 @@ pub fn judge_by_truth(
 ) -> Vec<String> {
     let Some(Locking { poisson, .. }) = Locking::of(mesh, material, &|_| true) else { return Vec::new() };
     let locks = format!("at nu = {poisson} linear cells lock");
+    let is_of_points = |load: &LoadCase| is_of_points(load, scene.loads(), mesh);
     let is_judged: Vec<bool> =
-        scene.loads().iter().map(|load| load.measured.is_none() && !is_of_points(load, mesh)).collect();
+        scene.loads().iter().map(|load| load.measured.is_none() && !is_of_points(load)).collect();
     let mut notes = Vec::new();
-    for load in scene.loads().iter().filter(|load| is_of_points(load, mesh)) {
+    for load in scene.loads().iter().filter(|load| is_of_points(load)) {
         notes.push(format!(
             "{locks}, and the load {} acts on points alone, which move without bound as cells become smaller: its errors are relative to the \
              finite elements of the mesh, which are too stiff",
@@ -135,11 +136,16 @@ fn forget(cases: &mut [Case], is_judged: &[bool]) {
     }
 }
 
-/// Whether the load is a force on points, which is no load of a continuous body.
-fn is_of_points(load: &LoadCase, mesh: &Mesh) -> bool {
-    let Some((part, Action::Force(_))) = load.single() else { return false };
-    let carrier = part.selection(mesh.dimension).and_then(|selection| selection.carrier(mesh));
-    matches!(carrier, Ok(Carrier::Points(_)))
+/// Whether the load is a force on points, which is no load of a continuous body, or has one among those that it consists of.
+fn is_of_points(load: &LoadCase, all: &[LoadCase], mesh: &Mesh) -> bool {
+    match &load.kind {
+        LoadKind::Sum(parts) => parts.iter().any(|&part| is_of_points(&all[part], all, mesh)),
+        LoadKind::Single { part, action: Action::Force(_), .. } => {
+            let carrier = part.selection(mesh.dimension).and_then(|selection| selection.carrier(mesh));
+            matches!(carrier, Ok(Carrier::Points(_)))
+        }
+        LoadKind::Single { .. } => false,
+    }
 }
 
 /// What it takes to assemble and to factorise `models` of a mesh, to solve each for all loads, and to compare the networks among them, in

@@ -34,6 +34,7 @@ impl Answers {
         let Solved { large, linear, masses, .. } = solved;
         let (displacements, works, followed, laws) = match large {
             Some(large) => {
+                posed.tell_of_locking();
                 at_large(posed, &large, fits, progress)?;
                 let works = vec![None; posed.cases.len()];
                 (large.displacements, works, large.followed.into_iter().map(Some).collect(), Some(large.laws))

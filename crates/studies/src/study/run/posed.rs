@@ -8,6 +8,7 @@ use crate::model::Support;
 use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
+use crate::study::locking::Locking;
 use crate::study::outcome::FitOutcome;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
@@ -74,6 +75,15 @@ impl<'a> Posed<'a> {
         if self.scene.reference().is_none() {
             let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, progress);
             self.of_reference.extend(notes);
+        }
+    }
+
+    /// Says that the finite elements which errors at large deformation are relative to lock.
+    pub fn tell_of_locking(&mut self) {
+        if let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
+            self.of_reference.push(format!(
+                "at nu = {poisson} linear cells lock: errors at large deformation are relative to the finite elements of the mesh, which are too stiff"
+            ));
         }
     }
 
