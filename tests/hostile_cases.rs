@@ -181,6 +181,11 @@ fn what_errors_are_relative_to_is_said() {
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }
+    let said = run(&(LOCKING.to_string() + "[reference]\nrefine = 1\n"));
+    assert!(
+        said.contains("those of the finer body with them: errors are relative to what is still too stiff"),
+        "{said}"
+    );
     let point =
         LOCKING.replace("group = \"xmax\"\ntraction", "where = \"x > 0.00999 && y > 0.00099 && z > 0.00099\"\nforce");
     let said = run(&point);

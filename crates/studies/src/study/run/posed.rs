@@ -9,7 +9,7 @@ use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
 use crate::study::locking::Locking;
-use crate::study::outcome::FitOutcome;
+use crate::study::outcome::{FitOutcome, Standard};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 use crate::study::time::TimePlan;
@@ -72,9 +72,17 @@ impl<'a> Posed<'a> {
 
     /// Makes errors relative to quadratic elements where the cells of the mesh lock and the scene does not say what they are relative to.
     pub fn judge_by_truth(&mut self, progress: &mut Progress) {
-        if self.scene.reference().is_none() {
+        let Some(entry) = self.scene.reference() else {
             let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, progress);
             self.of_reference.extend(notes);
+            return;
+        };
+        let is_finer = entry.standard() == Standard::FinerBody && !entry.is_of_cells() && entry.mesh.is_none();
+        if let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| is_finer) {
+            self.of_reference.push(format!(
+                "at nu = {poisson} linear cells lock, and those of the finer body with them: errors are relative to what is still too stiff; from = \
+                 \"quadratic\" in [reference] does not lock"
+            ));
         }
     }
 
