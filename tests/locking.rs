@@ -314,3 +314,36 @@ fn what_is_compared_with_cells_that_lock_is_told() {
         "{said}"
     );
 }
+
+/// `springfit fit` makes the same springs on patches as a run of a scene under the same support, if it is told what is held.
+#[test]
+fn a_fit_on_patches_is_told_what_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = |arguments: &str| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"));
+        let output = command.args(arguments.split(' ')).current_dir(folder.path()).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        said
+    };
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cube_tet.msh");
+    let group = "fixed";
+    let text = format!(
+        "mesh = {{ file = {mesh:?}, scale = \"cm\" }}\nmaterial = {{ young = 1e4, poisson = 0.49 }}\n\
+         fit = [{{ name = \"patches\", objective = \"exact\", volume = \"patches\" }}]\nfix = [{{ group = \"{group}\" }}]\n"
+    );
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    program("run s.toml --out out");
+    let springs = |path: &str| {
+        let text = std::fs::read_to_string(folder.path().join(path)).unwrap();
+        serde_json::from_str::<serde_json::Value>(&text).unwrap()["springs"].to_string()
+    };
+    let known = springs("out/patches.json");
+    let fit = format!("fit {} --scale 0.01 --young 1e4 --poisson 0.49 --volume patches", mesh.display());
+    let said = program(&format!("{fit} --fix {group} -o held.json"));
+    assert!(!said.contains("no point is held"), "{said}");
+    assert_eq!(springs("held.json"), known);
+    let said = program(&format!("{fit} -o free.json"));
+    assert!(said.contains("no point is held") && said.contains("--fix"), "{said}");
+    assert_ne!(springs("free.json"), known);
+}

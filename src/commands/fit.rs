@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum};
 use springfit::Sum;
 use springfit::element::SpringKind;
 use springfit::error::{Error, ErrorKind, Result};
+use springfit::fit::VolumeSprings;
 use springfit::material::{CellMap, Material, MaterialMap, Moduli};
 use springfit::mesh::{Mesh, MeshSource, Selection, listed_endings};
 use springfit::model::{Support, is_exact, length_shares};
@@ -17,8 +18,8 @@ use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
 use springfit::study::{
-    BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Reference, WholeBody, assumed, fit_mesh,
-    fit_some, fit_without_errors, point_masses,
+    BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Recipe, Reference, WholeBody, assumed,
+    fit_mesh, fit_some, fit_without_errors, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -46,7 +47,7 @@ pub struct Fit {
     objective: Option<String>,
     #[command(flatten)]
     keys: FitFlags,
-    /// A group of the mesh that is held; may be repeated (whole only)
+    /// A group of the mesh that is held; may be repeated (whole, and exact with volume springs on patches)
     #[arg(long, help_heading = "Whole-object fits")]
     fix: Vec<String>,
     /// Plane mesh or surface: stress or strain [default: stress]
@@ -123,12 +124,21 @@ impl Fit {
         };
         let whole = named.recipe.whole().is_some();
         let sampled = !whole && named.recipe.sampled().is_some();
-        if whole == self.fix.is_empty() {
-            let problem = match whole {
-                true => "expected a group of the mesh that is held, which the objective \"whole\" requires, found none",
-                false => "belongs to the objective \"whole\", found with another",
-            };
-            return Err(Error::at("--fix", problem));
+        let patches = matches!(&named.recipe, Recipe::Exact(recipe) if recipe.volume == VolumeSprings::Patches);
+        match (whole || patches, self.fix.is_empty()) {
+            (true, true) if whole => {
+                let problem =
+                    "expected a group of the mesh that is held, which the objective \"whole\" requires, found none";
+                return Err(Error::at("--fix", problem));
+            }
+            (false, false) => {
+                let problem = "belongs to the objective \"whole\" and to --volume patches, found with another fit";
+                return Err(Error::at("--fix", problem));
+            }
+            (true, true) => terminal.note(
+                "no point is held: patches of points that will be held lock as cells do; --fix names the groups that hold them",
+            ),
+            _ => {}
         }
         if sampled && self.keys.law.is_none() {
             let expected = "the energy whose forces the objective \"sampled\" samples, such as neo-hookean";
@@ -137,7 +147,7 @@ impl Fit {
         let mesh = self.options.mesh(&self.mesh)?;
         let material = constants.material(&mesh).map_err(Error::of_option)?;
         let assumed = assumed(&mesh, constants.thickness, constants.area);
-        let support = whole.then(|| self.support(&mesh)).transpose()?;
+        let support = (!self.fix.is_empty()).then(|| self.support(&mesh)).transpose()?;
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {
             let title = self.mesh.display().to_string();
@@ -153,8 +163,13 @@ impl Fit {
         if whole {
             interrupt::end_early(&controls);
         }
-        let body = support.as_ref().map(|support| WholeBody::new(&mesh, material, support, &controls));
-        let reference = Reference { whole: body.as_ref(), ..Reference::default() };
+        let body =
+            support.as_ref().filter(|_| whole).map(|support| WholeBody::new(&mesh, material, support, &controls));
+        let d = mesh.dimension;
+        let held: Vec<bool> = support
+            .as_ref()
+            .map_or(Vec::new(), |support| (0..mesh.point_count()).map(|point| support.is_fixed(point * d)).collect());
+        let reference = Reference { whole: body.as_ref(), held: &held, ..Reference::default() };
         let told = &mut |event: Event| terminal.show(event);
         let fit = match self.no_errors {
             false => fit_mesh(&mesh, material, &reference, &named, told),

@@ -125,6 +125,8 @@ fn formulas_in_latex_name_any_group_as_a_text() {
         let (code, comments) = lexed(&derivation.latex().replace("\\%", "PERCENT"), "%");
         assert!(comments.contains(&printable(&text).replace("\\%", "PERCENT")), "{:?}", text.get(..40));
         let group = super::readers::of_latex(&code.replace("PERCENT", "\\%"), "k_{\\text{", " 0-1}} &=");
-        assert_eq!(group.as_deref(), Some(&*printable(&text)), "{code}");
+        // A colon keeps a digit at the end of the name from the numbers of the nodes.
+        let colon = if printable(&text).ends_with(|c: char| c.is_ascii_digit()) { ":" } else { "" };
+        assert_eq!(group, Some(format!("{}{colon}", printable(&text))), "{code}");
     }
 }
