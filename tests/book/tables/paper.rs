@@ -1,7 +1,8 @@
-//! Table 1 of the paper.
+//! Table 1 of the paper, and the sizes of its meshes.
 
 use super::markdown;
-use springfit::study::{Index, PaperRow, run_paper, write_experiments};
+use crate::book::markdown::root;
+use springfit::study::{Index, PaperRow, Scene, run_paper, write_experiments};
 
 const FITS: [&str; 2] = ["spectral", "frobenius"];
 
@@ -39,4 +40,31 @@ pub fn first() -> String {
         "`whole` with volume springs",
     ];
     markdown(&header, &rows)
+}
+
+/// The objects of table 1 with their scenes, and the nodes and elements that it prints.
+const MESHES: [(&str, &str, [usize; 2]); 7] = [
+    ("tissue, triangles", "tissue_tri", [210, 366]),
+    ("tissue, quadrilaterals", "tissue_quad", [445, 405]),
+    ("cylinder, tetrahedra", "cylinder_tet", [124, 381]),
+    ("cylinder, hexahedra", "cylinder_hex", [675, 496]),
+    ("cylinder with a hole, tetrahedra", "cylinder_hole_tet", [404, 1559]),
+    ("cube, tetrahedra", "cube_tet", [170, 592]),
+    ("cube, hexahedra", "cube_hex", [729, 512]),
+];
+
+/// The sizes of the meshes of the paper beside ours.
+pub fn meshes() -> String {
+    let row = |(object, name, printed): &(&str, &str, [usize; 2])| {
+        let path = root().join(format!("scenes/paper/{name}.toml"));
+        let mesh = Scene::load(&path).unwrap().build_mesh().unwrap();
+        let ours = [mesh.point_count(), mesh.cell_count()];
+        let mut cells = vec![object.to_string()];
+        cells.extend([0, 1].map(|i| format!("{} / {}", printed[i], ours[i])));
+        cells
+    };
+    markdown(
+        &["object", "nodes: printed / ours", "elements: printed / ours"],
+        &MESHES.iter().map(row).collect::<Vec<_>>(),
+    )
 }
