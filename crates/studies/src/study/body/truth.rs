@@ -67,6 +67,18 @@ pub fn judge_by_truth(
     if !is_judged.contains(&true) {
         return notes;
     }
+    let too_long = || {
+        format!(
+            "{locks}: errors are relative to the finite elements of the mesh, which are too stiff; quadratic elements would take more than \
+             {DEAREST} times as long as the run: from = \"quadratic\" in [reference] asks for them"
+        )
+    };
+    let growth = 1 << mesh.cell_dimension();
+    let is_small = |growth: usize| growth * mesh.point_count() <= MOST_POINTS;
+    if !is_small(growth) {
+        notes.push(too_long());
+        return notes;
+    }
     let mut chosen = mesh.clone();
     scene.choose(&mut chosen);
     let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + scene.fits().len(), cases.len(), scene.fits().len()));
@@ -78,12 +90,7 @@ pub fn judge_by_truth(
         progress(Event::stage("quadratic elements", 0, 1));
         Level::solve(scene, mesh, &finer, standard).map(Some)
     };
-    let growth = 1 << mesh.cell_dimension();
-    let is_small = |growth: usize| growth * mesh.point_count() <= MOST_POINTS;
-    let first = match is_small(growth) {
-        true => level(chosen.elevated(), Standard::Quadratic),
-        false => Ok(None),
-    };
+    let first = level(chosen.elevated(), Standard::Quadratic);
     let second = match (&first, is_small(growth * growth)) {
         (Ok(Some(_)), true) => level(chosen.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
         _ => Ok(None),
@@ -93,10 +100,7 @@ pub fn judge_by_truth(
         // A second level that is not solved leaves the first one, whose error is then not known.
         (Ok(Some(first)), Ok(None) | Err(_)) => (first, None),
         (Ok(None), _) => {
-            notes.push(format!(
-                "{locks}: errors are relative to the finite elements of the mesh, which are too stiff; quadratic elements would take more than \
-                 {DEAREST} times as long as the run: from = \"quadratic\" in [reference] asks for them"
-            ));
+            notes.push(too_long());
             return notes;
         }
         (Err(error), _) => {
