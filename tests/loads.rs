@@ -242,7 +242,7 @@ displacement = ["0.01*x - 0.1*y", "0.1*x + 0.02*y + 0.03*z", "-0.02*x - 0.01*z"]
     }
 }
 
-/// A force on points that are held, and displacements that were measured where the support holds others, are told.
+/// A note names the share of a force that acts on held points, and a measured displacement that differs from the one that the support prescribes.
 #[test]
 fn what_a_support_takes_from_a_load_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -284,8 +284,7 @@ fn a_body_of_one_cell_across_that_bends_is_told() {
     assert!(!notes("hex20", 1, "[0, 0, 10]", "").contains(words));
 }
 
-/// Errors at large deformation are to the finite elements of the mesh, which is told where they lock; a sum of loads with a force on points is no
-/// load of a continuous body.
+/// A note says where errors are relative to elements that lock: at large deformation, and under a force on points or a sum of loads with one.
 #[test]
 fn what_is_compared_with_cells_that_lock_is_told() {
     let notes = |material: &str, loads: &str| {
@@ -315,7 +314,7 @@ fn what_is_compared_with_cells_that_lock_is_told() {
     );
 }
 
-/// `springfit fit` makes the same springs on patches as a run of a scene under the same support, if it is told what is held.
+/// With the same held groups, `springfit fit --fix` and a run of a scene give the same springs on patches.
 #[test]
 fn a_fit_on_patches_is_told_what_is_held() {
     let folder = tempfile::tempdir().unwrap();

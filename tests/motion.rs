@@ -574,7 +574,7 @@ fn of_an_indefinite_network_no_error_is_that_of_the_fit() {
     assert_eq!(notes.matches("the fit's is").count(), 1, "{notes}");
 }
 
-/// What implicit Euler takes of the energy is told with its figure; Newmark's method takes none of a linear model.
+/// A note prints the share of the energy that implicit Euler or BDF2 has dissipated. Newmark's method conserves the energy of a linear model.
 #[test]
 fn what_an_integrator_takes_is_told() {
     let found = |integrator: &str| {

@@ -51,11 +51,9 @@ fn moved(outcome: &Outcome) -> Option<&ModelMotion> {
 /// That no figure under a load is to be trusted: linear finite elements move by more than the body's own size.
 pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
     let (d, size) = (outcome.mesh.dimension, extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
-    let length = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
-    let moved = |load: &BodyLoad| load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
     let linear = outcome.loads.iter().filter(|load| load.deformation.is_some());
     let beyond: Vec<String> = linear
-        .map(|load| (load, moved(load)))
+        .map(|load| (load, load.largest_displacement(d)))
         .filter(|(_, moved)| !(*moved <= size))
         .map(|(load, moved)| format!("{} ({:.0} % of the body)", load.name, 100.0 * moved / size))
         .collect();

@@ -99,8 +99,7 @@ fn largest(outcome: &Outcome) -> Option<String> {
     let d = outcome.mesh.dimension;
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     let moved = |load: &BodyLoad| {
-        let length = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
-        let most = load.fem.chunks_exact(d).map(length).fold(0.0, f64::max);
+        let most = load.largest_displacement(d);
         format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
     };
     let loads: Vec<String> = outcome.loads.iter().filter(|load| load.is_reached()).map(moved).collect();

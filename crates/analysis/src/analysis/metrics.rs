@@ -44,6 +44,11 @@ pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<
     Some(error).filter(|error| error.rms.is_finite() && error.max.is_finite())
 }
 
+/// The total of forces on points, `[points · dimension]`, along each axis, N.
+pub fn resultant(forces: &[f64], dimension: usize) -> Vec<f64> {
+    (0..dimension).map(|k| forces.iter().skip(k).step_by(dimension).sum()).collect()
+}
+
 /// `Σ f_i u_i`.
 pub fn product(f: &[f64], u: &[f64]) -> f64 {
     f.iter().zip(u).map(|(f, u)| f * u).collect::<Sum>().value()

@@ -5,7 +5,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, Fit, fit_cells};
 use crate::material::{Material, State};
-use crate::mesh::{BoxMesh, CellBlock, Mesh, Selection, SideIndex};
+use crate::mesh::{BoxMesh, Mesh};
 use crate::model::{Entries, Network, Support, content, finite_elements};
 use crate::solve::System;
 use crate::springs::Springs;
@@ -107,12 +107,8 @@ impl Lattice {
 /// inner point.
 pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<EffectiveModuli>> {
     let d = mesh.dimension;
-    let on_side = |side: SideIndex| {
-        let CellBlock { element, connectivity } = &mesh.blocks[side.cell.block];
-        let nodes = &connectivity[side.cell.cell * element.nodes()..][..element.nodes()];
-        element.sides()[side.side].nodes.iter().map(|&a| nodes[a]).collect::<Vec<_>>()
-    };
-    let boundary: BTreeSet<usize> = Selection::Everything.sides(mesh)?.into_iter().flat_map(on_side).collect();
+    let outer = mesh.outer_points();
+    let boundary: BTreeSet<usize> = (0..mesh.point_count()).filter(|&p| outer[p]).collect();
     if d != mesh.cell_dimension() || boundary.len() == mesh.point_count() {
         return Ok(None);
     }

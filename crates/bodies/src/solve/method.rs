@@ -55,7 +55,7 @@ impl StaticSolver {
             return self;
         }
         let [least, largest] = moduli.map(Hooke::least_diagonal).range();
-        let is_linear = mesh.blocks.iter().all(|block| block.element.nodes() == block.element.cell.corners().len());
+        let is_linear = mesh.blocks.iter().all(|block| block.element.has_corners_alone());
         let keeps_volume = |hooke: &Hooke| hooke.moduli().is_some_and(|of| of.lambda > INCOMPRESSIBLE * of.mu);
         match largest > CONTRAST * least || (!is_linear && moduli.values().any(keeps_volume)) {
             true => StaticSolver { method: StaticMethod::Cholesky, ..self },

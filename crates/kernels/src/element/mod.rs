@@ -175,6 +175,11 @@ impl Element {
         self.cell.dimension()
     }
 
+    /// Whether the nodes are the corners of the cell alone, so that its edges are straight.
+    pub fn has_corners_alone(&self) -> bool {
+        self.nodes() == self.cell.corners().len()
+    }
+
     /// The number of nodes.
     pub fn nodes(&self) -> usize {
         self.functions.values.len()

@@ -91,7 +91,7 @@ impl Springs {
         };
         for (index, group) in chosen.iter().enumerate() {
             let embedded = element.space() > element.dimension();
-            let bent = group.is_content() && element.nodes() > element.cell.corners().len();
+            let bent = group.is_content() && !element.has_corners_alone();
             if embedded && (bent || group.kind == SpringKind::Measure) {
                 let problem =
                     "cannot be used on a surface or curve in space: its measure is known in the cell's plane only";

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 impl Mesh {
     /// Calls `visit` for each set of points with the sides that have it, in the order of the cells. The sets have no order.
-    pub(super) fn each_side_set(&self, mut visit: impl FnMut(&[SideIndex])) {
+    pub fn each_side_set(&self, mut visit: impl FnMut(&[SideIndex])) {
         let sides: Vec<usize> = self.blocks.iter().map(|block| block.element.sides().len()).collect();
         let counts = self.blocks.iter().zip(&sides).map(|(block, sides)| block.cells().len() * sides);
         let (starts, count) = running_sums(counts);

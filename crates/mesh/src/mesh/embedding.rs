@@ -189,7 +189,7 @@ impl CellBox {
         let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
         let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
         let centre = std::array::from_fn(|k| points.iter().map(|x| x[k]).sum::<f64>() / points.len() as f64);
-        let is_straight = element.cell.is_simplex() && element.nodes() == element.cell.corners().len();
+        let is_straight = element.cell.is_simplex() && element.has_corners_alone();
         CellBox { cell, ends: [low, high], centre, is_straight }
     }
 

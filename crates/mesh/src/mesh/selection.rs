@@ -74,6 +74,14 @@ impl Selection {
 }
 
 impl Mesh {
+    /// Whether each point is on a side on the boundary, `[points]`.
+    pub fn outer_points(&self) -> Vec<bool> {
+        let mut is_outer = vec![false; self.point_count()];
+        let sides = outer_sides(self, &vec![true; self.point_count()]);
+        sides.iter().flat_map(|side| self.side_points(side)).for_each(|p| is_outer[p] = true);
+        is_outer
+    }
+
     /// Chooses what conditions select, on this mesh and on all into which its cells are divided: a point of a divided cell is selected where
     /// all points whose shape functions do not vanish there are. What is held, loaded or of one material is therefore the same part of the body
     /// on every mesh, whatever the condition says between the points of this one.

@@ -133,7 +133,7 @@ pub fn draft(
     line(
         "# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n",
     );
-    let is_bent = |block: &CellBlock| block.element.nodes() > block.element.cell.corners().len();
+    let is_bent = |block: &CellBlock| !block.element.has_corners_alone();
     let (fit, objective, words) = match mesh.cell_dimension() < mesh.dimension && mesh.blocks.iter().any(is_bent) {
         true => ("least squares", "frobenius", "bent cells of a surface or curve have no exact network"),
         false => ("exact", "exact", "springs and volume constraints that have the energy of the material"),

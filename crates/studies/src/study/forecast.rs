@@ -1,6 +1,7 @@
 //! What a scene will take, before it is run: its sizes, and estimates of time and memory.
 
 use super::body::{Case, LargeBody, load_cases};
+use super::cost::{COMPARISONS, REFINEMENTS, entries};
 use super::fits::{NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
@@ -28,10 +29,6 @@ const SPARSE: f64 = 0.8;
 const SOLUTIONS: f64 = 1e9;
 /// Work that is not measured at this rate takes no time.
 const SLOWEST_RATE: f64 = 1e8;
-/// Solutions while one network is compared with the body: Lanczos' steps.
-const COMPARISONS: f64 = 45.0;
-/// Solutions of one load, with their refinement.
-const REFINEMENTS: f64 = 3.0;
 /// Newton's iterations of a step of the load, as most take.
 const ITERATIONS: f64 = 6.0;
 /// Seconds for each unknown of a body solved by iterations: to assemble a model, build its levels and prove that it is stable, and for
@@ -180,13 +177,6 @@ impl Forecast {
             format!("about {time} and {memory} are expected{more}, {part} of it for {} (an estimate)", longest.name)
         })
     }
-}
-
-/// Entries of the stiffnesses of all cells.
-fn entries(mesh: &Mesh) -> f64 {
-    let of_block =
-        |block: &CellBlock| block.cells().len() as f64 * ((block.element.nodes() * mesh.dimension) as f64).powi(2);
-    mesh.blocks.iter().map(of_block).sum()
 }
 
 /// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the

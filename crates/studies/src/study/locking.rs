@@ -2,7 +2,7 @@
 
 use crate::element::Element;
 use crate::material::{MaterialMap, State};
-use crate::mesh::{CellBlock, Mesh, Selection};
+use crate::mesh::{CellBlock, Mesh};
 
 /// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
 const LOCKS: f64 = 0.4;
@@ -25,9 +25,8 @@ impl Locking {
         }
         let of_block = |(index, block): (usize, &CellBlock)| {
             let element = &block.element;
-            let is_linear = is_asked(element)
-                && element.nodes() == element.cell.corners().len()
-                && element.tabulation.volumetric.is_empty();
+            let is_linear =
+                is_asked(element) && element.has_corners_alone() && element.tabulation.volumetric.is_empty();
             if !is_linear {
                 return None;
             }
@@ -45,18 +44,12 @@ const MOST_CELLS: usize = 100_000;
 /// Whether linear cells of a body would be too stiff in bending: at least half of them have no point inside the body, so that there is about one
 /// across. `false` of surfaces and curves in space, which do not bend, and of meshes of more than 100 000 cells, where it is not looked at.
 pub fn is_one_cell_across(mesh: &Mesh) -> bool {
-    let is_linear = |block: &CellBlock| block.element.nodes() == block.element.cell.corners().len();
+    let is_linear = |block: &CellBlock| block.element.has_corners_alone();
     let count = mesh.cell_count();
     if mesh.cell_dimension() != mesh.dimension || count > MOST_CELLS || !mesh.blocks.iter().all(is_linear) {
         return false;
     }
-    let mut is_outer = vec![false; mesh.point_count()];
-    let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
-    for side in sides {
-        let nodes = mesh.cell_nodes(side.cell);
-        let element = &mesh.blocks[side.cell.block].element;
-        element.sides()[side.side].nodes.iter().for_each(|&node| is_outer[nodes[node]] = true);
-    }
+    let is_outer = mesh.outer_points();
     let outer = mesh.cell_indices().filter(|cell| mesh.cell_nodes(*cell).iter().all(|&p| is_outer[p])).count();
     2 * outer >= count
 }

@@ -14,6 +14,7 @@ mod checkpoint;
 mod choice;
 mod comparison;
 mod convergence;
+mod cost;
 mod distributed;
 mod draft;
 mod extent;

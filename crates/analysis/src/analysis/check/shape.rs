@@ -57,8 +57,12 @@ pub fn rank(r: &DMatrix<f64>) -> usize {
 pub fn spurious_modes(element: &Element) -> Option<usize> {
     let mut geometry = Geometry::new(&element.tabulation);
     geometry.set(&element.tabulation, &element.positions).ok()?;
-    let r = geometry.stiffness(Moduli { lambda: 1.0, mu: 1.0 });
-    Some(deformations(element).saturating_sub(rank(&r)))
+    Some(deformations(element).saturating_sub(rank_of(&geometry)))
+}
+
+/// The rank of R of a cell.
+fn rank_of(geometry: &Geometry) -> usize {
+    rank(&geometry.stiffness(Moduli { lambda: 1.0, mu: 1.0 }))
 }
 
 fn stiffness(element: &Element) -> Property {
@@ -73,8 +77,7 @@ fn stiffness(element: &Element) -> Property {
         );
     }
     for x in shapes {
-        let r = geometry(element, &x).stiffness(Moduli { lambda: 1.0, mu: 1.0 });
-        least = least.min(rank(&r));
+        least = least.min(rank_of(&geometry(element, &x)));
     }
     let spurious = expected - least;
     let finding = format!("{least} of {expected}, {spurious} spurious modes");

@@ -1,6 +1,6 @@
 //! Samples of a mesh: the cells around some neighbouring points.
 
-use crate::mesh::{CellBlock, Mesh, Selection};
+use crate::mesh::{CellBlock, Mesh};
 use std::collections::{HashMap, VecDeque};
 
 /// The number of points of a sample at which no further cells are added, because its equations are solved densely.
@@ -126,11 +126,7 @@ impl<'a> Stars<'a> {
         );
         let mut is_held: Vec<bool> =
             points.iter().map(|&p| self.around(p).any(|cell| cells.binary_search(&cell).is_err())).collect();
-        for side in Selection::Everything.sides(&mesh).expect("everything is no group") {
-            let CellBlock { element, connectivity } = &mesh.blocks[side.cell.block];
-            let nodes = &connectivity[side.cell.cell * element.nodes()..];
-            element.sides()[side.side].nodes.iter().for_each(|&a| is_held[nodes[a]] = true);
-        }
+        is_held.iter_mut().zip(mesh.outer_points()).for_each(|(held, outer)| *held |= outer);
         for (end, is_single) in ends(&mesh) {
             is_held[end] |= is_single;
         }
@@ -142,17 +138,9 @@ impl<'a> Stars<'a> {
 
 /// Whether three cells or more share a side.
 fn is_joined(mesh: &Mesh) -> bool {
-    let mut counts: HashMap<Vec<usize>, usize> = HashMap::new();
-    for block in &mesh.blocks {
-        for nodes in block.cells() {
-            for side in block.element.sides() {
-                let mut points: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
-                points.sort_unstable();
-                *counts.entry(points).or_default() += 1;
-            }
-        }
-    }
-    counts.values().any(|count| *count > 2)
+    let mut is_joined = false;
+    mesh.each_side_set(|sides| is_joined |= sides.len() > 2);
+    is_joined
 }
 
 /// The end points of cells that are lines, which have no sides, and whether only one cell ends there.

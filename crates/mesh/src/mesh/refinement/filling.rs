@@ -30,7 +30,7 @@ pub fn filling(element: &Element, cell: Cell, known: &[Arc<Element>]) -> Result<
 pub fn quadratic(element: &Element) -> Result<Arc<Element>> {
     let (cell, linear) = (element.cell, element.cell.corners().len());
     let expected = |words: &str| Error::expected("mesh", words, &element.name).of_kind(ErrorKind::Unsupported);
-    if element.nodes() != linear {
+    if !element.has_corners_alone() {
         return Err(expected("cells whose nodes are their corners"));
     }
     let corners = cell.corners();

@@ -1,14 +1,16 @@
 //! A finer mesh of the body of a scene, whose finite elements the networks are compared with.
 
-use super::answer::{check_residual, largest_residual, not_definite};
+use super::answer::{check_residual, largest_residual};
 use super::case::{Case, FinerSolution};
 use super::cases::{applied_cases, held};
-use crate::analysis::metrics::square;
+use super::finer::{answers, equations};
+use crate::analysis::metrics::resultant;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
 use crate::mesh::{CellBlock, CellIndex, Embedding, Field, Mesh};
-use crate::model::{Lumping, Moments, Support, finite_elements, lumped_masses};
+use crate::model::{Lumping, Moments, Support, lumped_masses};
 use crate::solve::{Equations, KnownEquations, StaticSolver};
+use crate::springs::norm;
 use crate::study::fits::{Answers, Finer, RegionFactors};
 use crate::study::outcome::Standard;
 use crate::study::progress::{Event, Progress};
@@ -61,9 +63,7 @@ impl FineBody {
     pub fn of(scene: &Scene, mesh: &Mesh, progress: &mut Progress) -> Result<Option<FineBody>> {
         let Some(entry) = scene.reference().filter(|entry| !entry.is_of_cells()) else { return Ok(None) };
         let at = |e: Error| e.placed(|e| scene.at("reference", e));
-        let mut chosen = mesh.clone();
-        scene.choose(&mut chosen);
-        let mut fine = entry.build(scene.path(), &chosen).map_err(at)?;
+        let mut fine = entry.build(scene.path(), mesh).map_err(at)?;
         if fine.dimension != mesh.dimension {
             let expected = format!("a mesh of dimension {}", mesh.dimension);
             return Err(at(Error::expected("mesh", expected, fine.dimension)));
@@ -77,7 +77,7 @@ impl FineBody {
         let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
         // Bodies whose surfaces are not the same have points that no cell of the other has; conditions are then asked on the finer mesh.
         if entry.mesh.is_some() && embedding.outside == 0 && sampling.outside == 0 {
-            fine.choose_as_on(&chosen, &embedding);
+            fine.choose_as_on(mesh, &embedding);
         }
         let support = held(scene, &fine)?;
         let material = scene.material_of(&fine)?;
@@ -103,9 +103,9 @@ impl FineBody {
     /// The finer body has no solution under a load.
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
         let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
-        let found = self.displacements(&own, progress).map_err(|e| e.placed(|e| scene.at("reference", e)))?;
-        let entries =
-            own.iter().any(|own| own.is_prescribed).then(|| finite_elements(&self.mesh, self.material.moduli()));
+        let body = (&self.mesh, &self.material, self.solver);
+        let found = answers(body, &own, &self.equations, "finer body", progress);
+        let found = found.map_err(|e| e.placed(|e| scene.at("reference", e)))?;
         let dimension = self.mesh.dimension;
         for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
             if let Some(note) = other_force(case, own, dimension) {
@@ -115,44 +115,25 @@ impl FineBody {
                 case.forces = self.embedding.restrict(&own.forces);
             }
             if !case.is_measured {
-                let displacements = self.sampling.interpolate(&fine).into_iter().map(Some).collect();
+                let displacements = self.sampling.interpolate(&fine.displacement).into_iter().map(Some).collect();
                 case.measured = Some(Field { displacements });
-                let work = own.work(&fine, || entries.as_ref().map(|entries| square(entries, &fine)));
-                case.finer = Some(FinerSolution { standard: self.standard, work, uncertainty: None });
+                case.finer = Some(FinerSolution { standard: self.standard, work: fine.work, uncertainty: None });
             }
         }
         self.cases.get_or_init(|| own);
         Ok(())
     }
 
-    fn displacements(&self, cases: &[Case], progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
-        let mut found = Vec::with_capacity(cases.len());
-        for (done, case) in cases.iter().enumerate() {
-            progress(Event::stage("finer body", done, cases.len()));
-            let (u, residual) = self.equations(&case.support, cases.len())?.solve(&case.forces)?;
-            check_residual(residual, largest_residual(&self.solver), case)?;
-            found.push(u);
-        }
-        Ok(found)
-    }
-
-    fn solved(&self, moduli: &CellMap<Hooke>, support: &Support, loads: usize) -> Result<Equations> {
-        let found = Equations::of_body(&self.mesh, moduli, support, (self.solver, loads))?;
-        found.ok_or_else(|| not_definite(&self.mesh))
-    }
-
     /// The equations under a support, for about `loads` loads.
     fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
-        self.equations.under(support, || self.solved(&self.material.moduli(), support, loads))
+        let moduli = self.material.moduli();
+        self.equations.under(support, || equations(&self.mesh, &moduli, support, (self.solver, loads)))
     }
 }
 
 /// That the total force of a load on the finer mesh is another one than on the mesh of the scene.
 fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
-    let total = |forces: &[f64], k: usize| forces.iter().skip(k).step_by(dimension).sum::<f64>();
-    let totals = |case: &Case| -> Vec<f64> { (0..dimension).map(|k| total(&case.forces, k)).collect() };
-    let norm = |total: &[f64]| total.iter().map(|f| f * f).sum::<f64>().sqrt();
-    let (own, other) = (totals(case), totals(fine));
+    let [own, other] = [case, fine].map(|case| resultant(&case.forces, dimension));
     let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
     let acting = case.forces.iter().map(|f| f.abs()).sum::<f64>();
     (norm(&apart) > SAME_FORCE * acting).then(|| {
@@ -273,7 +254,8 @@ impl Finer for FineBody {
         for (done, &load) in loads.iter().enumerate() {
             progress(Event::stage("finer body", done, loads.len()));
             let case = &cases[load];
-            let equations = known.under(&case.support, || self.solved(&moduli, &case.support, loads.len()))?;
+            let equations = known
+                .under(&case.support, || equations(&self.mesh, &moduli, &case.support, (self.solver, loads.len())))?;
             let (u, residual) = equations.solve(&case.forces)?;
             check_residual(residual, largest_residual(&self.solver), case)?;
             found.push(self.sampling.interpolate(&u));

@@ -5,6 +5,7 @@ mod case;
 mod cases;
 mod factored;
 mod fine;
+mod finer;
 mod gauge;
 mod iterated;
 mod large;

@@ -1,17 +1,18 @@
 //! What errors are relative to where the cells of a body lock: quadratic elements on these cells, never the elements that lock.
 
-use super::answer::{check_residual, largest_residual, not_definite};
 use super::case::{Case, FinerSolution};
 use super::cases::applied_cases;
-use crate::analysis::metrics::{displacement_error, square};
+use super::finer::{FinerAnswer, answers};
+use crate::analysis::metrics::displacement_error;
 use crate::error::Result;
 use crate::material::MaterialMap;
-use crate::mesh::{Carrier, CellBlock, Field, Mesh};
-use crate::model::{Action, finite_elements};
-use crate::solve::{Equations, KnownEquations, factor_cost};
+use crate::mesh::{Carrier, Field, Mesh};
+use crate::model::Action;
+use crate::solve::{KnownEquations, factor_cost};
+use crate::study::cost::{COMPARISONS, REFINEMENTS, entries};
 use crate::study::locking::Locking;
 use crate::study::outcome::Standard;
-use crate::study::progress::{Event, Progress};
+use crate::study::progress::Progress;
 use crate::study::scene::{LoadCase, LoadKind, Scene};
 
 /// The truth takes at most this many times what the finite elements and the networks of the scene take, or a time that nobody notices.
@@ -22,9 +23,6 @@ const UNNOTICED: f64 = 1e10;
 /// long.
 const PER_ENTRY: f64 = 10.0;
 const PER_SORTED: f64 = 300.0;
-/// Solutions while a network is compared, and for each load of a body.
-const COMPARED: f64 = 45.0;
-const REFINED: f64 = 3.0;
 /// More points are not even counted: their analysis alone would be noticed.
 const MOST_POINTS: usize = 40_000;
 /// Two levels that differ by more, in percent of the largest displacement, say nothing of the truth.
@@ -32,13 +30,10 @@ const MOST_APART: f64 = 50.0;
 /// The key that asks for the finite elements of the mesh.
 const CELLS: &str = "from = \"cells\" in [reference] compares with the finite elements of the mesh";
 
-/// The answers on one level.
+/// The answers to each load on one level.
 struct Level {
     standard: Standard,
-    /// At the points of the mesh of the scene, by load, m.
-    displacements: Vec<Vec<f64>>,
-    /// J; see [`Case::work`].
-    works: Vec<Option<f64>>,
+    answers: Vec<FinerAnswer>,
 }
 
 /// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock: on these cells halved, with the difference
@@ -79,20 +74,15 @@ pub fn judge_by_truth(
         notes.push(too_long());
         return notes;
     }
-    let mut chosen = mesh.clone();
-    scene.choose(&mut chosen);
     let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + scene.fits().len(), cases.len(), scene.fits().len()));
     let mut level = |finer: Result<Mesh>, standard: Standard| -> Result<Option<Level>> {
         let finer = finer?;
-        if work(&finer, 1, cases.len(), 0) > allowed {
-            return Ok(None);
-        }
-        progress(Event::stage("quadratic elements", 0, 1));
-        Level::solve(scene, mesh, &finer, standard).map(Some)
+        let is_affordable = work(&finer, 1, cases.len(), 0) <= allowed;
+        is_affordable.then(|| Level::solve(scene, &finer, standard, progress)).transpose()
     };
-    let first = level(chosen.elevated(), Standard::Quadratic);
+    let first = level(mesh.elevated(), Standard::Quadratic);
     let second = match (&first, is_small(growth * growth)) {
-        (Ok(Some(_)), true) => level(chosen.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
+        (Ok(Some(_)), true) => level(mesh.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
         _ => Ok(None),
     };
     let (best, coarser) = match (first, second) {
@@ -108,36 +98,36 @@ pub fn judge_by_truth(
                 "{locks}, and no reference that does not is solved ({}): errors are not known; {CELLS}",
                 error.problem()
             ));
-            forget(cases, &is_judged);
+            cases.iter_mut().zip(&is_judged).filter(|(_, judged)| **judged).for_each(|(case, _)| forget(case));
             return notes;
         }
     };
     for (load, case) in cases.iter_mut().enumerate().filter(|(load, _)| is_judged[*load]) {
-        let displacements = &best.displacements[load];
+        // The first points of a finer mesh are those of the mesh.
+        let at_points = |level: &'_ Level| level.answers[load].displacement[..mesh.points.len()].to_vec();
+        let displacements = at_points(&best);
         let uncertainty = coarser
             .as_ref()
-            .and_then(|coarser| displacement_error(displacements, &coarser.displacements[load], mesh.dimension));
+            .and_then(|coarser| displacement_error(&displacements, &at_points(coarser), mesh.dimension));
         if let Some(apart) = uncertainty.filter(|apart| !(apart.rms <= MOST_APART)) {
             notes.push(format!(
                 "{locks}, and so does the reference under {}: quadratic elements on the cells and on halved cells differ by {:.0} %: errors are not \
                  known; {CELLS}",
                 case.name, apart.rms
             ));
-            forget(std::slice::from_mut(case), &[true]);
+            forget(case);
             continue;
         }
-        case.measured = Some(Field { displacements: displacements.iter().copied().map(Some).collect() });
-        case.finer = Some(FinerSolution { standard: best.standard, work: best.works[load], uncertainty });
+        case.measured = Some(Field { displacements: displacements.into_iter().map(Some).collect() });
+        case.finer = Some(FinerSolution { standard: best.standard, work: best.answers[load].work, uncertainty });
     }
     notes
 }
 
-/// Makes the errors of these cases unknown.
-fn forget(cases: &mut [Case], is_judged: &[bool]) {
-    for (case, _) in cases.iter_mut().zip(is_judged).filter(|(_, judged)| **judged) {
-        case.measured = Some(Field { displacements: vec![None; case.forces.len()] });
-        case.finer = Some(FinerSolution { standard: Standard::Quadratic, work: None, uncertainty: None });
-    }
+/// Makes the errors of a load unknown.
+fn forget(case: &mut Case) {
+    case.measured = Some(Field { displacements: vec![None; case.forces.len()] });
+    case.finer = Some(FinerSolution { standard: Standard::Quadratic, work: None, uncertainty: None });
 }
 
 /// Whether the load is a force on points, which is no load of a continuous body, or has one among those that it consists of.
@@ -156,32 +146,16 @@ fn is_of_points(load: &LoadCase, all: &[LoadCase], mesh: &Mesh) -> bool {
 /// operations of a factorisation; infinite where that is not known.
 fn work(mesh: &Mesh, models: usize, loads: usize, networks: usize) -> f64 {
     let Ok(factor) = factor_cost(mesh) else { return f64::INFINITY };
-    let of_block =
-        |block: &CellBlock| block.cells().len() as f64 * ((block.element.nodes() * mesh.dimension) as f64).powi(2);
-    let sorted: f64 = mesh.blocks.iter().map(of_block).sum();
-    let solutions = COMPARED * networks as f64 + REFINED * (models * loads) as f64;
-    models as f64 * (factor.operations + PER_SORTED * sorted) + PER_ENTRY * solutions * factor.entries
+    let solutions = COMPARISONS * networks as f64 + REFINEMENTS * (models * loads) as f64;
+    models as f64 * (factor.operations + PER_SORTED * entries(mesh)) + PER_ENTRY * solutions * factor.entries
 }
 
 impl Level {
-    /// The finite elements of a mesh whose first points are those of the mesh of the scene.
-    fn solve(scene: &Scene, mesh: &Mesh, finer: &Mesh, standard: Standard) -> Result<Level> {
+    fn solve(scene: &Scene, finer: &Mesh, standard: Standard, progress: &mut Progress) -> Result<Level> {
         let material = scene.material_of(finer)?;
         let (_, cases) = applied_cases(scene, finer, &material)?;
-        let (known, moduli, solver) = (KnownEquations::default(), material.moduli(), scene.solver());
-        let entries = cases.iter().any(|case| case.is_prescribed).then(|| finite_elements(finer, &moduli));
-        let mut level = Level { standard, displacements: Vec::new(), works: Vec::new() };
-        for case in &cases {
-            let solve = || {
-                let found = Equations::of_body(finer, &moduli, &case.support, (solver, cases.len()))?;
-                found.ok_or_else(|| not_definite(finer))
-            };
-            let (mut u, residual) = known.under(&case.support, solve)?.solve(&case.forces)?;
-            check_residual(residual, largest_residual(&solver), case)?;
-            level.works.push(case.work(&u, || entries.as_ref().map(|entries| square(entries, &u))));
-            u.truncate(mesh.points.len());
-            level.displacements.push(u);
-        }
-        Ok(level)
+        let body = (finer, &material, scene.solver());
+        let answers = answers(body, &cases, &KnownEquations::default(), "quadratic elements", progress)?;
+        Ok(Level { standard, answers })
     }
 }

@@ -1,9 +1,11 @@
 //! Whether a scene that gives the reference solution is of the same body, material, supports and loads.
 
+use crate::analysis::metrics::resultant;
 use crate::error::{Error, Result};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Support, masses};
+use crate::springs::norm;
 use crate::study::body::applied_cases;
 use crate::study::extent::extent;
 use crate::study::scene::Scene;
@@ -117,8 +119,7 @@ fn same_conditions(
     }
     for case in &cases {
         let Some(known) = other_cases.iter().find(|known| known.name == case.name) else { continue };
-        let [a, b] = [&case.forces, &known.forces].map(|forces| total(forces, d));
-        let norm = |total: &[f64]| total.iter().map(|f| f * f).sum::<f64>().sqrt();
+        let [a, b] = [&case.forces, &known.forces].map(|forces| resultant(forces, d));
         let absolute = |forces: &[f64]| forces.iter().map(|f| f.abs()).sum::<f64>();
         // Totals of forces that cancel each other are rounding.
         let scale = norm(&a).max(norm(&b)).max(1e-6 * absolute(&case.forces).max(absolute(&known.forces)));
@@ -150,11 +151,6 @@ fn span(held: &Support, mesh: &Mesh, axis: usize) -> Vec<f64> {
         }
     }
     span
-}
-
-/// The total force, N.
-fn total(forces: &[f64], d: usize) -> Vec<f64> {
-    (0..d).map(|k| forces.iter().skip(k).step_by(d).sum()).collect()
 }
 
 /// The largest prescribed displacement along each axis, with its sign, m.

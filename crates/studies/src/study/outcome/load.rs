@@ -5,6 +5,7 @@ use crate::analysis::metrics::DisplacementError;
 use crate::model::{Deformation, Support};
 use crate::number::or_nan;
 use crate::solve::{Ending, Solved};
+use crate::springs::norm;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -143,6 +144,11 @@ pub struct Followed {
 }
 
 impl BodyLoad {
+    /// The largest displacement of a point of the finite elements, m.
+    pub fn largest_displacement(&self, dimension: usize) -> f64 {
+        self.fem.chunks_exact(dimension).map(norm).fold(0.0, f64::max)
+    }
+
     /// Whether the finite elements are in equilibrium under the whole load; `fem` is otherwise that of a part of it.
     pub fn is_reached(&self) -> bool {
         self.followed.is_none_or(|followed| followed.ending == Ending::Converged)

@@ -78,7 +78,7 @@ impl<'a> Posed<'a> {
             return;
         };
         let is_finer = entry.standard() == Standard::FinerBody && !entry.is_of_cells() && entry.mesh.is_none();
-        if let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| is_finer) {
+        if is_finer && let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
             self.of_reference.push(format!(
                 "at nu = {poisson} linear cells lock, and those of the finer body with them: errors are relative to what is still too stiff; from = \
                  \"quadratic\" in [reference] does not lock"

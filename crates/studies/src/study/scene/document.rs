@@ -241,7 +241,7 @@ impl Scene {
 
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
     /// in this dimension are left to the places where they are asked.
-    pub fn choose(&self, mesh: &mut Mesh) {
+    fn choose(&self, mesh: &mut Mesh) {
         let loaded = self.loads.iter().filter_map(|load| Some(load.single()?.0.clone()));
         let held = self.supports.iter().map(|(part, _)| part.clone());
         let of_material = self.material_parts().into_iter().map(|(_, part)| part);

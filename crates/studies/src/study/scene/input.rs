@@ -275,10 +275,10 @@ impl MeshInput {
     /// The file or an element is wrong, or a cell has no volume or cannot be divided.
     pub fn build(&self, scene: &Path, choose: &dyn Fn(&mut Mesh)) -> Result<Mesh> {
         let mut mesh = self.build_coarse(scene, 0)?;
+        choose(&mut mesh);
         if self.halvings == 0 {
             return Ok(mesh);
         }
-        choose(&mut mesh);
         if self.generated.is_none() {
             for _ in 0..self.halvings {
                 mesh = mesh.refined().map_err(|e| e.in_file(scene))?;

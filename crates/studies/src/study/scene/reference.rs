@@ -28,9 +28,9 @@ pub struct ReferenceEntry {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum From {
-    /// Those of the cells of the mesh.
+    /// The cells of the mesh keep their own functions.
     Cells,
-    /// Quadratic ones.
+    /// The same cells get quadratic functions.
     Quadratic,
 }
 

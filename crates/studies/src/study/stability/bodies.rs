@@ -24,7 +24,7 @@ const POWERS: usize = 40;
 /// # Errors
 /// A system does not fit into memory.
 pub fn sweep_bodies(elements: &[Element]) -> Result<Vec<StabilityRow>> {
-    let is_straight = |element: &&Element| element.nodes() == element.cell.corners().len();
+    let is_straight = |element: &&Element| element.has_corners_alone();
     let solids = elements.iter().filter(|element| element.dimension() == 3).filter(is_straight);
     let solids: Vec<Arc<Element>> = solids.map(|element| Arc::new(element.clone())).collect();
     let mut rows = Vec::new();

@@ -35,7 +35,7 @@ pub fn sweep_motions(elements: &[Element]) -> Result<Vec<StabilityRow>> {
             }
         }
     }
-    for element in elements.iter().filter(|element| element.nodes() == element.cell.corners().len()) {
+    for element in elements.iter().filter(|element| element.has_corners_alone()) {
         rows.extend(collapse(element)?);
     }
     Ok(rows)
