@@ -206,17 +206,30 @@ impl Network {
                 entries.push(Triplet::new(j * d + k, i * d + l, -value));
             }
         }
-        for spring in &self.others {
-            let n = spring.points.len() * d;
-            let mut own = vec![0.0; n * n];
-            spring.tangent(points, d, &mut own);
-            for (a, row) in dofs(&spring.points, d).enumerate() {
-                for (b, column) in dofs(&spring.points, d).enumerate().filter(|(_, column)| row >= *column) {
-                    entries.push(Triplet::new(row, column, own[a * n + b]));
+        let (mut sum, mut own) = (Vec::new(), Vec::new());
+        for springs in self.on_same_points() {
+            let of = &springs[0].points;
+            let n = of.len() * d;
+            sum.clear();
+            sum.resize(n * n, 0.0);
+            own.resize(n * n, 0.0);
+            for spring in springs {
+                spring.tangent(points, d, &mut own);
+                sum.iter_mut().zip(&own).for_each(|(sum, own)| *sum += own);
+            }
+            for (a, row) in dofs(of, d).enumerate() {
+                for (b, column) in dofs(of, d).enumerate().filter(|(_, column)| row >= *column) {
+                    entries.push(Triplet::new(row, column, sum[a * n + b]));
                 }
             }
         }
         entries
+    }
+
+    /// The other springs in runs on the same points, such as the volume springs of one cell at its quadrature points: their stiffness has the entries
+    /// of one.
+    pub(super) fn on_same_points(&self) -> impl Iterator<Item = &[MeasureSpring]> {
+        self.others.chunk_by(|a, b| a.points == b.points)
     }
 
     /// The network whose springs pull `factors` times as hard, `[springs]`, length springs first. For a law the

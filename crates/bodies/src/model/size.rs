@@ -26,9 +26,9 @@ pub fn check_body(mesh: &Mesh) -> Result<()> {
 
 impl Network {
     /// The number of entries of [`stiffness`](Network::stiffness).
-    pub(super) fn entries(&self) -> usize {
+    pub fn entries(&self) -> usize {
         let d = self.dimension;
-        let others: usize = self.others.iter().map(|spring| triangle(spring.points.len() * d)).sum();
+        let others: usize = self.on_same_points().map(|springs| triangle(springs[0].points.len() * d)).sum();
         self.lengths.len() * triangle(2 * d) + others
     }
 

@@ -63,6 +63,9 @@ pub struct Forecast {
     pub unknowns: usize,
     /// The stages in the order in which they run.
     pub stages: Vec<ExpectedStage>,
+    /// The entries of the stiffness of the largest network, of its lower triangle.
+    #[serde(skip)]
+    network_entries: f64,
 }
 
 impl Forecast {
@@ -108,7 +111,9 @@ impl Forecast {
             (models * each * mesh.points.len() as f64, BlockStiffness::expected_bytes(mesh, 2, 2) as f64)
         } else {
             let factor = factor_cost(mesh)?;
-            let bytes = BYTES * entries(mesh) + 2.0 * 8.0 * factor.entries;
+            // The finite elements and one network are assembled one after the other, and their factors are there at the same time.
+            let largest = entries(mesh).max(2.0 * forecast.network_entries);
+            let bytes = BYTES * largest + 2.0 * 8.0 * factor.entries;
             (of_loads(scene, mesh, factor, cases.len()), bytes)
         };
         let bytes = Some(bytes);
@@ -137,15 +142,20 @@ impl Forecast {
         let large = energy.map(|laws| LargeBody::at_rest(laws.clone()));
         // Threads start before the clock does.
         rayon::broadcast(|_| ());
+        let mut network_entries: f64 = 0.0;
         let stage = |fit: &NamedFit| {
-            let (seconds, bytes) = of_fit(mesh, material, large.as_ref(), fit).unzip();
+            let found = of_fit(mesh, material, large.as_ref(), fit);
+            network_entries = network_entries.max(found.map_or(0.0, |[.., entries]| entries));
+            let (seconds, bytes) = found.map(|[seconds, bytes, _]| (seconds, bytes)).unzip();
             ExpectedStage { name: format!("fit {}", fit.name), seconds, bytes }
         };
+        let stages = fits.iter().map(stage).collect();
         Forecast {
             points: mesh.point_count(),
             cells: mesh.blocks.iter().map(|block| (block.element.name.clone(), block.cells().len())).collect(),
             unknowns: mesh.points.len(),
-            stages: fits.iter().map(stage).collect(),
+            stages,
+            network_entries,
         }
     }
 
@@ -179,9 +189,9 @@ impl Forecast {
     }
 }
 
-/// The seconds of a fit and the bytes of its network: it is made on more and more cells until that takes `TRIAL`, and all cells have the
+/// The seconds of a fit, the bytes of its network and the entries of its stiffness: it is made on more and more cells until that takes `TRIAL`, and all cells have the
 /// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
-fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &NamedFit) -> Option<(f64, f64)> {
+fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &NamedFit) -> Option<[f64; 3]> {
     let kind = fit.recipe.kind();
     let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
@@ -199,10 +209,11 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
             let start = Instant::now();
             let fit = fit_mesh(&some, &own, &reference, fit, &mut |_| {}).ok()?;
             let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
-            Some((whole - sampling, sampling / fit.as_material.samples as f64, fit.network.len()))
+            let (springs, entries) = (fit.network.len() as f64, fit.network.entries() as f64);
+            Some((whole - sampling, sampling / fit.as_material.samples as f64, [springs, entries]))
         };
         // The first trial touches memory for the first time.
-        let ((first, ..), (second, sample, springs)) = (trial()?, trial()?);
+        let ((first, ..), (second, sample, [springs, entries])) = (trial()?, trial()?);
         let seconds = first.min(second);
         let made = some.cell_count();
         let share = total as f64 / made as f64;
@@ -210,7 +221,7 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
         let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
         let expected = seconds * share / threads as f64 + sample * most_samples(mesh) as f64;
         if seconds > TRIAL || made >= total || expected < SHORT {
-            return Some((expected, SPRING * springs as f64 * share));
+            return Some([expected, SPRING * springs * share, entries * share]);
         }
         count *= 4;
     }
