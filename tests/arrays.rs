@@ -32,6 +32,7 @@ fn boxes() -> Vec<Mesh> {
 fn sorted(group: &Group) -> Group {
     let mut group = group.clone();
     group.sides.sort();
+    group.lists_points = false;
     group
 }
 

@@ -4,7 +4,7 @@ use crate::messages::reads;
 use proptest::prelude::*;
 use springfit::error::ErrorKind;
 use springfit::mesh::vtk::{Array, Grid, write};
-use springfit::mesh::{Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
+use springfit::mesh::{Annotations, Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -25,6 +25,7 @@ fn tetrahedra(count: usize) -> Mesh {
         nodes_per_cell: 4,
         connectivity: (0..4 * count).collect(),
         groups: Vec::new(),
+        is_marker: true,
     };
     let corners = |side: f64| [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]];
     let points = (0..count).flat_map(|i| corners(if i == 0 { 1.0 } else { -1.0 })).collect();
@@ -34,6 +35,8 @@ fn tetrahedra(count: usize) -> Mesh {
         points,
         numbers: Vec::new(),
         blocks: vec![block],
+        space: None,
+        annotations: Annotations::default(),
     };
     Mesh::resolve(&source, &[], 1.0).unwrap()
 }

@@ -68,7 +68,6 @@ fn a_force_on_an_area_of_a_plane_mesh_is_that_of_its_cells() {
 fn a_force_on_the_outline_of_a_plane_mesh_is_that_of_its_sides() {
     let mut mesh = grid("tri3", &[4, 4]);
     let edge = "x < 1e-9 || x > 4 - 1e-9 || y < 1e-9 || y > 4 - 1e-9";
-    assert!(!at(edge).cells(&mesh).unwrap().is_empty());
     let all = ["xmin", "xmax", "ymin", "ymax"].iter().flat_map(|name| mesh.groups[*name].sides.clone()).collect();
     let points = at(edge).points(&mesh).unwrap();
     mesh.groups.insert("outline".into(), Group { points, sides: all, ..Group::default() });

@@ -3,7 +3,9 @@
 use crate::shapes::Random;
 use springfit::element::{Cell, Element, SHIPPED, Side};
 use springfit::error::Result;
-use springfit::mesh::{Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock};
+use springfit::mesh::{
+    Annotations, Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock,
+};
 use springfit::model::{Support, unheld_bodies};
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
@@ -39,6 +41,7 @@ fn source_of(mesh: &Mesh) -> MeshSource {
             nodes_per_cell: block.element.nodes(),
             connectivity: block.cells().flat_map(in_order).collect(),
             groups: Vec::new(),
+            is_marker: true,
         }
     };
     let place = |x: &[f64]| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
@@ -48,6 +51,8 @@ fn source_of(mesh: &Mesh) -> MeshSource {
         points: mesh.points.chunks_exact(d).map(place).collect(),
         numbers: (1..=mesh.point_count() as u64).collect(),
         blocks: mesh.blocks.iter().map(block).collect(),
+        space: None,
+        annotations: Annotations::default(),
     }
 }
 
@@ -332,6 +337,7 @@ fn hanging_nodes_are_counted() {
                 nodes_per_cell,
                 connectivity,
                 groups: Vec::new(),
+                is_marker: true,
             });
         }
         let fine = resolve(&source, Below::Warn).unwrap();

@@ -86,7 +86,10 @@ fn exports_have_the_numbers_of_the_file() {
         let array = grid.point_data.iter().find(|array| array.name == "node").unwrap();
         assert!(array.values.iter().map(|n| *n as u64).eq(numbers), "{:?}", array.values);
         let words = summary(&outcome);
-        assert!(words.contains("1 points of the file belong to no element") && words.contains(title), "{words}");
+        assert!(
+            words.contains("1 points of the file belong to no cell of the body") && words.contains(title),
+            "{words}"
+        );
     }
     // What is generated has no numbers of a file.
     let outcome = outcome("box = { element = \"tri3\", size = [1, 1], cells = [1, 1] }");

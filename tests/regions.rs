@@ -171,8 +171,8 @@ fn table(places: impl Iterator<Item = Vec<f64>>, young: impl Fn(&[f64]) -> f64) 
 #[test]
 fn data_of_files_are_those_of_an_expression() {
     let folder = TempDir::new().unwrap();
-    let young = |x: &[f64]| 5e3 * (1.0 + 0.1 * x[0] - 0.2 * x[1] + 10.0 * x[2]);
-    let text = "\"5e3*(1 + 0.1*x - 0.2*y + 10*z)\"";
+    let young = |x: &[f64]| 5e3 * (2.5 + 0.1 * x[0] - 0.2 * x[1] + 10.0 * x[2]);
+    let text = "\"5e3*(2.5 + 0.1*x - 0.2*y + 10*z)\"";
     for element in ["tet4", "hex8", "tet10"] {
         let mesh = grid(element, [2, 2, 3]);
         let points = || (0..mesh.point_count()).map(|p| mesh.point(p).to_vec());
@@ -410,7 +410,7 @@ fn wrong_materials_are_named() {
         (young("\"5e3*q\""), "scene.toml:5: material.young", "\"q\""),
         (young("{ file = \"gone.csv\" }"), "gone.csv", "cannot be read"),
         (young("{ file = \"map.csv\" }"), "map.csv:3", "found \"nan\""),
-        (young("{ file = \"negative.csv\" }"), "material.young", "Pa, found -"),
+        (young("{ file = \"negative.csv\" }"), "negative.csv:2: points[0]", "expected a number above 0, found -1000"),
         (young("{ file = \"far.csv\" }"), "far.csv", "values around every cell"),
         (young("{ file = \"two.csv\" }"), "two.csv:1: header", "one column besides the position"),
         (young("{ file = \"two.csv\", array = \"G\" }"), "two.csv:1: header", "a column \"g\""),

@@ -107,7 +107,7 @@ fn finer_meshes_have_the_parts_of_the_coarse_one() {
         let condition = predicate("x < 0.5", d);
         let points = Selection::Where(condition.clone()).points(&mesh).unwrap();
         mesh.groups.insert("some".into(), Group { points, ..Group::default() });
-        mesh.choose([condition.clone()]);
+        mesh.choose([(condition.clone(), true)]);
         let selection = Selection::Where(condition);
         let cells = |mesh: &Mesh| selection.cells(mesh).unwrap().len();
         let reach = |mesh: &Mesh| {

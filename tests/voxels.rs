@@ -13,6 +13,10 @@ fn mesh(source: &MeshSource) -> Mesh {
     Mesh::resolve(source, &[], 1.0).unwrap()
 }
 
+fn read_text(text: &str) -> MeshSource {
+    MeshSource::parse(text.as_bytes(), "vtk").unwrap()
+}
+
 pub(super) fn error(bytes: &[u8], ending: &str) -> String {
     MeshSource::parse(bytes, ending).unwrap_err().to_string()
 }
@@ -126,7 +130,8 @@ fn cells_between_the_points_of_a_lattice_are_hexahedra() {
 fn polygons_strips_and_lines_are_cells_with_the_numbers_of_the_whole() {
     let reference = read("polygons.vtp");
     let found = mesh(&reference);
-    assert_eq!((found.dimension, found.cell_count(), found.reversed), (2, 5, 0));
+    // Polygonal data are surfaces in space.
+    assert_eq!((found.dimension, found.cell_count(), found.reversed), (3, 5, 0));
     let sizes: BTreeMap<_, _> =
         found.groups.iter().map(|(name, g)| (name.as_str(), (g.cells.len(), g.points.len()))).collect();
     // The triangle, the quadrangle, three triangles of the strip; a point and a chain of three points.
@@ -281,7 +286,11 @@ fn faults_of_images_and_lattices_name_what_is_expected() {
         error(format!("{head}{arrays}").as_bytes(), "vtk")
     };
     let expected = "image: expected one array of whole numbers of cells or points, whose zeros are background, found ";
-    assert_eq!(image(""), format!("{expected}none"));
+    let whole = read_text(
+        "# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n",
+    );
+    assert_eq!(mesh(&whole).cell_count(), 2);
+    assert!(whole.annotations.notes()[0].contains("the image has no labels"));
     let two = "CELL_DATA 2\nFIELD f 2\na 1 2 int\n1 1\nb 1 2 int\n0 1\n";
     assert_eq!(image(two), format!("{expected}\"a\", \"b\""));
     assert_eq!(image("CELL_DATA 3\n"), "line 8: CELL_DATA: expected 2 cells, found 3");

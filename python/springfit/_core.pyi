@@ -92,7 +92,10 @@ class Mesh:
         elements: Sequence[Element] = ...,
         below: str | None = None,
         least: float | None = None,
+        space: int | None = None,
     ) -> Mesh: ...
+    @property
+    def annotations(self) -> list[str]: ...
     @staticmethod
     def of_box(element: Element, size: Sequence[float], cells: Sequence[int], origin: Sequence[float]) -> Mesh: ...
     @property

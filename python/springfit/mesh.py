@@ -88,6 +88,7 @@ class Mesh:
         elements: "Sequence[ElementLike]" = (),
         below: "Below | None" = None,
         least: float | None = None,
+        space: "int | None" = None,
     ) -> "Mesh":
         """The mesh of a file in one of the formats of the library, such as ``.msh``, ``.vtu``, ``.inp``, ``.bdf`` or ``.stl``.
 
@@ -96,8 +97,17 @@ class Mesh:
             scale: The length of one of its units in metres.
             elements: Element files, or elements, that are asked before the shipped ones.
             below, least: As for arrays.
+            space: The dimension of the space, 2 or 3. By default surfaces of ``.obj``, ``.stl``, ``.ply``, ``.off`` and ``.vtp`` are in space,
+                and others in the plane where all their points have one z.
+
+        A warning says what the file holds besides the body, such as cells of fewer dimensions, supports and loads.
         """
-        return cls._of(_core.Mesh.read(os.fspath(path), _scale(scale), elements_of(elements), *_gate(below, least)), least)
+        if space not in (None, 2, 3):
+            raise failure("space", "2 or 3", space)
+        core = _core.Mesh.read(os.fspath(path), _scale(scale), elements_of(elements), *_gate(below, least), space)
+        for note in core.annotations:
+            warn(note)
+        return cls._of(core, least)
 
     @classmethod
     def box(

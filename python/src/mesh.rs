@@ -110,7 +110,8 @@ impl Mesh {
 
     /// The mesh of a file in one of the formats that are read, such as .msh, .vtu, .inp, .bdf or .stl; `scale` is the length of one of its units in metres.
     #[staticmethod]
-    #[pyo3(signature = (path, scale=1.0, elements=Vec::new(), below=None, least=None))]
+    #[pyo3(signature = (path, scale=1.0, elements=Vec::new(), below=None, least=None, space=None))]
+    #[allow(clippy::too_many_arguments)]
     fn read(
         py: Python,
         path: PathBuf,
@@ -118,13 +119,15 @@ impl Mesh {
         elements: Vec<PyRef<Element>>,
         below: Option<&Bound<PyAny>>,
         least: Option<&Bound<PyAny>>,
+        space: Option<usize>,
     ) -> PyResult<Mesh> {
         let gate = gate(py, below, least)?;
         let own: Vec<Element> = elements.iter().map(|element| Element::clone(element)).collect();
         let asked: Vec<_> = own.iter().map(|element| element.0.clone()).collect();
         let mesh = alone(py, move || {
             springfit::range::positive("scale", scale, "metres per mesh unit")?;
-            let source = MeshSource::read(&path)?;
+            let mut source = MeshSource::read(&path)?;
+            source.space = space.or(source.space);
             mesh::Mesh::resolve_within(&source, &asked, scale, Some(gate)).map_err(|error| error.in_file(&path))
         })?;
         let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
@@ -133,6 +136,12 @@ impl Mesh {
         };
         let elements = mesh.blocks.iter().map(element).collect::<Result<_>>().map_err(|error| raised(py, error))?;
         Ok(Mesh { mesh: Arc::new(mesh), elements })
+    }
+
+    /// What the file says besides the body, one sentence each.
+    #[getter]
+    fn annotations(&self) -> Vec<String> {
+        self.mesh.annotations.notes()
     }
 
     /// A rectangle or brick of `cells` equal cells along each axis, `size` metres long, from `origin`.

@@ -15,6 +15,9 @@ pub struct MeshOptions {
     /// Length of one mesh unit, such as mm or 0.001
     #[arg(long, default_value = "1", allow_hyphen_values = true)]
     scale: String,
+    /// Dimension of the space, 2 or 3 [default: surfaces of .obj, .stl, .ply, .off and .vtp are in space; others in the plane if they have one z]
+    #[arg(long)]
+    space: Option<usize>,
     /// What to do with cells whose quality is below --least: warn, refuse or skip [default: warn]. Flat, tangled, duplicate and
     /// overlapping cells are left out with skip, and an error otherwise
     #[arg(long)]
@@ -50,6 +53,11 @@ impl MeshOptions {
         &self.scale
     }
 
+    /// The dimension of the space, if it is given.
+    pub fn space(&self) -> Option<usize> {
+        self.space
+    }
+
     /// Metres per mesh unit.
     ///
     /// # Errors
@@ -70,6 +78,7 @@ impl MeshOptions {
             let others = [
                 ("--below", self.below.is_some()),
                 ("--least", self.least.is_some()),
+                ("--space", self.space.is_some()),
                 ("--element", !self.element.is_empty()),
             ];
             if let Some((option, _)) = others.into_iter().find(|(_, given)| *given) {
@@ -89,7 +98,11 @@ impl MeshOptions {
             check_unit(&mesh, scale, scale * fill.cell).map_err(|e| e.at_key("--scale").in_file(file))?;
             return Ok(mesh);
         }
-        let source = MeshSource::read(file)?;
+        let mut source = MeshSource::read(file)?;
+        if let Some(space) = self.space.filter(|space| !(2..=3).contains(space)) {
+            return Err(Error::expected("--space", "2 or 3", space));
+        }
+        source.space = self.space.or(source.space);
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
         let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))?;
@@ -114,6 +127,7 @@ impl MeshOptions {
             ("--scale", self.scale != "1"),
             ("--below", self.below.is_some()),
             ("--least", self.least.is_some()),
+            ("--space", self.space.is_some()),
             ("--fill", self.fill.is_some()),
             ("--element", !self.element.is_empty()),
         ];

@@ -8,7 +8,7 @@ use springfit::material::Material;
 use springfit::mesh::{Mesh, listed_endings};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::{DraftMaterial, DraftSource, draft};
+use springfit::study::{DraftMaterial, DraftSource, DraftUnit, draft};
 use springfit::text::{not_a_line, printable};
 use springfit::{check_file, write_whole};
 use std::path::{Component, Path, PathBuf};
@@ -59,7 +59,7 @@ impl New {
             self.options.elements().iter().map(|name| own_file(name, folder.unwrap_or(Path::new("")))).collect();
         let title = self.mesh.file_stem().unwrap_or_default().to_string_lossy();
         let title = printable(&title);
-        let unit = self.options.unit();
+        let unit = DraftUnit { text: self.options.unit(), scale: self.options.scale()?, space: self.options.space() };
         let file = file.to_string_lossy();
         if let Some(problem) = not_a_line(&file, false) {
             return Err(Error::new(format!("cannot be named in a scene: {problem}")).in_file(&self.mesh));

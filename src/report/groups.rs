@@ -1,5 +1,6 @@
 //! The named parts of a mesh.
 
+use super::quality::mesh_notes;
 use super::summary::size;
 use super::table::{Column, Table};
 use crate::mesh::{ListedSides, Mesh};
@@ -19,6 +20,8 @@ pub struct MeshRecord {
     pub extent: Vec<f64>,
     /// The groups of the file.
     pub groups: Vec<GroupRecord>,
+    /// What must be known of the mesh, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// The cells of one element.
@@ -41,7 +44,7 @@ pub struct GroupRecord {
     pub sides: usize,
     /// Edges of a curve in a solid.
     pub edges: usize,
-    /// The points of these parts.
+    /// The points for which the name stands: those that are listed as such, or else those of the part of the lowest dimension.
     pub points: usize,
     /// The least coordinates of its points, m; empty without points.
     pub from: Vec<f64>,
@@ -78,6 +81,7 @@ impl MeshRecord {
             elements: mesh.blocks.iter().map(cells).collect(),
             extent: extent(mesh),
             groups: mesh.groups.iter().map(group).collect(),
+            notes: mesh_notes(mesh),
         }
     }
 
@@ -85,10 +89,13 @@ impl MeshRecord {
     pub fn text(&self) -> String {
         let cells: Vec<String> = self.elements.iter().map(|e| format!("{} {}", e.cells, e.element)).collect();
         let head = format!("{}: {} points, {}; {}\n", self.mesh, self.points, cells.join(", "), size(&self.extent));
-        if self.groups.is_empty() {
-            return head + "\nThe mesh has no groups; a condition such as where = \"z < 0.01\" selects a part of it.\n";
-        }
-        format!("{head}\n{}", self.table().text())
+        let groups = match self.groups.is_empty() {
+            true => "The mesh has no groups; a condition such as where = \"z < 0.01\" selects a part of it.\n".into(),
+            false => self.table().text(),
+        };
+        let notes: String = self.notes.iter().map(|note| format!("note: {note}\n")).collect();
+        let gap = if notes.is_empty() { "" } else { "\n" };
+        format!("{head}\n{groups}{gap}{notes}")
     }
 
     /// The groups as a table.

@@ -45,6 +45,7 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
         .chain(spurious(outcome))
         .chain(fibres(outcome))
         .chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off))
+        .chain(outcome.material.remarks().iter().cloned())
         .chain(outcome.of_loads.iter().cloned())
         .chain(lumping(outcome))
         .chain(finite)

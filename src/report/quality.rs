@@ -26,8 +26,8 @@ pub(super) fn changes(mesh: &Mesh) -> Vec<String> {
         Some(which) => format!("{} of {} {turned}: {which}", mesh.reversed, mesh.cell_count()),
     });
     let unused = (mesh.unused_points > 0)
-        .then(|| format!("{} points of the file belong to no element and were left out", mesh.unused_points));
-    turned.into_iter().chain(unused).collect()
+        .then(|| format!("{} points of the file belong to no cell of the body and were left out", mesh.unused_points));
+    turned.into_iter().chain(unused).chain(mesh.annotations.notes()).collect()
 }
 
 /// What is wrong with the cells and points of a mesh, one line each.

@@ -126,11 +126,15 @@ fn contents_of_another_kind() {
         ("mesh", "", "expected a mesh ending in .msh, .vtu, "),
         ("mesh.h5", "", "found .h5; Gmsh and meshio convert many others"),
         ("mesh.vtu", "", "found none"),
-        ("mesh.vtu", "$MeshFormat\n", "found none"),
+        ("mesh.vtu", "<svg/>\n", "found <svg>"),
     ] {
         let scene = scene_of(name);
         let files: [(&str, &[u8]); 2] = [("scene.toml", scene.as_bytes()), (name, content.as_bytes())];
-        let place = if name == "mesh.vtu" { "mesh.vtu: VTKFile" } else { name };
+        let place = match content {
+            "" if name == "mesh.vtu" => "mesh.vtu: VTKFile",
+            "" => name,
+            _ => "mesh.vtu:1: VTKFile",
+        };
         refusals.expect(&files, &["run", "scene.toml"], place, words);
     }
     let scene = edited(FROM_FILES, "mesh.msh", "mesh.vtk");

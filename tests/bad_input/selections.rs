@@ -70,7 +70,6 @@ fn loads() {
             ("\"zmax\"", "\"top\"", "scene.toml: load[0].group", "found \"top\""),
             (zmax, "where = \"z > 5\"", "scene.toml: load[0]", "no sides"),
             (zmax, "where = \"x == y && y == z\"", "scene.toml: load[0]", "no sides"),
-            (zmax, "group = \"body\"", "scene.toml: load[0]", "no sides"),
             (load, "where = \"z > 5\"\nforce = [0, 0, 1]", "scene.toml: load[0]", "no points"),
             (load, "group = \"zmax\"\nbody = [0, 0, 1]", "scene.toml: load[0]", "no cells"),
             (load, "where = \"z > 5\"\ndisplacement = [0, 0, 1]", "scene.toml: load[0]", "no points"),

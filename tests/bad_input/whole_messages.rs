@@ -15,7 +15,7 @@ fn whole_messages_read_well() {
         (
             scene("poisson = 0.3", "poison = 0.3"),
             "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"group\", \"where\", \
-             \"young\", \"poisson\", \"orthotropic\", \"transversely-isotropic\", \"cubic\", \"stiffness\", \"axes\", \"plane\", \
+             \"young\", \"poisson\", \"shear_modulus\", \"bulk_modulus\", \"lambda\", \"orthotropic\", \"transversely-isotropic\", \"cubic\", \"stiffness\", \"axes\", \"plane\", \
              \"thickness\", \"area\", \"density\", \"law\", \"parameters\", \"fibre\"; did you mean \"poisson\"?",
         ),
         (scene("young = 10e3\n", ""), "scene.toml:3: material: missing field \"young\""),
@@ -48,7 +48,7 @@ fn whole_messages_read_well() {
         (element("\"xi\" }", "\"2*xi\" }"), "own.toml:9: nodes[1].shape: is 2 at nodes[1], expected 1"),
         (
             mesh(msh(&flat, &["4 2 0 1 1 2 3 4"])),
-            "mesh.msh: tet4 cell 1 at [0.0, 0.0, 0.0] m: the element has no volume (its Jacobian vanishes)",
+            "mesh.msh: tet4 cell 1 at [0.0, 0.0, 0.0] m: the element has no volume (its Jacobian vanishes); below = \"skip\" leaves the cell out",
         ),
         (
             mesh(msh(&UNIT_NODES, &["4 2 0 1 1 2 3 5"])),

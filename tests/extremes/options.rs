@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 20] = [
+const RUNS: [&[&str]; 21] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -46,6 +46,7 @@ const RUNS: [&[&str]; 20] = [
     &["new", "mesh.msh"],
     &["new", "plate.msh"],
     &["groups", "mesh.msh"],
+    &["groups", "plate.msh"],
     &["groups", "octahedron.off", "--fill=0.2"],
     &["new", "octahedron.off", "--fill=0.2"],
     &["fit", "octahedron.off", "--fill=0.2", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],

@@ -95,7 +95,7 @@ poisson = 0.3
 thickness = 0.1
 density = 1000.0
 [[material]]
-young = { file = "young.csv", scale = 1.0 }
+young = { file = "young.csv", scale = 1.0, missing = -7.0 }
 poisson = 0.2
 thickness = 0.2
 density = 900.0
@@ -122,7 +122,7 @@ axes = [[1.0, 1.0, 0], [0, 1.0, 1.0]]
 [[material]]
 where = "x > 0.9 && x < 2.1"
 transversely-isotropic = { young = [9e3, 3e3], poisson = [0.3, 0.4], shear = 1e3 }
-axes = [{ file = "fibres.csv", scale = 1.0 }]
+axes = [{ file = "fibres.csv", scale = 1.0, missing = -7.0 }]
 [[material]]
 where = "x > 1.9 && x < 3.1"
 cubic = { c11 = 5e3, c12 = 2e3, c44 = 3e3 }
@@ -141,10 +141,11 @@ traction = [1.0, 0, 0]
 pub const RODS: &str = r#"
 [mesh]
 file = "rods.msh"
+space = 3
 quality = { least = 1e-4 }
 [material]
-young = 10e3
-poisson = 0.3
+shear_modulus = 4e3
+bulk_modulus = 8e3
 area = 0.01
 [[fit]]
 objective = "frobenius"
@@ -377,7 +378,7 @@ fill = { surface = "octahedron.off", cell = 0.2, element = "hex8" }
 scale = 1.0
 [material]
 young = 10e3
-poisson = 0.3
+lambda = 5e3
 [[fit]]
 objective = "exact"
 [[fix]]

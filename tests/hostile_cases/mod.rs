@@ -5,7 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const TRI3: &str = include_str!("../elements/tri3.toml");
+mod entrance;
+mod scenes;
+
+const TRI3: &str = include_str!("../../elements/tri3.toml");
 const SQUARE: &str = "mesh = { box = { element = \"quad4\", size = [1, 1], cells = [1, 1] } }\n\
                       material = { young = 1e4, poisson = 0.3, thickness = 1 }\nfit = [{ objective = \"exact\" }]\n";
 

@@ -80,6 +80,19 @@ writer.SetDataByteOrderToBigEndian()
 writer.SetFileName(str(here / "egg_big_endian.ply"))
 writer.Write()
 
+# The bar in the other compressions of VTK, in several blocks.
+bar = vtk.vtkXMLUnstructuredGridReader()
+bar.SetFileName(str(here / "bar_zlib.vtu"))
+bar.Update()
+for name, compression in [("bar_lz4.vtu", "LZ4"), ("bar_xz.vtu", "LZMA")]:
+    writer = vtk.vtkXMLUnstructuredGridWriter()
+    writer.SetInputData(bar.GetOutput())
+    getattr(writer, f"SetCompressorTypeTo{compression}")()
+    writer.SetBlockSize(128)
+    writer.SetDataModeToBinary()
+    writer.SetFileName(str(here / name))
+    writer.Write()
+
 # The tetrahedra of a brick, of ten nodes in TetGen's own order, and of four as meshio writes them.
 filled = tetgen.TetGen(pyvista.Cube(x_length=2.0).triangulate())
 nodes, cells = filled.tetrahedralize(order=2)[:2]

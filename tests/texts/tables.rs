@@ -5,7 +5,7 @@ use super::readers::{of_markdown, parts, printed};
 use springfit::element::Element;
 use springfit::mesh::{BoxMesh, Group};
 use springfit::report::{Cell, Column, Markup, Table};
-use springfit::study::{DraftMaterial, DraftSource, draft};
+use springfit::study::{DraftMaterial, DraftSource, DraftUnit, draft};
 use springfit::text::{csv, not_a_line, of_csv, printable};
 use std::sync::Arc;
 
@@ -78,7 +78,14 @@ fn a_first_scene_has_each_text_in_its_place() {
         mesh.groups.clear();
         mesh.groups.insert(text.clone(), Group { ..held });
         let material = DraftMaterial::default();
-        let scene = draft(&mesh, DraftSource::File(&text), &text, std::slice::from_ref(&text), &text, &material);
+        let scene = draft(
+            &mesh,
+            DraftSource::File(&text),
+            DraftUnit { text: &text, scale: 1.0, space: None },
+            std::slice::from_ref(&text),
+            &text,
+            &material,
+        );
         let read: toml::Table = scene.parse().unwrap_or_else(|e| panic!("{e}: {scene}"));
         let is_unit = text.parse::<f64>().is_ok();
         assert_eq!(read["title"].as_str(), Some(&text[..]));

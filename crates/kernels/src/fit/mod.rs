@@ -66,8 +66,8 @@ pub mod solvers {
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
 pub use exact::{
-    DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, exact_constants_of_kind,
-    exact_double_double_constants, fit_exact,
+    DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, check_flat,
+    exact_constants_of_kind, exact_double_double_constants, fit_exact,
 };
 pub use gradient::{ConstantsGradient, GradientFit, constants_gradient};
 pub use least_squares::constants_in;

@@ -18,6 +18,8 @@ pub struct MaterialMap {
     regions: Arc<[String]>,
     region: CellMap<usize>,
     density: Option<CellMap<f64>>,
+    /// What was left out of the files that state it, one sentence each.
+    remarks: Arc<[String]>,
 }
 
 /// The linear material of a cell.
@@ -101,12 +103,23 @@ impl MaterialMap {
             regions: regions.into(),
             region,
             density: None,
+            remarks: Arc::default(),
         })
     }
 
     /// Gives the materials the density of each cell, kg/m³, or none.
     pub fn with_density(self, density: Option<CellMap<f64>>) -> MaterialMap {
         MaterialMap { density, ..self }
+    }
+
+    /// Says what was left out of the files that state the materials, one sentence each.
+    pub fn with_remarks(self, remarks: Vec<String>) -> MaterialMap {
+        MaterialMap { remarks: remarks.into(), ..self }
+    }
+
+    /// What was left out of the files that state the materials, one sentence each.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
     }
 
     /// The density of each cell, kg/m³, if it is given.
@@ -180,6 +193,7 @@ impl MaterialMap {
             regions: self.regions.clone(),
             region: self.region.of_cells(cells),
             density: self.density.as_ref().map(|density| density.of_cells(cells)),
+            remarks: self.remarks.clone(),
         }
     }
 
@@ -204,6 +218,7 @@ impl From<Material> for MaterialMap {
             regions: [String::new()].into(),
             region: CellMap::Uniform(0),
             density: None,
+            remarks: Arc::default(),
         }
     }
 }

@@ -134,6 +134,7 @@ impl Mesh {
         let has = |nodes: &[usize]| nodes.iter().all(|&p| is_in[p]);
         Group {
             points: (0..is_in.len()).filter(|&p| is_in[p]).collect(),
+            lists_points: true,
             sides: boundary.iter().filter(|side| has(side)).cloned().collect(),
             edges: Vec::new(),
             cells: self.cell_indices().filter(|cell| has(self.cell_nodes(*cell))).collect(),

@@ -18,7 +18,8 @@ pub enum Carrier {
 impl Selection {
     /// What a total force on the part is shared over.
     ///
-    /// A group that lists sides, cells or curves has them, in this order; curves have points alone. A condition and a set of points select what has all
+    /// A group that lists curves, sides or cells has them, in this order; curves have points alone. If it lists points besides, which are not those of
+    /// what else it lists, it is a set of points. A condition and a set of points select what has all
     /// its points in them: of a solid its outer sides or else its cells; of a plane mesh or a surface its cells or its outer sides, whichever have more of
     /// the points; of a curve its points alone. A set of points has sides or cells only if no point is left over: it would have no force.
     ///
@@ -29,14 +30,22 @@ impl Selection {
         let mut least = 1;
         if let Selection::Group(name) = self {
             let group = group(mesh, name)?;
-            if !group.sides.is_empty() {
+            // Listed points are a set of points, unless they are those of what else is listed.
+            let is_meant = |of: &mut dyn Iterator<Item = usize>| {
+                let mut of: Vec<usize> = if group.lists_points { of.collect() } else { return true };
+                of.sort_unstable();
+                of.dedup();
+                of == points
+            };
+            let has_edges = !group.edges.is_empty();
+            if has_edges && !group.lists_points {
+                return Ok(Carrier::Points(points));
+            }
+            if !group.sides.is_empty() && is_meant(&mut group.sides.iter().flatten().copied()) {
                 return Ok(Carrier::Sides(self.sides(mesh)?));
             }
-            if !group.cells.is_empty() {
+            if !group.cells.is_empty() && is_meant(&mut group.cells.iter().flat_map(|c| mesh.cell_nodes(*c)).copied()) {
                 return Ok(Carrier::Cells(group.cells.clone()));
-            }
-            if !group.edges.is_empty() {
-                return Ok(Carrier::Points(points));
             }
             least = points.len().max(1);
         }

@@ -15,6 +15,8 @@ use std::collections::HashMap;
 pub struct Embedding {
     /// The points of the mesh whose functions do not vanish at each given point, with their values.
     rows: Vec<Vec<(usize, f64)>>,
+    /// The cell of the mesh in which each given point is, or the nearest to it.
+    pub cells: Vec<CellIndex>,
     dimension: usize,
     /// The number of points of the mesh.
     points: usize,
@@ -47,7 +49,7 @@ impl Embedding {
         }
         let bins = Bins::of(mesh);
         let found: Vec<Option<Found>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
-        let (mut rows, mut outside) = (Vec::with_capacity(found.len()), 0);
+        let (mut rows, mut cells, mut outside) = (Vec::with_capacity(found.len()), Vec::with_capacity(found.len()), 0);
         for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
             let far = || {
                 Error::expected(
@@ -56,11 +58,12 @@ impl Embedding {
                     format!("one at {x:?} m"),
                 )
             };
-            let (row, inside) = found.ok_or_else(far)?;
+            let (row, cell, inside) = found.ok_or_else(far)?;
             outside += usize::from(!inside);
             rows.push(row);
+            cells.push(cell);
         }
-        Ok(Embedding { rows, dimension: d, points: mesh.point_count(), outside })
+        Ok(Embedding { rows, cells, dimension: d, points: mesh.point_count(), outside })
     }
 
     /// The values at the given points of values at the points of the mesh, both `[points · dimension]`.
@@ -90,8 +93,8 @@ impl Embedding {
     }
 }
 
-/// The shape functions at a point that do not vanish, and whether a cell has the point.
-type Found = (Vec<(usize, f64)>, bool);
+/// The shape functions at a point that do not vanish, the cell, and whether it has the point.
+type Found = (Vec<(usize, f64)>, CellIndex, bool);
 
 /// The cells by the bins that their surroundings meet.
 struct Bins {
@@ -148,14 +151,14 @@ impl Bins {
             let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
             // One that is not finite is kept.
             let row: Vec<(usize, f64)> = values.filter(|(_, n)| !(n.abs() <= 1e-14)).collect();
-            row.iter().all(|(_, n)| n.is_finite()).then_some((row, multiple == 0))
+            row.iter().all(|(_, n)| n.is_finite()).then_some((row, cell, multiple == 0))
         };
         let found = best.and_then(row);
         // The functions of pyramids have no value at the apex.
-        if !matches!(found, Some((_, true)))
-            && let Some(node) = near.iter().find_map(|(_, of)| of.node_at(mesh, &place))
+        if !matches!(found, Some((.., true)))
+            && let Some((node, cell)) = near.iter().find_map(|(_, of)| Some((of.node_at(mesh, &place)?, of.cell)))
         {
-            return Some((vec![(node, 1.0)], true));
+            return Some((vec![(node, 1.0)], cell, true));
         }
         found
     }

@@ -58,6 +58,16 @@ impl<'a> Lines<'a> {
         None
     }
 
+    /// That the file goes on after what its header counts; `None` if it does not.
+    pub fn beyond(&mut self, counted: &str) -> Option<String> {
+        let mut count = 0;
+        while self.next_words().is_some() {
+            count += 1;
+        }
+        let lines = if count == 1 { "1 line".to_string() } else { format!("{count} lines") };
+        (count > 0).then(|| format!("{lines} after the {counted} that the header counts were left out"))
+    }
+
     /// A fault of the last line.
     pub fn fault(&self, problem: impl Into<String>) -> Error {
         let error = if self.section.is_empty() { Error::new(problem) } else { Error::at(&self.section, problem) };

@@ -1,5 +1,6 @@
 //! Numbered nodes and cells, and the groups that list them by number, as finite element programs write them.
 
+use super::annotations::Annotations;
 use super::grouping::Gather;
 use super::indices::Indices;
 use super::numbering::NumberOrigin;
@@ -9,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use std::collections::{BTreeMap, HashSet};
 
 /// What a file of numbered nodes and cells holds.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct Listing {
     pub node_numbers: Vec<u64>,
     pub points: Vec<[f64; 3]>,
@@ -17,7 +18,7 @@ pub(super) struct Listing {
 }
 
 /// Cells in the order of the file, with the numbers of their nodes.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct CellList {
     pub numbers: Vec<u64>,
     types: Vec<CellType>,
@@ -38,6 +39,23 @@ impl CellList {
 
     pub fn len(&self) -> usize {
         self.types.len()
+    }
+
+    /// Adds to the numbers of all nodes and cells; `None` if one becomes too large.
+    pub fn shift(&mut self, nodes: u64, cells: u64) -> Option<()> {
+        let grown = |number: &mut u64, by: u64| number.checked_add(by).map(|new| *number = new);
+        self.nodes.iter_mut().try_for_each(|number| grown(number, nodes))?;
+        self.numbers.iter_mut().try_for_each(|number| grown(number, cells))
+    }
+
+    /// Adds the cells of another list.
+    pub fn append(&mut self, mut other: CellList) {
+        let first = self.nodes.len();
+        self.numbers.append(&mut other.numbers);
+        self.types.append(&mut other.types);
+        self.ends.extend(other.ends.iter().map(|end| first + end));
+        self.nodes.append(&mut other.nodes);
+        self.lines.append(&mut other.lines);
     }
 
     pub fn cell_type(&self, cell: usize) -> CellType {
@@ -171,8 +189,8 @@ impl Resolved {
         met.into_values().flatten().collect()
     }
 
-    /// The blocks: cells of one type in the same groups, then the points and sides of each group.
-    pub fn into_source(mut self) -> MeshSource {
+    /// The blocks: cells of one type in the same groups, then the points and sides of each group. `annotations` is what else the file says.
+    pub fn into_source(mut self, annotations: Annotations) -> MeshSource {
         let Groups { names, mut cells, mut nodes, mut sides, .. } = std::mem::take(&mut self.groups);
         let named = |groups: &[u32]| groups.iter().map(|&group| names[group as usize].clone()).collect::<Vec<_>>();
         cells.sort_unstable();
@@ -189,7 +207,7 @@ impl Resolved {
             gather.list(&key).extend_from_slice(self.cell_nodes(cell));
         }
         let mut blocks: Vec<SourceBlock> =
-            gather.into_lists().map(|((cell_type, groups), list)| cell_type.block(list, named(&groups))).collect();
+            gather.into_lists().map(|((cell_type, groups), list)| cell_type.cells(list, named(&groups))).collect();
         nodes.sort_unstable();
         nodes.dedup();
         for members in nodes.chunk_by(|a, b| a.0 == b.0) {
@@ -207,6 +225,8 @@ impl Resolved {
             points: self.points,
             numbers: self.node_numbers,
             blocks,
+            space: None,
+            annotations,
         }
     }
 }

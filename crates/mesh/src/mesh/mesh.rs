@@ -1,5 +1,6 @@
 //! The points, cells and groups of a mesh.
 
+use super::annotations::Annotations;
 use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
@@ -18,13 +19,14 @@ pub struct Mesh {
     pub blocks: Vec<CellBlock>,
     /// The groups by name.
     pub groups: BTreeMap<String, Group>,
-    /// Conditions with the points that they select, ascending, where these were chosen on a coarser mesh of the body, see
-    /// [`Mesh::choose`].
-    pub conditions: Vec<(Predicate, Vec<usize>)>,
+    /// Conditions with what they select, where this was chosen on a coarser mesh of the body, see [`Mesh::choose`].
+    pub conditions: Vec<Chosen>,
     /// The number of cells that were numbered in the opposite order and have been reversed.
     pub reversed: usize,
     /// The number of points of the file that belong to no cell and were removed.
     pub unused_points: usize,
+    /// What the file says besides the body.
+    pub annotations: Annotations,
     /// The numbers of the points in the file; `None` for a mesh that is generated or refined.
     pub numbering: Option<Numbering>,
     /// The quality of the cells.
@@ -40,17 +42,31 @@ pub struct CellBlock {
     pub connectivity: Vec<usize>,
 }
 
-/// Points, sides, edges and cells with one name.
+/// Points, sides, edges and cells with one name. A file may list them one beside the other: finite element programs have a set of nodes and a set of
+/// elements of one name, meshes a tag in several dimensions. They need not be of the same part of the body.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Group {
-    /// The points, ascending.
+    /// The points that the name stands for, ascending: those that are listed as such, or else those of the listed part of the lowest dimension.
     pub points: Vec<usize>,
+    /// Whether the points are listed as such, beside the sides, edges and cells and not because these have them.
+    pub lists_points: bool,
     /// The sides, each by its points in ascending order.
     pub sides: Vec<Vec<usize>>,
     /// The edges of curves in a solid, each by its points in ascending order.
     pub edges: Vec<Vec<usize>>,
     /// The cells.
     pub cells: Vec<CellIndex>,
+}
+
+/// What a condition on the coordinates selects.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chosen {
+    /// The condition.
+    pub condition: Predicate,
+    /// The points where it holds, ascending.
+    pub points: Vec<usize>,
+    /// The cells at whose middle it holds; `None` where no cells are asked for.
+    pub cells: Option<Vec<CellIndex>>,
 }
 
 /// A cell of a mesh, by its block and its index in the block.
@@ -72,9 +88,9 @@ pub struct SideIndex {
 }
 
 impl Group {
-    /// Whether it has points and no sides, edges or cells.
+    /// Whether its points are those of no side, edge or cell that it lists.
     pub fn is_of_points(&self) -> bool {
-        self.sides.is_empty() && self.edges.is_empty() && self.cells.is_empty()
+        self.lists_points || (self.sides.is_empty() && self.edges.is_empty() && self.cells.is_empty())
     }
 }
 
@@ -97,8 +113,19 @@ impl CellBlock {
 impl Mesh {
     /// Points, `[points × dimension]`, m, and cells on them, without groups. The cells are not checked.
     pub fn of_cells(dimension: usize, points: Vec<f64>, blocks: Vec<CellBlock>) -> Mesh {
-        let (groups, conditions, quality) = Default::default();
-        Mesh { dimension, points, blocks, groups, conditions, reversed: 0, unused_points: 0, numbering: None, quality }
+        let (groups, conditions, quality, annotations) = Default::default();
+        Mesh {
+            dimension,
+            points,
+            blocks,
+            groups,
+            conditions,
+            reversed: 0,
+            unused_points: 0,
+            annotations,
+            numbering: None,
+            quality,
+        }
     }
 
     /// Points without cells, of which a mesh is built.
@@ -168,6 +195,13 @@ impl Mesh {
         regions
     }
 
+    /// The middle of a cell, the mean of its nodes, `[dimension]`, m.
+    pub fn middle(&self, cell: CellIndex) -> Vec<f64> {
+        let nodes = self.cell_nodes(cell);
+        let along = |k: usize| nodes.iter().map(|&p| self.point(p)[k]).sum::<f64>() / nodes.len() as f64;
+        (0..self.dimension).map(along).collect()
+    }
+
     /// The points of one cell, in the node order of its element.
     pub fn cell_nodes(&self, CellIndex { block, cell }: CellIndex) -> &[usize] {
         self.blocks[block].cell(cell)
@@ -226,7 +260,7 @@ impl Mesh {
             group.points.dedup();
             group.sides.iter_mut().chain(&mut group.edges).for_each(renumber);
         }
-        for (_, points) in &mut self.conditions {
+        for Chosen { points, .. } in &mut self.conditions {
             points.retain(|&p| new[p] != usize::MAX);
             points.iter_mut().for_each(|p| *p = new[*p]);
         }

@@ -46,7 +46,7 @@ impl CellType {
         }
     }
 
-    /// Cells of this type that belong to these groups.
+    /// Points and sides of this type that belong to these groups.
     pub fn block(self, connectivity: Vec<usize>, groups: Vec<String>) -> SourceBlock {
         SourceBlock {
             dimension: self.dimension(),
@@ -54,7 +54,13 @@ impl CellType {
             nodes_per_cell: self.nodes(),
             connectivity,
             groups,
+            is_marker: true,
         }
+    }
+
+    /// Cells of this type that belong to these groups.
+    pub fn cells(self, connectivity: Vec<usize>, groups: Vec<String>) -> SourceBlock {
+        SourceBlock { is_marker: false, ..self.block(connectivity, groups) }
     }
 
     pub fn dimension(self) -> usize {

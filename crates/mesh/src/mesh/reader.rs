@@ -132,6 +132,11 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Passes over so many bytes.
+    pub fn pass(&mut self, count: usize) {
+        self.at = self.at.saturating_add(count).min(self.bytes.len());
+    }
+
     /// The next `count` bytes.
     pub fn take(&mut self, count: usize) -> Result<&'a [u8]> {
         let Some(taken) = self.rest().get(..count) else {

@@ -32,10 +32,19 @@ impl Mesh {
         if dimension == 0 {
             return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
         }
-        let space = if dimension < 3 && in_one_plane(source) { 2 } else { 3 };
+        let is_flat = dimension < 3 && in_one_plane(source);
+        let space = match source.space {
+            None if is_flat => 2,
+            Some(2) if is_flat => 2,
+            Some(2) => {
+                return Err(Error::expected("space", "points with one z, for the space has 2 dimensions", "others"));
+            }
+            _ => 3,
+        };
         check_size(source.points.iter().flatten().map(|x| x * scale))?;
         let points = source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect();
-        let mut mesh = Mesh { numbering: numbering(source), ..Mesh::of_points(space, points) };
+        let annotations = source.annotations.clone();
+        let mut mesh = Mesh { numbering: numbering(source), annotations, ..Mesh::of_points(space, points) };
         let mut served: BTreeMap<u32, usize> = BTreeMap::new();
         for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
             let index = match served.get(&block.cell_type) {
@@ -52,10 +61,32 @@ impl Mesh {
             };
             mesh.add_cells(index, block, source.format);
         }
+        let mut is_of_cell = vec![false; source.points.len()];
+        mesh.blocks.iter().flat_map(|block| &block.connectivity).for_each(|&p| is_of_cell[p] = true);
+        // A name stands for its points of the lowest dimension that are of the body.
+        let mut listed: BTreeMap<&String, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
+        for block in &source.blocks {
+            for name in &block.groups {
+                let points = listed.entry(name).or_default().entry(block.dimension).or_default();
+                points.extend(block.connectivity.iter().filter(|&&p| is_of_cell[p]));
+            }
+        }
+        for (name, parts) in listed {
+            let group = mesh.groups.entry(name.clone()).or_default();
+            if let Some((dimension, points)) = parts.into_iter().find(|(_, points)| !points.is_empty()) {
+                (group.points, group.lists_points) = (points, dimension == 0);
+            }
+        }
         for block in source.blocks.iter().filter(|b| b.dimension < dimension && b.nodes_per_cell > 0) {
+            let cells = block.connectivity.chunks_exact(block.nodes_per_cell);
+            let is_left_out = |nodes: &&[usize]| !(block.is_marker && nodes.iter().all(|&p| is_of_cell[p]));
+            let left_out = match block.is_marker && block.groups.is_empty() {
+                true => cells.len(),
+                false => cells.filter(is_left_out).count(),
+            };
+            mesh.annotations.leave_out(&block.title(), left_out);
             for name in &block.groups {
                 let group = mesh.groups.entry(name.clone()).or_default();
-                group.points.extend(&block.connectivity);
                 let parts = block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted);
                 match (block.dimension, dimension - block.dimension) {
                     (_, 1) => group.sides.extend(parts),
@@ -107,7 +138,6 @@ impl Mesh {
         let last = connectivity.len() / element.nodes();
         for name in &block.groups {
             let group = self.groups.entry(name.clone()).or_default();
-            group.points.extend(&block.connectivity);
             group.cells.extend((first..last).map(|cell| CellIndex { block: index, cell }));
         }
     }
@@ -178,8 +208,12 @@ impl Mesh {
         let Some((first, fault)) = faulty.first() else { return Ok(turned) };
         if !skip {
             let others = match faulty.len() - 1 {
-                0 => String::new(),
-                count => format!("; the cells with such a fault are {} of {}", count + 1, self.cell_count()),
+                0 => "; below = \"skip\" leaves the cell out".to_string(),
+                count => format!(
+                    "; the cells with such a fault are {} of {}; below = \"skip\" leaves them out",
+                    count + 1,
+                    self.cell_count()
+                ),
             };
             return Err(Error::at(self.cell_name(*first), fault.to_string()).followed_by(others));
         }

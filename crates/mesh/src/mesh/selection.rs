@@ -1,18 +1,19 @@
 //! Parts of a mesh, selected by group name or by a condition on the coordinates.
 
 use super::embedding::Embedding;
-use super::mesh::{CellIndex, Group, Mesh, SideIndex, sorted};
+use super::mesh::{CellIndex, Chosen, Group, Mesh, SideIndex, sorted};
 use crate::error::{Error, Result};
 use crate::named::unknown;
 use crate::symbolic::Predicate;
+use std::collections::HashSet;
 
 /// A part of a mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Selection {
     /// The points, sides and cells of the group with this name.
     Group(String),
-    /// The points whose coordinates x, y (, z) in m satisfy the condition, and the boundary sides and the cells with
-    /// all points selected. A mesh on which the condition was chosen before its cells were divided has the same part, see [`Mesh::choose`].
+    /// The points whose coordinates x, y (, z) in m satisfy the condition, the boundary sides with all points selected, and the cells whose middle
+    /// satisfies it. A mesh on which the condition was chosen before its cells were divided has the same part, see [`Mesh::choose`].
     Where(Predicate),
     /// All points, boundary sides and cells.
     Everything,
@@ -26,21 +27,21 @@ impl Selection {
     pub fn points(&self, mesh: &Mesh) -> Result<Vec<usize>> {
         Ok(match self {
             Selection::Group(name) => group(mesh, name)?.points.clone(),
-            Selection::Where(condition) => match mesh.conditions.iter().find(|(chosen, _)| chosen == condition) {
-                Some((_, points)) => points.clone(),
+            Selection::Where(condition) => match mesh.conditions.iter().find(|chosen| chosen.condition == *condition) {
+                Some(chosen) => chosen.points.clone(),
                 None => (0..mesh.point_count()).filter(|&p| condition.holds(mesh.point(p))).collect(),
             },
             Selection::Everything => (0..mesh.point_count()).collect(),
         })
     }
 
-    /// The selected sides: those that the mesh lists in the group, or those on the boundary with all points selected.
+    /// The selected sides: those that the mesh lists in the group; or, if it lists none, and of a condition, those on the boundary with all points selected.
     ///
     /// # Errors
     /// There is no such group, or it lists sides that no cell has: a load on the others alone would be too small.
     pub fn sides(&self, mesh: &Mesh) -> Result<Vec<SideIndex>> {
         match self {
-            Selection::Group(name) => {
+            Selection::Group(name) if !group(mesh, name)?.sides.is_empty() => {
                 let ListedSides { sides, lost } = ListedSides::of(mesh, group(mesh, name)?);
                 let Some(first) = lost.first() else { return Ok(sides) };
                 let expected = format!("sides of cells in group \"{name}\"");
@@ -53,7 +54,7 @@ impl Selection {
                     format!("{} of {} that no cell has, the first {first}", lost.len(), lost.len() + sides.len());
                 Err(Error::expected("group", expected, found))
             }
-            Selection::Where(_) | Selection::Everything => {
+            Selection::Group(_) | Selection::Where(_) | Selection::Everything => {
                 Ok(outer_sides(mesh, &is_selected(mesh, &self.points(mesh)?)))
             }
         }
@@ -66,9 +67,14 @@ impl Selection {
     pub fn cells(&self, mesh: &Mesh) -> Result<Vec<CellIndex>> {
         match self {
             Selection::Group(name) => Ok(group(mesh, name)?.cells.clone()),
-            Selection::Where(_) | Selection::Everything => {
-                Ok(whole_cells(mesh, &is_selected(mesh, &self.points(mesh)?)))
+            Selection::Where(condition) => {
+                let chosen = mesh.conditions.iter().find(|chosen| chosen.condition == *condition);
+                Ok(match chosen.and_then(|chosen| chosen.cells.as_ref()) {
+                    Some(cells) => cells.clone(),
+                    None => mesh.cell_indices().filter(|cell| condition.holds(&mesh.middle(*cell))).collect(),
+                })
             }
+            Selection::Everything => Ok(mesh.cell_indices().collect()),
         }
     }
 }
@@ -83,24 +89,44 @@ impl Mesh {
     }
 
     /// Chooses what conditions select, on this mesh and on all into which its cells are divided: a point of a divided cell is selected where
-    /// all points whose shape functions do not vanish there are. What is held, loaded or of one material is therefore the same part of the body
-    /// on every mesh, whatever the condition says between the points of this one.
-    pub fn choose(&mut self, conditions: impl IntoIterator<Item = Predicate>) {
-        for condition in conditions {
+    /// all points whose shape functions do not vanish there are, and the parts of a selected cell are. What is held, loaded or of one material is
+    /// therefore the same part of the body on every mesh, whatever the condition says between the points of this one. Each condition comes with
+    /// whether cells are asked for.
+    pub fn choose(&mut self, conditions: impl IntoIterator<Item = (Predicate, bool)>) {
+        for (condition, asks_cells) in conditions {
             let selection = Selection::Where(condition.clone());
-            let points = selection.points(self).expect("a condition is no group that may be missing");
-            if !self.conditions.iter().any(|(chosen, _)| *chosen == condition) {
-                self.conditions.push((condition, points));
+            let known = "a condition is no group that may be missing";
+            let points = selection.points(self).expect(known);
+            let cells = asks_cells.then(|| selection.cells(self).expect(known));
+            match self.conditions.iter_mut().find(|chosen| chosen.condition == condition) {
+                Some(chosen) => chosen.cells = chosen.cells.take().or(cells),
+                None => self.conditions.push(Chosen { condition, points, cells }),
             }
         }
     }
 
     /// Takes what conditions select over from a coarser mesh of the same body, in whose cells the points of this one have these places.
-    pub fn choose_as_on(&mut self, coarse: &Mesh, places: &Embedding) {
-        let taken = |(condition, points): &(Predicate, Vec<usize>)| {
-            (condition.clone(), places.carried_by(&is_selected(coarse, points)))
+    ///
+    /// # Errors
+    /// The middle of a cell is far from all cells of the coarser mesh.
+    pub fn choose_as_on(&mut self, coarse: &Mesh, places: &Embedding) -> Result<()> {
+        let asks_cells = coarse.conditions.iter().any(|chosen| chosen.cells.is_some());
+        let middles: Vec<f64> = match asks_cells {
+            true => self.cell_indices().flat_map(|cell| self.middle(cell)).collect(),
+            false => Vec::new(),
+        };
+        let of_middles = Embedding::of(&middles, coarse)?.cells;
+        let taken = |Chosen { condition, points, cells }: &Chosen| {
+            let points = places.carried_by(&is_selected(coarse, points));
+            let cells = cells.as_ref().map(|cells| {
+                let cells: HashSet<CellIndex> = cells.iter().copied().collect();
+                let pairs = self.cell_indices().zip(&of_middles);
+                pairs.filter(|(_, of)| cells.contains(*of)).map(|(cell, _)| cell).collect()
+            });
+            Chosen { condition: condition.clone(), points, cells }
         };
         self.conditions = coarse.conditions.iter().map(taken).collect();
+        Ok(())
     }
 }
 
@@ -123,8 +149,8 @@ impl ListedSides {
         listed.sort_unstable();
         listed.dedup();
         let mut found = vec![None; listed.len()];
-        let is_selected = is_selected(mesh, &group.points);
-        for side in mesh.side_indices().filter(|side| mesh.side_points(side).all(|p| is_selected[p])) {
+        let is_of_listed = is_selected(mesh, &listed.concat());
+        for side in mesh.side_indices().filter(|side| mesh.side_points(side).all(|p| is_of_listed[p])) {
             if let Ok(place) = listed.binary_search(&sorted(&mesh.side_nodes(&side))) {
                 found[place].get_or_insert(side);
             }

@@ -1,5 +1,6 @@
 //! The content of a mesh file, before its cells have elements.
 
+use super::annotations::Annotations;
 use super::numbering::NumberOrigin;
 
 /// The numbering of cell types of a source. Readers of other formats turn their types and node orders into those of VTK.
@@ -24,6 +25,11 @@ pub struct MeshSource {
     pub numbers: Vec<u64>,
     /// The cells.
     pub blocks: Vec<SourceBlock>,
+    /// The dimension of the space, if the kind of file says it: a surface of triangles is in space, also where it is flat. Otherwise bodies of
+    /// fewer than three dimensions with equal z are in the plane.
+    pub space: Option<usize>,
+    /// What else the file says.
+    pub annotations: Annotations,
 }
 
 /// Cells of one type that belong to the same groups.
@@ -39,4 +45,24 @@ pub struct SourceBlock {
     pub connectivity: Vec<usize>,
     /// The names of the groups to which all cells of this block belong.
     pub groups: Vec<String>,
+    /// Whether cells of fewer dimensions than the body mark its sides, edges and points by their groups; or else they are bodies themselves.
+    pub is_marker: bool,
+}
+
+impl SourceBlock {
+    /// What one of the cells is, in words, with the groups that it is in.
+    pub(super) fn title(&self) -> String {
+        let shape = match (self.dimension, self.nodes_per_cell) {
+            (0, _) => "point",
+            (1, _) => "line",
+            (2, 3 | 6 | 7 | 10) => "triangle",
+            (2, 4 | 8 | 9 | 16) => "quadrangle",
+            (2, _) => "polygon",
+            _ => "solid cell",
+        };
+        match &self.groups[..] {
+            [] => shape.to_string(),
+            groups => format!("{shape} of {}", groups.join(" and ")),
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! The files of TetGen and Triangle: points (`.node`), cells (`.ele`) and marked faces (`.face`).
 
+use super::annotations::Annotations;
 use super::lines::Lines;
 use super::listing::{Listing, Resolved};
 use super::polytope::CellType;
@@ -24,9 +25,12 @@ pub fn parse(node: &[u8], ele: &[u8], face: Option<&[u8]>) -> Result<MeshSource>
     let length = node.len() + ele.len() + face.map_or(0, <[u8]>::len);
     let mut listing = Listing::default();
     let mut node = Table::new(".node", node)?;
+    let mut annotations = Annotations::default();
     let marks = points(&mut node, &mut listing)?;
+    node.lines.beyond("points of .node").into_iter().for_each(|sentence| annotations.remark(sentence));
     let mut ele = Table::new(".ele", ele)?;
     let regions = cells(&mut ele, &mut listing)?;
+    ele.lines.beyond("cells of .ele").into_iter().for_each(|sentence| annotations.remark(sentence));
     let mut resolved = listing.resolve(length, ".ele: cell")?;
     for (place, mark) in marks.into_iter().enumerate().filter(|(_, mark)| *mark != 0) {
         let group = resolved.group(&format!("mark={mark}"));
@@ -37,9 +41,11 @@ pub fn parse(node: &[u8], ele: &[u8], face: Option<&[u8]>) -> Result<MeshSource>
         resolved.add_cell(group, cell)?;
     }
     if let Some(face) = face {
-        faces(&mut Table::new(".face", face)?, &mut resolved)?;
+        let mut face = Table::new(".face", face)?;
+        faces(&mut face, &mut resolved)?;
+        face.lines.beyond("faces of .face").into_iter().for_each(|sentence| annotations.remark(sentence));
     }
-    Ok(resolved.into_source())
+    Ok(resolved.into_source(annotations))
 }
 
 /// A file: a line of counts, then one line for each thing.
@@ -158,6 +164,8 @@ fn faces(table: &mut Table, resolved: &mut Resolved) -> Result<()> {
             _ => (CellType::TRI6, TRI6.iter().map(|&place| nodes[place]).collect()),
         };
         let group = resolved.group(&format!("mark={mark}"));
+        // A point on several marked faces has the mark of one: the mark of a face is that of its points as well.
+        nodes.iter().try_for_each(|&node| resolved.add_node(group, node))?;
         resolved.add_face(group, cell_type, nodes)
     })
 }

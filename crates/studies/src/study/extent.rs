@@ -11,3 +11,22 @@ pub fn extent(mesh: &Mesh) -> Vec<f64> {
     };
     (0..mesh.dimension).map(along).collect()
 }
+
+/// `from 0 to 0.1 m along x, …`: where the body is.
+pub(in crate::study) fn extends(mesh: &Mesh) -> String {
+    let along = |k: usize| {
+        let range = mesh.points.iter().skip(k).step_by(mesh.dimension);
+        let (least, most) = range.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+        format!("from {} to {} m along {}", rounded(least, 4), rounded(most, 4), ["x", "y", "z"][k])
+    };
+    (0..mesh.dimension).map(along).collect::<Vec<_>>().join(", ")
+}
+
+/// The number with so many digits.
+pub(in crate::study) fn rounded(value: f64, digits: usize) -> String {
+    let short = format!("{:.*e}", digits - 1, value).parse::<f64>().unwrap_or(value);
+    match short.abs() {
+        0.0 | 1e-4..1e6 => format!("{short}"),
+        _ => format!("{short:e}"),
+    }
+}

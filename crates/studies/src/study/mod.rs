@@ -50,7 +50,7 @@ pub use convergence::{
     converge_to, converge_with, limit_of, most_unknowns, rates, refinements,
 };
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
-pub use draft::{DraftMaterial, DraftSource, draft};
+pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,

@@ -181,9 +181,12 @@ pub(super) fn exact_constants<T: Real>(
 /// Heights above the mean plane, as a share of the size of a cell, that may be rounding errors of the coordinates.
 const FLAT: f64 = 1e-9;
 
-/// Checks that cells of surfaces and curves are flat: the springs measure lengths in space, the finite elements in the
-/// mean plane.
-fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
+/// Checks that cells of surfaces and curves are flat, as exact networks need them: the springs measure lengths in space, the finite elements in the
+/// mean plane. `points` are `[points × space]`, `connectivity` is `[cells × nodes]`.
+///
+/// # Errors
+/// A cell is bent, or has no area.
+pub fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
     let (d, space, n) = (element.dimension(), element.space(), element.nodes());
     if d == space || n <= d + 1 {
         return Ok(());
@@ -203,7 +206,8 @@ fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Resu
             let expected = "flat cells for exact networks in space; triangles of three nodes always are";
             let found = format!("one that is bent by {:.1e} of its size", (height / size).sqrt());
             return Err(Error::expected(format!("{} cell {}", element.name, cell + 1), expected, found)
-                .of_kind(ErrorKind::Unsupported));
+                .of_kind(ErrorKind::Unsupported)
+                .followed_by("; objective = \"frobenius\" fits bent cells as well"));
         }
     }
     Ok(())

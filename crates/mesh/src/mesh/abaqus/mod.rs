@@ -1,9 +1,15 @@
-//! Input files of Abaqus and CalculiX (`.inp`): one body of numbered nodes and elements, with its sets and surfaces.
+//! Input files of Abaqus and CalculiX (`.inp`): numbered nodes and elements of one body, with its sets and surfaces.
 
+mod data;
 mod deck;
+mod include;
 mod keyword;
+mod model;
 mod placement;
+mod sections;
 mod sets;
+mod surfaces;
 mod types;
 
 pub use deck::parse;
+pub(super) use include::inclusion;

@@ -2,20 +2,22 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::indices::Indices;
-use crate::mesh::listing::{Resolved, missing};
+use crate::mesh::listing::missing;
 use std::collections::{HashMap, HashSet};
 
 /// Sets of one kind by name.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct Sets {
     pub sets: Vec<Set>,
     places: HashMap<String, usize>,
 }
 
 /// What a set lists.
-#[derive(Default)]
+#[derive(Default, Clone)]
 pub(super) struct Set {
     pub name: String,
+    /// The instance of the part that has the set.
+    pub instance: Option<String>,
     /// The line on which it was first named.
     pub line: usize,
     pub numbers: Vec<u64>,
@@ -40,6 +42,31 @@ impl Sets {
 
     pub fn find(&self, name: &str) -> Option<usize> {
         self.places.get(&name.to_uppercase()).copied()
+    }
+
+    /// Adds the sets of an instance, whose names begin with its own, and whose numbers grow by so much.
+    ///
+    /// # Errors
+    /// A number becomes too large.
+    pub fn add(&mut self, part: Sets, instance: &str, by: u64, of_elements: usize) -> Result<()> {
+        let first = self.sets.len();
+        for (place, mut set) in part.sets.into_iter().enumerate() {
+            let grown = |number: &mut u64| number.checked_add(by).map(|new| *number = new);
+            let numbers = set.numbers.iter_mut().try_for_each(grown);
+            let ranges = set.ranges.iter_mut().try_for_each(|[from, to, _]| grown(from).and_then(|()| grown(to)));
+            if numbers.and(ranges).is_none() {
+                return Err(Error::at(
+                    format!("set \"{}\"", set.name),
+                    "has numbers that are too large in an assembly",
+                ));
+            }
+            set.sets.iter_mut().for_each(|other| *other += first);
+            set.of_elements.iter_mut().for_each(|other| *other += of_elements);
+            self.places.insert(format!("{instance}.{}", set.name).to_uppercase(), first + place);
+            set.instance = Some(instance.to_string());
+            self.sets.push(set);
+        }
+        Ok(())
     }
 
     /// The members of each set as indices, ascending. `left_out` are numbers of things that are not read.
@@ -95,11 +122,13 @@ fn check(found: usize, most: usize) -> Result<()> {
 }
 
 /// A part of a surface: what it is on, and where on it.
+#[derive(Clone)]
 pub(super) struct Patch {
     pub on: On,
     pub place: Place,
 }
 
+#[derive(Clone)]
 pub(super) enum On {
     Element(u64),
     /// The index of a set of elements.
@@ -111,75 +140,12 @@ pub(super) enum On {
 
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Place {
-    /// The side with this index.
+    /// The side with this index; of a shell the first two are its faces, and the others its edges.
     Side(usize),
+    /// The edge of a shell with this index.
+    Edge(usize),
     /// The sides that belong to one element alone.
     Outer,
-    /// The element itself: a side of a shell.
+    /// The element itself: a face of a shell.
     Whole,
-}
-
-/// Adds what the surfaces are on to the groups with their names.
-///
-/// # Errors
-/// A surface names an element that is not there, or a side that none of its elements has.
-pub(super) fn add_surfaces(
-    resolved: &mut Resolved,
-    surfaces: &[(String, usize, Vec<Patch>)],
-    elements: &[Vec<usize>],
-    nodes: &[Vec<usize>],
-    left_out: &HashSet<u64>,
-) -> Result<()> {
-    let is_outer = |(_, _, patches): &(String, usize, Vec<Patch>)| patches.iter().any(|p| p.place == Place::Outer);
-    let outer = if surfaces.iter().any(is_outer) { resolved.outer_sides() } else { HashSet::new() };
-    for (name, line, patches) in surfaces {
-        let group = resolved.group(name);
-        let missing = |what: &str, number: u64| missing(format!("surface \"{name}\""), *line, what, number);
-        for patch in patches {
-            let one;
-            let cells: &[usize] = match &patch.on {
-                On::Nodes(set) => {
-                    nodes[*set].iter().try_for_each(|&node| resolved.add_node(group, node))?;
-                    continue;
-                }
-                On::Node(number) => {
-                    let node = resolved.nodes.index(*number).ok_or_else(|| missing("node", *number))?;
-                    resolved.add_node(group, node)?;
-                    continue;
-                }
-                On::Elements(set) => &elements[*set],
-                On::Element(number) => match resolved.cells.index(*number) {
-                    Some(cell) => {
-                        one = [cell];
-                        &one
-                    }
-                    None if left_out.contains(number) => &[],
-                    None => return Err(missing("element", *number)),
-                },
-            };
-            // Of a set with cells of several types some may lack the side.
-            let mut has_side = cells.is_empty();
-            for &cell in cells {
-                match patch.place {
-                    Place::Side(index) => has_side |= resolved.add_side(group, cell, index)?,
-                    Place::Whole => resolved.add_cell(group, cell)?,
-                    Place::Outer if resolved.list.cell_type(cell).dimension() == 3 => {
-                        for index in 0..resolved.list.cell_type(cell).sides().len() {
-                            if outer.contains(&(cell, index)) {
-                                resolved.add_side(group, cell, index)?;
-                            }
-                        }
-                    }
-                    Place::Outer => resolved.add_cell(group, cell)?,
-                }
-            }
-            if let (Place::Side(index), false) = (patch.place, has_side) {
-                let most = cells.iter().map(|&cell| resolved.list.cell_type(cell).sides().len()).max().unwrap_or(0);
-                let problem = format!("names side {} of elements with {most} sides", index + 1);
-                let key = format!("surface \"{name}\"");
-                return Err(Error::at(key, problem).of_kind(ErrorKind::Syntax).on_line(*line));
-            }
-        }
-    }
-    Ok(())
 }

@@ -21,13 +21,15 @@ struct Columns {
 /// Columns are missing or repeated; or a row has too few or too many cells, or a value that is not a number; or two
 /// rows at the same place have different values.
 pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result<Raw> {
-    let mut raw = Raw { holder: Holder::Points, places: Vec::new(), components, values: Vec::new() };
+    let mut raw =
+        Raw { holder: Holder::Points, places: Vec::new(), components, values: Vec::new(), starts: Vec::new() };
     let head = |header: &Header| Columns::new(header, array, components);
     // The coordinates of each row, its index, and where it begins in the text.
     let mut known: HashMap<[u64; 3], (usize, usize)> = HashMap::new();
     each_row(text, head, |header, columns, row, at| {
         let index = raw.places.len();
         columns.add(header, row, &mut raw)?;
+        raw.starts.push(at.start);
         // The sum makes no difference between the zeros of both signs.
         let (first, earlier) =
             *known.entry(raw.places[index].map(|x| (x + 0.0).to_bits())).or_insert((index, at.start));

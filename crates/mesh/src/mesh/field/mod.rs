@@ -14,4 +14,4 @@ mod table;
 
 pub use displacements::Field;
 pub use raw::Holder;
-pub use samples::{Interpolation, Samples};
+pub use samples::{Accepted, Interpolation, SampleReading, Samples};

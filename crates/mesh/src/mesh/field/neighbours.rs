@@ -47,6 +47,24 @@ impl Neighbours {
         (0..3).map(|k| (self.low[k] - x[k]).max(x[k] - self.high[k]).max(0.0)).fold(0.0, f64::hypot)
     }
 
+    /// The largest extent of the box around the points, m.
+    pub fn extent(&self) -> f64 {
+        (0..3).map(|k| self.high[k] - self.low[k]).fold(0.0, f64::max)
+    }
+
+    /// The largest distance of a point from the nearest other one, or half the diagonal of the largest box between the coordinates that occur along
+    /// each axis, whichever is larger, m: places between neighbours are not farther from them.
+    pub fn spacing(&self) -> f64 {
+        let nearest = |point: &[f64; 3]| self.nearest(point, 2).get(1).map_or(0.0, |(_, distance)| *distance);
+        let gap = |k: usize| {
+            let mut along: Vec<f64> = self.points.iter().map(|x| x[k]).collect();
+            along.sort_unstable_by(f64::total_cmp);
+            along.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
+        };
+        let half = 0.5 * (0..3).map(gap).fold(0.0, f64::hypot);
+        self.points.iter().map(nearest).fold(half, f64::max)
+    }
+
     /// The `count` points nearest to a position, or all if they are fewer, with their distances, m; the nearest first.
     pub fn nearest(&self, x: &[f64; 3], count: usize) -> Vec<(usize, f64)> {
         let count = count.min(self.points.len());

@@ -11,7 +11,7 @@ use crate::mesh::vtk::{DataArray, Piece};
 /// The grid has no such array or several, a piece lacks it, or a cell names a point that its piece lacks.
 pub(super) fn read(pieces: &[Piece], array: Option<&str>, components: usize) -> Result<Raw> {
     let (holder, name) = named(pieces, array, components)?;
-    let mut raw = Raw { holder, places: Vec::new(), components, values: Vec::new() };
+    let mut raw = Raw { holder, places: Vec::new(), components, values: Vec::new(), starts: Vec::new() };
     for piece in pieces {
         let places = match holder {
             Holder::Points => piece.points.clone(),

@@ -15,4 +15,6 @@ pub(super) struct Raw {
     pub places: Vec<[f64; 3]>,
     pub components: usize,
     pub values: Vec<f64>,
+    /// Where each row of a table begins in its text; empty for grids.
+    pub starts: Vec<usize>,
 }

@@ -126,7 +126,7 @@ fn is_passed_over(line: &str) -> bool {
 }
 
 /// The line, from 1, of the first row at or after this byte.
-fn line_from(text: &str, byte: usize) -> usize {
+pub(super) fn line_from(text: &str, byte: usize) -> usize {
     let (before, rest) = text.split_at_checked(byte).unwrap_or((text, ""));
     // The end of the previous row may still follow.
     let passed = rest.split_inclusive('\n').take_while(|line| is_passed_over(line)).count();

@@ -2,6 +2,7 @@
 
 use super::neighbours::Neighbours;
 use super::raw::{Holder, Raw};
+use super::rows::line_from;
 use super::{columns, pieces};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{ending, read, read_text};
@@ -30,52 +31,121 @@ pub struct Samples {
     /// `[places × components]`
     values: Vec<f64>,
     neighbours: Neighbours,
+    /// How many places have no value and were left out.
+    pub left_out: usize,
+}
+
+/// What is read of a file of numbers at places.
+#[derive(Debug, Clone, Copy)]
+pub struct SampleReading<'a> {
+    /// The name of the array, of the column, or the beginning of the names of several columns; `None` if there is one alone.
+    pub array: Option<&'a str>,
+    /// Metres per unit of the positions.
+    pub scale: f64,
+    /// How many numbers belong to each place.
+    pub components: usize,
+    /// The number that says that a place has none.
+    pub missing: Option<f64>,
+    /// The numbers that are possible.
+    pub accepted: Accepted,
+}
+
+/// The numbers that a quantity can have.
+#[derive(Debug, Clone, Copy)]
+pub struct Accepted {
+    is_accepted: fn(f64) -> bool,
+    /// In words.
+    expected: &'static str,
+}
+
+impl Accepted {
+    /// Any finite number.
+    pub const ANY: Accepted = Accepted { is_accepted: f64::is_finite, expected: "a finite number" };
+
+    /// The numbers that the quantity of this key of a material can have.
+    pub fn of(key: &str) -> Accepted {
+        match key {
+            "young" | "thickness" | "density" => {
+                Accepted { is_accepted: |x| x > 0.0 && x.is_finite(), expected: "a number above 0" }
+            }
+            "poisson" => Accepted { is_accepted: |x| x > -1.0 && x <= 0.5, expected: "a number above -1, up to 0.5" },
+            _ => Accepted::ANY,
+        }
+    }
 }
 
 /// How many places a plane is fitted to, in each number of dimensions.
 const FITTED: [usize; 4] = [1, 4, 8, 14];
 
 impl Samples {
-    /// Reads `.csv`, `.vtu` or `.vtk`, according to the extension. Positions are multiplied by `scale`, in metres per unit of the file.
+    /// Reads `.csv`, `.vtu` or `.vtk`, according to the extension.
     ///
-    /// A table has a header with the columns `x`, `y` (and `z`) and that called `array`; without a name the only other column. A grid has
-    /// a point or cell array called `array`; without a name the only one. Numbers of cells are at the mean of their nodes.
-    ///
-    /// `components` is how many numbers belong to each place: a table has them in columns `array_x`, `array_y`, `array_z`.
+    /// A table has a header with the columns `x`, `y` (and `z`) and that of the array; without a name the only other column. A grid has
+    /// a point or cell array of its name; without a name the only one. Numbers of cells are at the mean of their nodes. Several numbers of a place are in
+    /// the columns `array_x`, `array_y`, `array_z` of a table.
     ///
     /// # Errors
     /// The file is missing, of another kind, damaged or cut short; it lacks such columns or such an array; or it has a value that is
-    /// not a finite number.
-    pub fn read(path: &Path, array: Option<&str>, scale: f64, components: usize) -> Result<Samples> {
+    /// not possible, with the line of its row.
+    pub fn read(path: &Path, reading: &SampleReading) -> Result<Samples> {
+        let SampleReading { array, scale, components, .. } = *reading;
         range::positive("scale", scale, "metres per unit of the file")?;
+        let mut text = String::new();
         let raw = match ending(path).as_str() {
-            "csv" => columns::read(&read_text(path)?, array, components),
+            "csv" => {
+                text = read_text(path)?;
+                columns::read(&text, array, components)
+            }
             "vtu" => vtk::xml_pieces(&read(path)?).and_then(|all| pieces::read(&all, array, components)),
             "vtk" => vtk::legacy_piece(&read(path)?).and_then(|piece| pieces::read(&[piece], array, components)),
             _ => Err(Error::new("expected values ending in .csv, .vtu or .vtk").of_kind(ErrorKind::Unsupported)),
         };
-        raw.and_then(|raw| Samples::of(raw, scale)).map_err(|e| e.in_file(path))
+        raw.and_then(|raw| Samples::of(raw, reading, &text)).map_err(|e| e.in_file(path))
     }
 
-    fn of(raw: Raw, scale: f64) -> Result<Samples> {
-        let Raw { holder, mut places, components, values } = raw;
+    fn of(raw: Raw, reading: &SampleReading, text: &str) -> Result<Samples> {
+        let Raw { holder, mut places, components, mut values, mut starts } = raw;
+        let mut left_out = 0;
+        if let Some(missing) = reading.missing {
+            let is_kept: Vec<bool> =
+                values.chunks_exact(components).map(|of| of.iter().all(|x| *x != missing)).collect();
+            left_out = is_kept.iter().filter(|kept| !**kept).count();
+            let kept = |of: usize| is_kept[of];
+            values = values
+                .chunks_exact(components)
+                .enumerate()
+                .filter(|(i, _)| kept(*i))
+                .flat_map(|(_, x)| x)
+                .copied()
+                .collect();
+            places = places.into_iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, x)| x).collect();
+            starts = starts.into_iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, x)| x).collect();
+        }
         if places.is_empty() {
-            return Err(Error::new("expected at least one place with a value, found none"));
+            let error = Error::new("expected at least one place with a value, found none");
+            return Err(if left_out > 0 { error.at_key("missing") } else { error });
         }
         let name = |place: usize| match holder {
             Holder::Points => format!("points[{place}]"),
             Holder::Cells => format!("cells[{place}]"),
         };
         for (place, x) in places.iter_mut().enumerate() {
-            x.iter_mut().for_each(|x| *x *= scale);
+            x.iter_mut().for_each(|x| *x *= reading.scale);
             if !x.iter().all(|x| x.abs() <= range::LARGEST) {
                 return Err(Error::expected(name(place), "finite coordinates", format!("{x:?} m")));
             }
         }
-        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-            return Err(Error::expected(name(at / components), "a finite number", values[at]));
+        if let Some(at) = values.iter().position(|value| !(reading.accepted.is_accepted)(*value)) {
+            let place = at / components;
+            let error = Error::expected(name(place), reading.accepted.expected, values[at]);
+            let error = match reading.missing {
+                None => error.followed_by(format!("; missing = {:?} leaves out places without a value", values[at])),
+                Some(_) => error,
+            };
+            let line = starts.get(place).map(|start| line_from(text.strip_prefix('\u{feff}').unwrap_or(text), *start));
+            return Err(line.into_iter().fold(error, Error::on_line));
         }
-        Ok(Samples { holder, components, values, neighbours: Neighbours::new(places) })
+        Ok(Samples { holder, components, values, neighbours: Neighbours::new(places), left_out })
     }
 
     /// To what the numbers belong.
@@ -86,6 +156,21 @@ impl Samples {
     /// The distance of a position from the box around all places, m.
     pub fn outside(&self, x: &[f64]) -> f64 {
         self.neighbours.outside(&spatial(x))
+    }
+
+    /// The distance of a position from the nearest place, m.
+    pub fn distance(&self, x: &[f64]) -> f64 {
+        self.neighbours.nearest(&spatial(x), 1)[0].1
+    }
+
+    /// The largest extent of the box around all places, m.
+    pub fn extent(&self) -> f64 {
+        self.neighbours.extent()
+    }
+
+    /// The largest distance of a place from the nearest other one, m.
+    pub fn spacing(&self) -> f64 {
+        self.neighbours.spacing()
     }
 
     /// The numbers at a position in a space of that many dimensions, `[components]`.

@@ -3,6 +3,7 @@
 use super::nodes::Nodes;
 use super::{types, v22, v40, v41};
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::annotations::Annotations;
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::reader::{Encoding, Reader, quoted};
@@ -51,6 +52,7 @@ struct File {
     entities: v41::Entities,
     nodes: Option<Nodes>,
     cells: Option<Cells>,
+    annotations: Annotations,
 }
 
 enum Cells {
@@ -99,11 +101,20 @@ impl File {
             }
             ("NOD" | "ELM", Some(Version::V1)) => return Err(reader.fault("stands in the file a second time".into())),
             ("ELM", None) => return Err(reader.fault("expected $NOD before it".into())),
-            ("PartitionedEntities", _) => {
-                let error = reader.fault("partitioned meshes are not supported".into());
-                return Err(error.of_kind(ErrorKind::Unsupported));
+            ("PartitionedEntities", Some(Version::V41)) => {
+                self.entities.extend(v41::partitioned_entities(reader)?);
             }
-            _ => return skip(reader, name),
+            ("PartitionedEntities", _) => {
+                let error = reader.fault("partitioned meshes of this version are not supported".into());
+                return Err(error.of_kind(ErrorKind::Unsupported).followed_by(v40::CONVERTS));
+            }
+            _ => {
+                if !skip(reader, name) {
+                    self.annotations
+                        .remark(format!("the file ends inside ${name}, which no mesh needs: it may be cut short"));
+                }
+                return Ok(());
+            }
         }
         let end = match name {
             "NOD" | "ELM" => format!("$END{name}"),
@@ -141,19 +152,28 @@ impl File {
             let name = |tag| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{dimension}:{tag}"));
             let mut known = HashSet::new();
             let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
-            blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups });
+            blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups, is_marker: true });
         }
         let origin = NumberOrigin::GmshTag;
-        Ok(MeshSource { format: Format::Gmsh, origin, points: nodes.points, numbers: nodes.tags, blocks })
+        Ok(MeshSource {
+            format: Format::Gmsh,
+            origin,
+            points: nodes.points,
+            numbers: nodes.tags,
+            blocks,
+            space: None,
+            annotations: self.annotations,
+        })
     }
 }
 
 /// Reads the version and determines the encoding of the following sections.
 fn format(reader: &mut Reader) -> Result<Version> {
-    let version = match reader.peek() {
-        b"4.1" => Version::V41,
-        b"4.0" | b"4" => Version::V40,
-        b"2.2" | b"2.1" | b"2.0" | b"2" => Version::V22,
+    let number: Option<f64> = std::str::from_utf8(reader.peek()).ok().and_then(|word| word.parse().ok());
+    let version = match number {
+        Some(4.1) => Version::V41,
+        Some(4.0) => Version::V40,
+        Some(2.0..=2.2) => Version::V22,
         _ => return Err(unknown_version(reader)),
     };
     reader.word();
@@ -197,15 +217,21 @@ fn physical_names(reader: &mut Reader) -> Result<HashMap<(usize, u32), String>> 
     for _ in 0..count {
         let dimension: u32 = reader.text_number()?;
         let tag: i32 = reader.text_number()?;
-        if !reader.peek().starts_with(b"\"") {
-            return Err(reader.unexpected("a name in quotes"));
+        if reader.peek().is_empty() || reader.peek().starts_with(b"$") {
+            return Err(reader.unexpected("a name"));
         }
         let line = reader.rest_of_line();
         if line.len() == reader.rest().len() {
             return Err(reader.ends());
         }
-        let name = line.trim_ascii().strip_prefix(b"\"").and_then(|name| name.strip_suffix(b"\""));
-        let name = name.ok_or_else(|| reader.expected("a name in quotes", &quoted(line)))?;
+        // Names are in quotes; some programs leave them out.
+        let name = match line.trim_ascii().strip_prefix(b"\"") {
+            Some(name) => {
+                let end = name.iter().rposition(|&b| b == b'"');
+                &name[..end.ok_or_else(|| reader.expected("a quote after the name", &quoted(line)))?]
+            }
+            None => line.trim_ascii(),
+        };
         let name = String::from_utf8_lossy(name).into_owned();
         reader.line();
         reader.count_one();
@@ -214,15 +240,21 @@ fn physical_names(reader: &mut Reader) -> Result<HashMap<(usize, u32), String>> 
     Ok(names)
 }
 
-/// Skips a section whose content is not used.
-fn skip(reader: &mut Reader, name: &str) -> Result<()> {
+/// Skips a section whose content is not used, whose end follows binary data without a line end; whether it ends.
+fn skip(reader: &mut Reader, name: &str) -> bool {
     let end = format!("$End{name}");
-    loop {
-        if reader.rest().is_empty() {
-            return Err(reader.ends());
+    let rest = reader.rest();
+    // The section may be large: its end is sought by its first byte.
+    let mut from = 0;
+    while let Some(found) = rest[from..].iter().position(|&b| b == b'$') {
+        let at = from + found;
+        let after = at + end.len();
+        if rest[at..].starts_with(end.as_bytes()) && rest.get(after).is_none_or(u8::is_ascii_whitespace) {
+            reader.pass(after);
+            return true;
         }
-        if reader.line().trim_ascii() == end.as_bytes() {
-            return Ok(());
-        }
+        from = at + 1;
     }
+    reader.pass(rest.len());
+    false
 }

@@ -29,22 +29,62 @@ pub(super) fn entities(reader: &mut Reader, place: usize) -> Result<Entities> {
             for _ in 0..if dimension == 0 { place } else { 6 } {
                 reader.number::<f64>()?;
             }
-            let mut physical = Vec::new();
+            groups(reader, dimension, tag, &mut entities)?;
+        }
+    }
+    Ok(entities)
+}
+
+/// Reads the physical tags of an entity, and the tags of those that bound it.
+fn groups(reader: &mut Reader, dimension: i32, tag: i32, entities: &mut Entities) -> Result<()> {
+    let mut physical = Vec::new();
+    for _ in 0..reader.number::<u64>()? {
+        // A minus sign stands for the opposite orientation.
+        physical.push(reader.number::<i32>()?.unsigned_abs());
+    }
+    physical.sort_unstable();
+    physical.dedup();
+    if dimension > 0 {
+        for _ in 0..reader.number::<u64>()? {
+            reader.number::<i32>()?;
+        }
+    }
+    reader.count_one();
+    if !physical.is_empty() {
+        entities.insert((dimension, tag), physical);
+    }
+    Ok(())
+}
+
+/// Reads the entities of a mesh in partitions, which have tags of their own and the physical tags of their parents.
+pub(super) fn partitioned_entities(reader: &mut Reader) -> Result<Entities> {
+    reader.start_data()?;
+    reader.number::<u64>()?;
+    for _ in 0..reader.number::<u64>()? {
+        // A ghost entity and its partition.
+        reader.number::<i32>()?;
+        reader.number::<i32>()?;
+    }
+    let mut counts = [0_u64; 4];
+    for count in &mut counts {
+        *count = reader.number()?;
+    }
+    let total = counts.iter().fold(0, |sum: u64, &count| sum.saturating_add(count));
+    reader.announce("entities", total);
+    let mut entities = Entities::new();
+    for (dimension, count) in (0_i32..).zip(counts) {
+        for _ in 0..count {
+            let tag = reader.number::<i32>()?;
+            // The dimension and the tag of the parent.
+            reader.number::<i32>()?;
+            reader.number::<i32>()?;
             for _ in 0..reader.number::<u64>()? {
-                // A minus sign stands for the opposite orientation.
-                physical.push(reader.number::<i32>()?.unsigned_abs());
+                reader.number::<i32>()?;
             }
-            physical.sort_unstable();
-            physical.dedup();
-            if dimension > 0 {
-                for _ in 0..reader.number::<u64>()? {
-                    reader.number::<i32>()?;
-                }
+            for _ in 0..if dimension == 0 { 3 } else { 6 } {
+                reader.number::<f64>()?;
             }
-            reader.count_one();
-            if !physical.is_empty() {
-                entities.insert((dimension, tag), physical);
-            }
+            groups(reader, dimension, tag, &mut entities)?;
         }
     }
     Ok(entities)

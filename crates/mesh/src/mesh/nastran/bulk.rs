@@ -1,26 +1,29 @@
 //! The cards of bulk data that make a mesh.
 
 use super::card::Card;
-use super::cells::element;
+use super::cells::{Other, element, other, stand_in};
+use super::properties::Properties;
+use super::systems::{Grid, Systems};
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::annotations::Annotations;
 use crate::mesh::lines::{Lines, whole};
 use crate::mesh::listing::Listing;
 use crate::mesh::source::MeshSource;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Reads bulk data, alone or after the sections of a whole input file. The elements of a property form the group
 /// `pid=NUMBER`; a SET1 of grid points and a SET3 of grid points, elements or properties form `set=NUMBER`.
 ///
 /// # Errors
-/// A grid point is in a coordinate system of its own, an element has none here, a set is not stated by numbers, the file
-/// includes others, or it is damaged.
+/// An element has none here, a set is not stated by numbers, the file includes others that are not read with it, or it is damaged.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
-    if bytes.split(|&b| b == b'\n').any(is_begin) {
-        while lines.next().is_some_and(|line| !is_begin(line)) {}
-    }
     let mut bulk = Bulk::default();
-    while let Some(card) = Card::next(&mut lines)? {
+    if bytes.split(|&b| b == b'\n').any(is_begin) {
+        let begins = std::iter::from_fn(|| lines.next()).find(|line| is_begin(line));
+        bulk.has_superelements = begins.is_some_and(|line| line.to_ascii_uppercase().windows(5).any(|w| w == b"SUPER"));
+    }
+    while let Some(card) = Card::next(&mut lines) {
         if card.name == "ENDDATA" {
             break;
         }
@@ -33,12 +36,24 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 fn is_begin(line: &[u8]) -> bool {
     let mut words = line.split(|b| b.is_ascii_whitespace() || *b == b'=').filter(|word| !word.is_empty());
     words.next().is_some_and(|word| word.eq_ignore_ascii_case(b"BEGIN"))
-        && words.next().is_some_and(|word| word.eq_ignore_ascii_case(b"BULK"))
+        && words
+            .next()
+            .is_some_and(|word| [&b"BULK"[..], b"SUPER"].iter().any(|known| word.eq_ignore_ascii_case(known)))
 }
 
 #[derive(Default)]
 struct Bulk {
     listing: Listing,
+    grids: Vec<(u64, Grid)>,
+    systems: Systems,
+    /// The coordinate system of grid points that name none.
+    system: u64,
+    materials: Properties,
+    annotations: Annotations,
+    /// Whether points may be there twice, in two superelements.
+    has_superelements: bool,
+    /// How many elements each card has that is something else here, and their dimension.
+    stand_ins: BTreeMap<String, (usize, usize)>,
     /// The property of each cell.
     properties: Vec<Option<u64>>,
     sets: Vec<SetCard>,
@@ -63,14 +78,17 @@ impl Bulk {
     fn read(&mut self, card: &Card) -> Result<()> {
         match card.name.as_str() {
             "GRID" => {
-                basic(card, 1)?;
+                card.check()?;
                 let number = card.whole(0, "the number of a grid point")?;
                 let at = |index| card.real(index, "a coordinate");
-                let point = [at(2)?, at(3)?, at(4)?];
-                self.listing.node_numbers.push(number);
-                self.listing.points.push(point);
+                let grid = Grid {
+                    system: system(card, 1)?.unwrap_or(u64::MAX),
+                    at: [at(2)?, at(3)?, at(4)?],
+                    line: card.line,
+                };
+                self.grids.push((number, grid));
             }
-            "GRDSET" => basic(card, 1)?,
+            "GRDSET" => self.system = system(card, 1)?.unwrap_or(0),
             "SET1" => self.read_set(card, Of::Points, 1)?,
             "SET3" => {
                 let of = match card.field(1).to_ascii_uppercase().as_slice() {
@@ -81,16 +99,62 @@ impl Bulk {
                 };
                 self.read_set(card, of, 2)?;
             }
-            name if name.starts_with("INCLUDE") || name.starts_with("BEGIN") => {
-                let expected = "the cards of one body in this file";
-                return Err(card.unsupported(expected, &format!("{name}: put the content in its place")));
+            "MAT1" | "PSOLID" | "PSHELL" | "PROD" | "PBAR" | "PBEAM" => self.materials.read(card),
+            // The cards of superelements; those of the rest of the body follow BULK.
+            name if name.starts_with("BEGIN") => {
+                self.annotations.remark("the superelements of the file are read as parts of one body");
+                self.has_superelements = true;
             }
-            _ => {
+            name if name.starts_with("INCLUDE") => {
+                let expected = "the cards of one body in this text";
+                let way = "a file that is read by its path is read with what it includes";
+                return Err(card.unsupported(expected, &format!("{name}: {way}")));
+            }
+            name => {
+                if self.systems.read(card)? {
+                    return Ok(());
+                }
                 if let Some(found) = element(card)? {
+                    let dimension = found.cell_type.dimension();
                     self.listing.cells.push(card.line, found.number, found.cell_type, found.nodes);
                     self.properties.push(found.property);
+                    if stand_in(name).is_some() {
+                        self.stand_ins.entry(name.to_string()).or_insert((0, dimension)).0 += 1;
+                    }
+                    return Ok(());
+                }
+                match other(card)? {
+                    Other::Prescribes => self.annotations.prescribe(name),
+                    Other::LeftOut => self.annotations.leave_out(name, 1),
+                    Other::Passed => {}
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Finds where the grid points are.
+    fn place(&mut self) -> Result<()> {
+        let default = self.system;
+        for (_, grid) in &mut self.grids {
+            if grid.system == u64::MAX {
+                grid.system = default;
+            }
+        }
+        // Points of the basic system need no other.
+        let is_basic = self.grids.iter().all(|(_, grid)| grid.system == 0);
+        let by_number: HashMap<u64, Grid> =
+            if is_basic { HashMap::new() } else { self.grids.iter().copied().collect() };
+        let mut met = HashMap::new();
+        for (number, grid) in &self.grids {
+            if self.has_superelements && *met.entry(*number).or_insert(grid.line) != grid.line {
+                let first = self.grids.iter().find(|(other, _)| other == number);
+                if first.is_some_and(|(_, first)| first.system == grid.system && first.at == grid.at) {
+                    continue;
+                }
+            }
+            self.listing.node_numbers.push(*number);
+            self.listing.points.push(if is_basic { grid.at } else { self.systems.place(grid, &by_number)? });
         }
         Ok(())
     }
@@ -121,7 +185,8 @@ impl Bulk {
         Ok(())
     }
 
-    fn into_source(self, length: usize) -> Result<MeshSource> {
+    fn into_source(mut self, length: usize) -> Result<MeshSource> {
+        self.place()?;
         if self.listing.points.is_empty() {
             return Err(Error::new("the file ends before a GRID card").of_kind(ErrorKind::Syntax));
         }
@@ -156,19 +221,23 @@ impl Bulk {
                 }
             }
         }
-        Ok(resolved.into_source())
+        let mut annotations = self.annotations;
+        let top = (0..resolved.list.len()).map(|cell| resolved.list.cell_type(cell).dimension()).max().unwrap_or(0);
+        for (name, (count, dimension)) in self.stand_ins {
+            if let Some(what) = stand_in(&name).filter(|_| dimension == top) {
+                let elements = if count == 1 { "element is" } else { "elements are" };
+                annotations.remark(format!("{count} {name} {elements} {what} here"));
+            }
+        }
+        self.materials.annotate(&mut annotations, |property| of_property.contains_key(&property));
+        Ok(resolved.into_source(annotations))
     }
 }
 
-/// That the field names the basic coordinate system.
-fn basic(card: &Card, index: usize) -> Result<()> {
+/// The number of the coordinate system in a field; `None` if it is blank.
+fn system(card: &Card, index: usize) -> Result<Option<u64>> {
     match card.field(index) {
-        b"" | b"0" => Ok(()),
-        other => {
-            let system = String::from_utf8_lossy(other);
-            let found =
-                format!("system {system}: let the program that wrote the file write coordinates in the basic system");
-            Err(card.unsupported("coordinates in the basic system, 0", &found))
-        }
+        b"" => Ok(None),
+        _ => card.whole(index, "the number of a coordinate system").map(Some),
     }
 }

@@ -12,6 +12,8 @@ pub(super) struct Card<'a> {
     pub fields: Vec<&'a [u8]>,
     /// The line on which it begins.
     pub line: usize,
+    /// What is wrong with its lines, if the card is of use.
+    fault: Option<Error>,
 }
 
 /// One line, divided.
@@ -27,15 +29,12 @@ const WIDTH: usize = 72;
 
 impl<'a> Card<'a> {
     /// The next card; `None` at the end of the file.
-    ///
-    /// # Errors
-    /// A line has more fields than a card, or a continuation has another mark than the line before announces.
-    pub fn next(lines: &mut Lines<'a>) -> Result<Option<Card<'a>>> {
+    pub fn next(lines: &mut Lines<'a>) -> Option<Card<'a>> {
+        let mut fault = None;
         let row = loop {
-            let Some(line) = lines.next() else { return Ok(None) };
-            let line = content(line);
+            let line = content(lines.next()?);
             if !line.trim_ascii().is_empty() {
-                break row(lines, line)?;
+                break row(lines, line, &mut fault);
             }
         };
         let line = lines.number();
@@ -51,17 +50,25 @@ impl<'a> Card<'a> {
                 break;
             }
             lines.next();
-            let row = self::row(lines, next)?;
+            let row = self::row(lines, next, &mut fault);
             let known = row.head.strip_prefix(b"+").or(row.head.strip_prefix(b"*")).unwrap_or(row.head).trim_ascii();
             let announced = mark.strip_prefix(b"+").or(mark.strip_prefix(b"*")).unwrap_or(mark).trim_ascii();
             if !known.is_empty() && !announced.is_empty() && known != announced {
                 let expected = format!("the continuation {}", quoted(announced));
-                return Err(lines.expected(&expected, &quoted(known)));
+                fault.get_or_insert_with(|| lines.expected(&expected, &quoted(known)));
             }
             fields.extend(row.fields);
             mark = row.mark;
         }
-        Ok(Some(Card { name, fields, line }))
+        Some(Card { name, fields, line, fault })
+    }
+
+    /// That the lines of the card are as a card's are. Cards that are of no use may be otherwise.
+    ///
+    /// # Errors
+    /// A line has more fields than a card, or a continuation has another mark than the line before announces.
+    pub fn check(&self) -> Result<()> {
+        self.fault.clone().map_or(Ok(()), Err)
     }
 
     /// The field with this index after the name; blank if the card is shorter.
@@ -108,24 +115,26 @@ fn continues(line: &[u8]) -> bool {
     matches!(line[0], b'+' | b'*' | b',' | b'\t') || line[..line.len().min(8)].iter().all(|&b| b == b' ')
 }
 
-fn row<'a>(lines: &Lines, line: &'a [u8]) -> Result<Row<'a>> {
+fn row<'a>(lines: &Lines, line: &'a [u8], fault: &mut Option<Error>) -> Row<'a> {
     let separator = [b',', b'\t'].into_iter().find(|separator| line.contains(separator));
     let Some(separator) = separator else {
         let column = |from: usize, to: usize| line.get(from..to.min(line.len())).unwrap_or_default().trim_ascii();
         let head = column(0, 8);
         let width = if head.contains(&b'*') { 16 } else { 8 };
         let fields = (8..WIDTH).step_by(width).map(|from| column(from, from + width)).collect();
-        return Ok(Row { head, fields, mark: column(WIDTH, WIDTH + 8) });
+        return Row { head, fields, mark: column(WIDTH, WIDTH + 8) };
     };
     let mut parts = line.split(|&b| b == separator).map(<[u8]>::trim_ascii);
     let head = parts.next().unwrap_or_default();
     let most = if head.contains(&b'*') { 4 } else { 8 };
     let mut fields: Vec<&[u8]> = parts.collect();
     // The field after the last is the mark of a continuation.
-    if fields.len() > most + 1 {
-        return Err(lines.expected(&format!("at most {most} fields after the name"), &fields.len().to_string()));
+    if fields.iter().skip(most + 1).any(|field| !field.is_empty()) {
+        fault.get_or_insert_with(|| {
+            lines.expected(&format!("at most {most} fields after the name"), &fields.len().to_string())
+        });
     }
     let mark = fields.get(most).copied().unwrap_or_default();
     fields.resize(most, b"");
-    Ok(Row { head, fields, mark })
+    Row { head, fields, mark }
 }

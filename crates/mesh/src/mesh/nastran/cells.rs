@@ -19,7 +19,7 @@ const fn shape(name: &'static str, corners: CellType, full: Option<CellType>) ->
     Shape { name, first: 2, corners, full }
 }
 
-const SHAPES: [Shape; 16] = [
+const SHAPES: [Shape; 18] = [
     shape("CTETRA", CellType::TET4, Some(CellType::TET10)),
     shape("CHEXA", CellType::HEX8, Some(CellType::HEX20)),
     shape("CPENTA", CellType::WEDGE6, Some(CellType::WEDGE15)),
@@ -31,6 +31,8 @@ const SHAPES: [Shape; 16] = [
     shape("CQUAD4", CellType::QUAD4, None),
     shape("CQUADR", CellType::QUAD4, None),
     shape("CQUAD8", CellType::QUAD4, Some(CellType::QUAD8)),
+    shape("CQUAD", CellType::QUAD4, Some(CellType::QUAD8)),
+    shape("CBEAM3", CellType::LINE2, Some(CellType::LINE3)),
     shape("CBAR", CellType::LINE2, None),
     shape("CBEAM", CellType::LINE2, None),
     shape("CROD", CellType::LINE2, None),
@@ -38,11 +40,70 @@ const SHAPES: [Shape; 16] = [
     Shape { name: "CONROD", first: 1, corners: CellType::LINE2, full: None },
 ];
 
-/// Cards of elements with a body that have no element here.
-const OTHERS: [&str; 14] = [
-    "CQUAD", "CQUADX", "CTRIAX", "CTRIAX6", "CQUADX4", "CQUADX8", "CTRIAX3", "CBEAM3", "CBEND", "CSHEAR", "CTQUAD",
-    "CTTRIA", "CHEXA1", "CHEXA2",
+/// The beginnings of names of cards without a body that begin with a C, as those of elements do: springs, dampers, masses, gaps, joints, coordinate
+/// systems, heat exchange, aerodynamics and sets.
+const BODILESS: [&str; 30] = [
+    "CELAS", "CDAMP", "CMASS", "CONM", "CBUSH", "CGAP", "CVISC", "CFAST", "CWELD", "CSEAM", "CORD", "CAERO", "CHBDY",
+    "CONV", "CYJOIN", "CYSYM", "CYAX", "CYSUP", "CSUPER", "CSUPEXT", "CLOAD", "CREEP", "CSET", "CSSCHD", "CBARAO",
+    "CHACAB", "CHACBR", "CONTRLT", "CTYPE", "CIFHEX",
 ];
+
+/// Of these beginnings, those of elements.
+const CONNECTORS: [&str; 10] = ["CELAS", "CDAMP", "CMASS", "CONM", "CBUSH", "CGAP", "CVISC", "CFAST", "CWELD", "CSEAM"];
+
+/// Elements that are counted and left out.
+const OTHERS: [&str; 3] = ["CSHEAR", "CBEND", "PLOTEL"];
+
+/// Cards that prescribe what is not taken from a file.
+const PRESCRIBED: [&str; 25] = [
+    "SPC", "SPC1", "SPCD", "SPCADD", "MPC", "RBE1", "RBE2", "RBE3", "RBAR", "RROD", "RSPLINE", "RSSCON", "FORCE",
+    "FORCE1", "FORCE2", "MOMENT", "PLOAD", "PLOAD1", "PLOAD2", "PLOAD4", "GRAV", "TEMP", "TEMPD", "BCTABLE", "SUPORT",
+];
+
+/// What a card is that makes no cell and no point.
+pub(super) enum Other {
+    /// It prescribes something.
+    Prescribes,
+    /// An element that is left out.
+    LeftOut,
+    /// It is of no use for a mesh.
+    Passed,
+}
+
+/// What a card is that is none of an element with an element here.
+///
+/// # Errors
+/// It is of an element without one here, or repeats the card before it.
+pub(super) fn other(card: &Card) -> Result<Other> {
+    let name = card.name.as_str();
+    let starts = |start: &&str| name.starts_with(*start);
+    if PRESCRIBED.contains(&name) {
+        return Ok(Other::Prescribes);
+    }
+    if OTHERS.contains(&name) || CONNECTORS.iter().any(starts) {
+        return Ok(Other::LeftOut);
+    }
+    if name.starts_with('=') {
+        return Err(card.unsupported(
+            "each card in full",
+            &format!("{name}, which repeats the card before it: let the program that wrote the file write all cards"),
+        ));
+    }
+    if name.starts_with('C') && !BODILESS.iter().any(starts) {
+        let known = SHAPES.map(|shape| shape.name).join(", ");
+        return Err(card.unsupported(&format!("one of the elements {known}"), name));
+    }
+    Ok(Other::Passed)
+}
+
+/// How elements of a card answer here, where that is another way than in the program that wrote the file.
+pub(super) fn stand_in(name: &str) -> Option<&'static str> {
+    match name {
+        "CTRIA3" | "CTRIAR" | "CTRIA6" | "CQUAD4" | "CQUADR" | "CQUAD8" => Some("membranes, without bending stiffness"),
+        "CBAR" | "CBEAM" | "CBEAM3" => Some("rods, without bending stiffness"),
+        _ => None,
+    }
+}
 
 /// The places in VTK's order, by place in that of Nastran, whose upright edges come before those on top.
 const HEX20: [usize; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15];
@@ -61,15 +122,12 @@ pub(super) struct ElementCard {
 /// The element of the card; `None` for another card.
 ///
 /// # Errors
-/// The card has a wrong field, some of its middle nodes alone, or is of an element without one here.
+/// The card has a wrong field, or some of its middle nodes alone.
 pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
     let Some(shape) = SHAPES.iter().find(|shape| shape.name == card.name.trim_end_matches('_')) else {
-        if OTHERS.contains(&card.name.as_str()) {
-            let known = SHAPES.map(|shape| shape.name).join(", ");
-            return Err(card.unsupported(&format!("one of the elements {known}"), &card.name));
-        }
         return Ok(None);
     };
+    card.check()?;
     let number = card.whole(0, "the number of an element")?;
     let is_property = shape.first == 2;
     let property = is_property.then(|| match card.field(1) {

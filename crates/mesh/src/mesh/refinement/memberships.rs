@@ -13,6 +13,16 @@ pub struct Memberships<'a> {
     /// Those of `sides` and `edges` that a cell has.
     met: [std::collections::HashSet<Vec<usize>>; 2],
     groups: Vec<Group>,
+    leads: Vec<Lead>,
+}
+
+/// The part of a group of which its points are: that of the lowest dimension.
+#[derive(Clone, Copy, PartialEq)]
+enum Lead {
+    Points,
+    Edges,
+    Sides,
+    Cells,
 }
 
 impl<'a> Memberships<'a> {
@@ -24,12 +34,20 @@ impl<'a> Memberships<'a> {
             edges: HashMap::new(),
             met: Default::default(),
             groups: Vec::new(),
+            leads: Vec::new(),
         };
         for (index, group) in mesh.groups.values().enumerate() {
             group.cells.iter().for_each(|&cell| all.cells.entry(cell).or_default().push(index));
             group.sides.iter().for_each(|side| all.sides.entry(side.clone()).or_default().push(index));
             group.edges.iter().for_each(|edge| all.edges.entry(edge.clone()).or_default().push(index));
-            all.groups.push(Group { points: group.points.clone(), ..Group::default() });
+            let Group { points, lists_points, .. } = group;
+            all.leads.push(match group {
+                _ if group.is_of_points() => Lead::Points,
+                Group { edges, .. } if !edges.is_empty() => Lead::Edges,
+                Group { sides, .. } if !sides.is_empty() => Lead::Sides,
+                _ => Lead::Cells,
+            });
+            all.groups.push(Group { points: points.clone(), lists_points: *lists_points, ..Group::default() });
         }
         all
     }
@@ -38,14 +56,18 @@ impl<'a> Memberships<'a> {
     pub fn divide_cell(&mut self, cell: CellIndex, parts: &[CellIndex], points: &[usize]) {
         for &group in self.cells.get(&cell).into_iter().flatten() {
             self.groups[group].cells.extend(parts);
-            self.groups[group].points.extend(points);
+            if self.leads[group] == Lead::Cells {
+                self.groups[group].points.extend(points);
+            }
         }
     }
 
     /// Adds the parts of the side with these points to its groups.
     pub fn divide_side(&mut self, side: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
         for &group in self.sides.get(&side).into_iter().flatten() {
-            self.groups[group].points.extend(parts.clone().flatten());
+            if self.leads[group] == Lead::Sides {
+                self.groups[group].points.extend(parts.clone().flatten());
+            }
             self.groups[group].sides.extend(parts.clone());
         }
         if self.sides.contains_key(&side) {
@@ -56,7 +78,9 @@ impl<'a> Memberships<'a> {
     /// Adds the parts of the edge with these points to its groups.
     pub fn divide_edge(&mut self, edge: Vec<usize>, parts: impl Iterator<Item = Vec<usize>> + Clone) {
         for &group in self.edges.get(&edge).into_iter().flatten() {
-            self.groups[group].points.extend(parts.clone().flatten());
+            if self.leads[group] == Lead::Edges {
+                self.groups[group].points.extend(parts.clone().flatten());
+            }
             self.groups[group].edges.extend(parts.clone());
         }
         if self.edges.contains_key(&edge) {

@@ -60,6 +60,8 @@ impl Mesh {
         let mut fine = Mesh { blocks: Vec::new(), numbering: None, ..self.clone() };
         fine.blocks.extend(elements.into_iter().map(|element| CellBlock { element, connectivity: Vec::new() }));
         let mut memberships = Memberships::of(self);
+        let asks_cells = self.conditions.iter().any(|chosen| chosen.cells.is_some());
+        let mut all_parts: HashMap<CellIndex, Vec<CellIndex>> = HashMap::new();
         let mut glue = Glue::default();
         for (index, (block, division)) in self.blocks.iter().zip(&divisions).enumerate() {
             for (cell, nodes) in block.cells().enumerate() {
@@ -72,6 +74,9 @@ impl Mesh {
                     let target = &mut fine.blocks[block];
                     parts.push(CellIndex { block, cell: target.cells().len() });
                     target.connectivity.extend(places.iter().map(|&p| points[p]));
+                }
+                if asks_cells {
+                    all_parts.insert(CellIndex { block: index, cell }, parts.clone());
                 }
                 memberships.divide_cell(CellIndex { block: index, cell }, &parts, &points);
                 let own = |places: &[usize]| sorted(&places.iter().map(|&p| points[p]).collect::<Vec<_>>());
@@ -91,7 +96,11 @@ impl Mesh {
         for group in fine.groups.values_mut().filter(|group| group.is_of_points()) {
             glue.complete(&mut group.points);
         }
-        fine.conditions.iter_mut().for_each(|(_, points)| glue.complete(points));
+        for chosen in &mut fine.conditions {
+            glue.complete(&mut chosen.points);
+            let divided = |cells: Vec<CellIndex>| cells.iter().flat_map(|cell| all_parts[cell].clone()).collect();
+            chosen.cells = chosen.cells.take().map(divided);
+        }
         fine.drop_unused_points();
         fine.unused_points = self.unused_points;
         fine.orient(false).map_err(|e| e.followed_by(" after the cells were divided"))?;

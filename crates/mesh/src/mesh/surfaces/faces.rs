@@ -1,5 +1,6 @@
 //! Triangles and quadrangles in groups, as files of surfaces list them.
 
+use crate::mesh::annotations::Annotations;
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::polytope::CellType;
@@ -40,6 +41,14 @@ impl Faces {
         let blocks = self.gather.into_lists().map(|((cell_type, groups), list)| cell_type.block(list, groups));
         let numbers = (first..first + points.len() as u64).collect();
         let origin = if first == 0 { NumberOrigin::FilePlace } else { NumberOrigin::NodeNumber };
-        MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers }
+        MeshSource {
+            format: Format::Vtk,
+            origin,
+            points,
+            numbers,
+            blocks: blocks.collect(),
+            space: Some(3),
+            annotations: Annotations::default(),
+        }
     }
 }

@@ -35,8 +35,12 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
         points.push([at(0)?, at(1)?, at(2)?]);
     }
     for i in 0..face_count {
-        let words = next(&mut lines, &format!("{face_count} faces, found {i}"))?;
+        let mut words = next(&mut lines, &format!("{face_count} faces, found {i}"))?;
         let corners = lines.whole(words.first().copied().unwrap_or_default(), "a number of corners")?;
+        // The corners of a face may be on several lines.
+        while (words.len() as u64) <= corners.min(5) {
+            words.extend(next(&mut lines, &format!("{corners} corners of a face, found {}", words.len() - 1))?);
+        }
         let mut nodes = Vec::new();
         // Colours may follow the corners.
         for k in 1..=corners.min(5) {
@@ -51,7 +55,9 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
             return Err(lines.expected(TRIANGULATE, &format!("{corners} corners")).of_kind(ErrorKind::Unsupported));
         }
     }
-    Ok(faces.into_source(points, 0))
+    let mut source = faces.into_source(points, 0);
+    lines.beyond("faces").into_iter().for_each(|sentence| source.annotations.remark(sentence));
+    Ok(source)
 }
 
 fn next<'a>(lines: &mut Lines<'a>, expected: &str) -> Result<Vec<&'a [u8]>> {

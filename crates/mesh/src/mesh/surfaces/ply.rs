@@ -36,7 +36,12 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
             }
         }
     }
-    Ok(faces.into_source(points, 0))
+    let rest = reader.rest().trim_ascii().len();
+    let mut source = faces.into_source(points, 0);
+    if rest > 0 {
+        source.annotations.remark(format!("{rest} bytes after the elements that the header counts were left out"));
+    }
+    Ok(source)
 }
 
 struct Element {

@@ -82,7 +82,7 @@ fn text(bytes: &[u8]) -> Result<MeshSource> {
                 corners.clear();
                 continue;
             }
-            Place::Solid if is("endsolid") => {
+            Place::Solid if is("endsolid") || is("end") => {
                 place = Place::Outside;
                 continue;
             }

@@ -26,8 +26,9 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
         32 => (3, 18),
         14 => (3, 5),
         27 => (3, 13),
-        68 => return Some((1, None)),
-        7 | 69 | 70 => return Some((2, None)),
+        2 => return Some((0, None)),
+        4 | 68 => return Some((1, None)),
+        6 | 7 | 69 | 70 => return Some((2, None)),
         71..=74 => return Some((3, None)),
         _ => return None,
     };
@@ -39,10 +40,62 @@ pub(super) fn is_known(cell_type: u8) -> bool {
     matches!(cell_type, 1..=16 | 21..=37 | 41 | 42 | 51..=56 | 60..=81)
 }
 
+/// The cells of which a chain of points, of lines or of triangles consists: the type of each, and its nodes.
+pub(super) fn pieces(cell_type: u8, nodes: &[usize]) -> Option<(u8, Vec<Vec<usize>>)> {
+    Some(match cell_type {
+        2 => (1, nodes.iter().map(|&node| vec![node]).collect()),
+        4 => (3, nodes.windows(2).map(<[usize]>::to_vec).collect()),
+        // Every other triangle of a strip is turned round.
+        6 => {
+            let turned = |(i, t): (usize, &[usize])| if i % 2 == 0 { t.to_vec() } else { vec![t[1], t[0], t[2]] };
+            (5, nodes.windows(3).enumerate().map(turned).collect())
+        }
+        _ => return None,
+    })
+}
+
+/// The type with the same nodes, in the same order, of a cell of Lagrange's of degree 1 or 2; those of other degrees stay.
+fn lagrange(cell_type: u8, nodes: usize) -> u8 {
+    match (cell_type, nodes) {
+        (68, 2) => 3,
+        (68, 3) => 21,
+        (69, 3) => 5,
+        (69, 6) => 22,
+        (70, 4) => 9,
+        (70, 9) => 28,
+        (71, 4) => 10,
+        (71, 10) => 24,
+        (72, 8) => 12,
+        (72, 27) => 29,
+        (73, 6) => 13,
+        (73, 18) => 32,
+        (74, 5) => 14,
+        (other, _) => other,
+    }
+}
+
+/// Exchanges the middles of the last two upright edges of a hexahedron of Lagrange's where its points say so: VTK before version 9.1, and programs
+/// that follow it, have that from 3 to 7 before that from 2 to 6, which other hexahedra have first.
+fn untwist(nodes: &mut [usize], points: &[[f64; 3]]) {
+    let from_middle = |middle: usize, ends: [usize; 2]| -> f64 {
+        let x = |place: usize| points[nodes[place]];
+        (0..3).map(|k| (x(middle)[k] - 0.5 * (x(ends[0])[k] + x(ends[1])[k])).powi(2)).sum()
+    };
+    let kept = from_middle(18, [2, 6]) + from_middle(19, [3, 7]);
+    let exchanged = from_middle(19, [2, 6]) + from_middle(18, [3, 7]);
+    if exchanged < kept {
+        nodes.swap(18, 19);
+    }
+}
+
 /// Reorders a pixel or a voxel, whose nodes run along the axes, into a quadrangle or hexahedron, and turns a polygon of
-/// three or four nodes into a triangle or quadrangle.
-pub(super) fn without_raster(cell_type: u8, nodes: &mut [usize]) -> u8 {
-    match cell_type {
+/// three or four nodes into a triangle or quadrangle, and a cell of Lagrange's of degree 1 or 2 into the cell with its nodes.
+pub(super) fn plain(cell_type: u8, nodes: &mut [usize], points: &[[f64; 3]]) -> u8 {
+    match lagrange(cell_type, nodes.len()) {
+        29 if cell_type == 72 => {
+            untwist(nodes, points);
+            29
+        }
         8 => {
             nodes.swap(2, 3);
             9

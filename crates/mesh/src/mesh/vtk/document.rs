@@ -1,5 +1,6 @@
 //! The structure of an XML file: its pieces, their arrays and where these are stored.
 
+use super::compression::Compression;
 use super::grid_kind::{Extent, GridKind, Regular, polygon_counts};
 use super::polydata::KINDS;
 use super::scalar_type::ScalarType;
@@ -193,15 +194,15 @@ impl<'a> Document<'a> {
             Some(other) => Err(Error::expected(format!("VTKFile.{name}"), known.join(" or "), quoted(&other))),
         };
         self.kind = GridKind::called(tag.attribute("type"))?;
-        let compressed = match tag.attribute("compressor") {
-            None => false,
-            Some(name) if name == "vtkZLibDataCompressor" => true,
-            Some(other) => {
-                return Err(Error::expected("VTKFile.compressor", "vtkZLibDataCompressor or none", quoted(&other)));
-            }
+        let compression = match tag.attribute("compressor") {
+            None => None,
+            Some(name) => Some(Compression::called(&name).ok_or_else(|| {
+                let expected = "vtkZLibDataCompressor, vtkLZ4DataCompressor, vtkLZMADataCompressor or none";
+                Error::expected("VTKFile.compressor", expected, quoted(&name))
+            })?),
         };
         let wide = one_of("header_type", ["UInt32", "UInt64"])?;
-        self.storage = Storage { compressed, wide, big_endian: one_of("byte_order", ["LittleEndian", "BigEndian"])? };
+        self.storage = Storage { compression, wide, big_endian: one_of("byte_order", ["LittleEndian", "BigEndian"])? };
         Ok(())
     }
 

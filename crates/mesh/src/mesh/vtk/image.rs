@@ -19,11 +19,24 @@ pub(in crate::mesh) struct Image {
 }
 
 impl Image {
-    /// The mesh of the voxels whose label is not zero: one label for each cell, or else for each point, around which a voxel is.
+    /// The mesh of the voxels whose label is not zero: one label for each cell, or else for each point, around which a voxel is. Without labels all
+    /// cells of the lattice are the body, and a remark says so.
     ///
     /// # Errors
-    /// There is no such array; there are several and the file does not mark one of them as active; all labels are zero, or they are grey values.
+    /// There are several such arrays and the file does not mark one of them as active; all labels are zero, or they are grey values.
     pub fn piece(mut self, of_cells: Vec<Labels>, of_points: Vec<Labels>, active: Option<&str>) -> Result<Piece> {
+        if of_cells.is_empty() && of_points.is_empty() {
+            let place = |at: [usize; 3]| {
+                std::array::from_fn(|axis| {
+                    (0..3).fold(self.origin[axis], |x, k| x + at[k] as f64 * self.steps[k][axis])
+                })
+            };
+            let mut piece = self.lattice.limited()?.piece(|_| true, true, place)?;
+            piece
+                .remarks
+                .push("the image has no labels, no array of whole numbers: all its voxels are the body".into());
+            return Ok(piece);
+        }
         let around_points = of_cells.is_empty();
         let mut arrays = if around_points { of_points } else { of_cells };
         let mask = match (&arrays[..], active.and_then(|name| arrays.iter().position(|labels| labels.name == name))) {

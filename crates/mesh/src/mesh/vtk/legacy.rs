@@ -34,17 +34,27 @@ pub(in crate::mesh) fn piece(bytes: &[u8]) -> Result<Piece> {
     header(&mut reader)?;
     let mut file =
         File { reader, piece: Piece::default(), dataset: Dataset::default(), seen: Vec::new(), place: Place::File };
+    let mut ends_in_metadata = false;
     while !file.reader.peek().is_empty() {
-        file.read_section()?;
-    }
-    let needed = std::iter::once("DATASET").chain(file.dataset.sections().iter().copied());
-    for section in needed {
-        if !file.seen.iter().any(|seen| seen == section) {
-            return Err(Error::new(format!("the file ends before {section}")));
+        ends_in_metadata = file.reader.next_is("METADATA");
+        if let Err(error) = file.read_section() {
+            // The mesh is complete before the arrays of its cells and points.
+            if file.place == Place::File || file.missing().is_some() || file.dataset.is_image() {
+                return Err(error);
+            }
+            file.piece
+                .remarks
+                .push(format!("what follows is left out of the arrays of the file, for it is damaged there: {error}"));
+            ends_in_metadata = true;
+            break;
         }
     }
-    if file.reader.encoding == Encoding::Text && !bytes.last().is_some_and(u8::is_ascii_whitespace) {
-        return Err(Error::new("the file ends within a line: expected a line end after its last number"));
+    if let Some(section) = file.missing() {
+        return Err(Error::new(format!("the file ends before {section}")));
+    }
+    let has_end = ends_in_metadata || bytes.last().is_some_and(u8::is_ascii_whitespace);
+    if file.reader.encoding == Encoding::Text && !has_end {
+        file.piece.remarks.push("the file ends without a line end: its last number may be cut short".into());
     }
     file.dataset.finish(file.piece)
 }
@@ -78,6 +88,12 @@ struct File<'a> {
 }
 
 impl File<'_> {
+    /// A section that the mesh needs and that has not been read.
+    fn missing(&self) -> Option<&'static str> {
+        let mut needed = std::iter::once("DATASET").chain(self.dataset.sections().iter().copied());
+        needed.find(|section| !self.seen.iter().any(|seen| seen == section))
+    }
+
     fn read_section(&mut self) -> Result<()> {
         let word = self.reader.peek();
         self.reader.enter("");
@@ -170,10 +186,8 @@ impl File<'_> {
     fn metadata(&mut self) -> Result<()> {
         self.reader.line();
         loop {
-            if self.reader.rest().is_empty() {
-                return Err(self.reader.ends());
-            }
-            if self.reader.line().trim_ascii().is_empty() {
+            let is_last = self.reader.rest().is_empty();
+            if is_last || self.reader.line().trim_ascii().is_empty() {
                 return Ok(());
             }
         }

@@ -1,6 +1,7 @@
 //! The grids of VTK: reads XML and legacy files of every kind of grid, writes `.vtu`.
 
 mod cells;
+mod compression;
 mod document;
 mod grid_kind;
 mod image;

@@ -1,7 +1,8 @@
 //! Pieces of an unstructured grid, and the mesh that they form.
 
-use super::cells::{shape, without_raster};
+use super::cells::{pieces, plain, shape};
 use crate::error::{Error, Result};
+use crate::mesh::annotations::Annotations;
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
@@ -21,7 +22,19 @@ pub(in crate::mesh) struct Piece {
     pub labels: Vec<Labels>,
     pub point_arrays: Vec<DataArray>,
     pub cell_arrays: Vec<DataArray>,
+    /// Whether the cells are polygonal data, which are surfaces.
+    pub is_surface: bool,
+    /// What was left out of the file because it is damaged and not needed.
+    pub remarks: Vec<String>,
 }
+
+/// The array of cells that are there for other pieces or that are hidden, by bits; it names no groups.
+const GHOSTS: &str = "vtkGhostType";
+/// The bits of cells that are in another piece as well, that are divided into others, and that are hidden.
+const GHOSTLY: i128 = 1 | 8 | 32;
+
+/// The largest number of different values of an array of real numbers that are labels because all are whole.
+const MOST_REAL_LABELS: usize = 64;
 
 /// An array with one whole number per cell.
 pub(in crate::mesh) struct Labels {
@@ -69,14 +82,20 @@ type Key = (u8, usize, Vec<(usize, i128)>);
 ///
 /// # Errors
 /// A cell is of a type without a fixed shape, has the wrong number of nodes, or names a point that its piece lacks.
-pub(in crate::mesh) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
-    let arrays = grouping_arrays(&pieces);
+pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
+    all.iter_mut().for_each(Piece::label_whole_reals);
+    let is_surface = all.iter().all(|piece| piece.is_surface);
+    let mut annotations = Annotations::default();
+    let arrays = grouping_arrays(&all, &mut annotations);
     let places: HashMap<&str, usize> = arrays.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let mut points = Vec::new();
     let mut cells: Gather<Key> = Gather::new();
     let mut nodes = Vec::new();
-    for piece in pieces {
+    for mut piece in all {
         check_lengths(&piece)?;
+        piece.remarks.drain(..).for_each(|remark| annotations.remark(remark));
+        let ghosts =
+            piece.labels.iter().position(|labels| labels.name == GHOSTS).map(|at| piece.labels.remove(at).values);
         let mut columns = BTreeMap::new();
         for labels in &piece.labels {
             if let Some(&place) = places.get(labels.name.as_str()) {
@@ -84,8 +103,16 @@ pub(in crate::mesh) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
             }
         }
         let mut key: Key = (0, 0, Vec::new());
+        let first = points.len();
+        points.extend_from_slice(&piece.points);
         let mut start = 0;
         for (i, (&cell_type, &end)) in piece.types.iter().zip(&piece.ends).enumerate() {
+            let is_ghost = ghosts.as_ref().is_some_and(|ghosts| ghosts[i] & GHOSTLY != 0);
+            if cell_type == EMPTY || is_ghost {
+                annotations.leave_out(if is_ghost { "hidden or repeated cell" } else { "empty cell" }, 1);
+                start = usize::try_from(end).unwrap_or(usize::MAX);
+                continue;
+            }
             let Some((_, node_count)) = shape(cell_type) else {
                 return Err(Error::new(format!(
                     "cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown"
@@ -109,25 +136,61 @@ pub(in crate::mesh) fn mesh(pieces: Vec<Piece>) -> Result<MeshSource> {
                     let problem = format!("cell {i}: expected point indices below {}", piece.points.len());
                     return Err(Error::new(format!("{problem}, found {node}")));
                 };
-                nodes.push(points.len() + place);
+                nodes.push(first + place);
             }
-            key.0 = without_raster(cell_type, &mut nodes);
-            key.1 = nodes.len();
             key.2.clear();
             key.2.extend(columns.iter().map(|(&place, values)| (place, values[i])));
-            cells.list(&key).extend_from_slice(&nodes);
             start = end;
+            if let Some((cell_type, parts)) = pieces(cell_type, &nodes) {
+                for part in parts {
+                    (key.0, key.1) = (cell_type, part.len());
+                    cells.list(&key).extend(part);
+                }
+                continue;
+            }
+            key.0 = plain(cell_type, &mut nodes, &points);
+            key.1 = nodes.len();
+            cells.list(&key).extend_from_slice(&nodes);
         }
-        points.extend_from_slice(&piece.points);
     }
     let blocks = cells.into_lists().filter_map(|((cell_type, nodes_per_cell, values), connectivity)| {
         let (dimension, _) = shape(cell_type)?;
         let groups = values.into_iter().map(|(place, value)| format!("{}={value}", arrays[place])).collect();
-        Some(SourceBlock { dimension, cell_type: cell_type.into(), nodes_per_cell, connectivity, groups })
+        Some(SourceBlock {
+            dimension,
+            cell_type: cell_type.into(),
+            nodes_per_cell,
+            connectivity,
+            groups,
+            is_marker: true,
+        })
     });
     let numbers = (0..points.len() as u64).collect();
+    let space = is_surface.then_some(3);
     let origin = NumberOrigin::VtkPlace;
-    Ok(MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers })
+    Ok(MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers, space, annotations })
+}
+
+/// The type of cells without nodes.
+const EMPTY: u8 = 0;
+
+impl Piece {
+    /// Makes labels of arrays of real numbers of the cells that are all whole, and few: programs without other arrays write labels so.
+    fn label_whole_reals(&mut self) {
+        let cells = self.types.len();
+        for array in &self.cell_arrays {
+            let is_known = self.labels.iter().any(|labels| labels.name == array.name);
+            let Some(values) = array.values.as_ref().filter(|values| values.len() == cells && !is_known) else {
+                continue;
+            };
+            let whole = |value: &f64| (value.fract() == 0.0 && value.abs() < 1e15).then_some(*value as i128);
+            let Some(values) = values.iter().map(whole).collect::<Option<Vec<i128>>>() else { continue };
+            let different: HashSet<i128> = values.iter().copied().collect();
+            if different.len() <= MOST_REAL_LABELS {
+                self.labels.push(Labels { name: array.name.clone(), values });
+            }
+        }
+    }
 }
 
 fn check_lengths(piece: &Piece) -> Result<()> {
@@ -146,7 +209,7 @@ fn check_lengths(piece: &Piece) -> Result<()> {
 }
 
 /// The names, in order of occurrence, of the arrays with few enough values.
-fn grouping_arrays(pieces: &[Piece]) -> Vec<String> {
+fn grouping_arrays(pieces: &[Piece], annotations: &mut Annotations) -> Vec<String> {
     let mut names: Vec<&str> = Vec::new();
     let mut values: HashMap<&str, HashSet<i128>> = HashMap::new();
     for labels in pieces.iter().flat_map(|piece| &piece.labels) {
@@ -161,5 +224,10 @@ fn grouping_arrays(pieces: &[Piece]) -> Vec<String> {
             of_name.insert(value);
         }
     }
-    names.into_iter().filter(|name| values[name].len() <= MOST_GROUPS).map(str::to_string).collect()
+    let (few, many): (Vec<&str>, Vec<&str>) = names.into_iter().partition(|name| values[name].len() <= MOST_GROUPS);
+    for name in many {
+        annotations
+            .remark(format!("the array \"{name}\" has more than {MOST_GROUPS} different numbers, and names no groups"));
+    }
+    few.into_iter().map(str::to_string).collect()
 }

@@ -21,6 +21,7 @@ pub(super) const KINDS: [(&str, &str); 4] =
 /// # Errors
 /// The end of a cell is not in the list of nodes.
 pub(super) fn fill(piece: &mut Piece, kinds: [Cells; 4]) -> Result<()> {
+    piece.is_surface = true;
     let mut sources = Vec::new();
     let mut source = 0;
     for (kind, cells) in kinds.into_iter().enumerate() {

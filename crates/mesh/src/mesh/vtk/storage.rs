@@ -1,22 +1,19 @@
-//! The storage of arrays in a `.vtu`: in base64 or raw, as bytes after their number or as zlib blocks after a header.
+//! The storage of arrays in a `.vtu`: in base64 or raw, as bytes after their number or as compressed blocks after a header.
 
+use super::compression::Compression;
 use crate::error::{Error, Result};
 use base64::alphabet::STANDARD;
 use base64::engine::general_purpose::{GeneralPurpose, PAD};
 use base64::{DecodeError, Engine};
-use flate2::{Decompress, FlushDecompress, Status};
 use std::borrow::Cow;
 
 /// Base64 with padding. Some programs leave bits after the last byte, which are ignored.
 const BASE64: GeneralPurpose = GeneralPurpose::new(&STANDARD, PAD.with_decode_allow_trailing_bits(true));
 
-/// The largest ratio by which zlib compresses.
-const MOST_COMPRESSION: usize = 1100;
-
 /// How all arrays of a file are stored.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Storage {
-    pub compressed: bool,
+    pub compression: Option<Compression>,
     /// Whether the numbers of a header have eight bytes instead of four.
     pub wide: bool,
     pub big_endian: bool,
@@ -48,6 +45,7 @@ enum Layout {
         start: usize,
         block: usize,
         compressed: Vec<usize>,
+        compression: Compression,
     },
 }
 
@@ -99,8 +97,8 @@ impl Storage {
         let width = self.width();
         let first = stored.run(0, width)?;
         let first = self.numbers(&first).next().unwrap_or(0);
-        if self.compressed {
-            return self.open_blocks(stored, first);
+        if let Some(compression) = self.compression {
+            return self.open_blocks(stored, first, compression);
         }
         let stored_size = stored.length(first.saturating_add(width));
         if stored_size > stored.bytes.len() {
@@ -113,7 +111,7 @@ impl Storage {
 
     /// A header has the number of blocks, their size, the size of the last one (0 if it is as large as the others), and
     /// the compressed sizes of all blocks.
-    fn open_blocks(self, stored: Stored<'_>, count: usize) -> Result<Data<'_>> {
+    fn open_blocks(self, stored: Stored<'_>, count: usize, compression: Compression) -> Result<Data<'_>> {
         let length = count.saturating_add(3).saturating_mul(self.width());
         if stored.length(length) > stored.bytes.len() {
             let found = stored.bytes.len();
@@ -136,11 +134,11 @@ impl Storage {
             None => 0,
             Some(whole) => block.saturating_mul(whole).saturating_add(if last == 0 { block } else { last }),
         };
-        if count > 0 && (block == 0 || last > block || size / MOST_COMPRESSION > total) {
+        if count > 0 && (block == 0 || last > block || size / compression.most() > total) {
             let expected = format!("blocks that compress to {total} bytes in all");
             return Err(Error::new(format!("expected {expected}, found {count} of {block} bytes, the last of {last}")));
         }
-        Ok(Data { stored, size, stored_size, layout: Layout::Blocks { start, block, compressed } })
+        Ok(Data { stored, size, stored_size, layout: Layout::Blocks { start, block, compressed, compression } })
     }
 }
 
@@ -148,7 +146,7 @@ impl<'a> Data<'a> {
     /// Decodes the array: `size` bytes.
     ///
     /// # Errors
-    /// The data are not in base64, or a block is not in zlib's format or has another size.
+    /// The data are not in base64, or a block is not in the format of its compression or has another size.
     pub fn decode(self) -> Result<Cow<'a, [u8]>> {
         let Data { stored, size, layout, .. } = self;
         match layout {
@@ -159,9 +157,9 @@ impl<'a> Data<'a> {
                     Cow::Owned(bytes)
                 }
             }),
-            Layout::Blocks { start, block, compressed } => {
+            Layout::Blocks { start, block, compressed, compression } => {
                 let bytes = stored.run(start, compressed.iter().sum())?;
-                inflated(&bytes, &compressed, block, size).map(Cow::Owned)
+                compression.expanded(&bytes, &compressed, block, size).map(Cow::Owned)
             }
         }
     }
@@ -184,33 +182,4 @@ fn not_base64(error: &DecodeError, run: &[u8]) -> Error {
 /// Encodes bytes as one run of base64.
 pub(super) fn base64(bytes: &[u8]) -> String {
     BASE64.encode(bytes)
-}
-
-fn inflated(bytes: &[u8], compressed: &[usize], block: usize, size: usize) -> Result<Vec<u8>> {
-    let mut data = vec![0; size];
-    let mut rest = bytes;
-    let mut zlib = Decompress::new(true);
-    for (i, (output, &length)) in data.chunks_mut(block.max(1)).zip(compressed).enumerate() {
-        let (input, after) = rest.split_at(length);
-        rest = after;
-        zlib.reset(true);
-        let status = zlib.decompress(input, output, FlushDecompress::Finish);
-        let found = zlib.total_out();
-        match status {
-            Ok(Status::StreamEnd) if found == output.len() as u64 => {}
-            Ok(Status::StreamEnd) => {
-                let expected = format!("{} bytes of data in compressed block {i}", output.len());
-                return Err(Error::new(format!("expected {expected}, found {found}")));
-            }
-            Ok(Status::Ok | Status::BufError) => {
-                let expected = format!("the end of compressed block {i} after {} bytes of data", output.len());
-                return Err(Error::new(format!("expected {expected}, found none")));
-            }
-            Err(_) => {
-                let place = format!("after {} bytes of compressed block {i}", zlib.total_in());
-                return Err(Error::new(format!("expected data in the format of zlib, found other bytes {place}")));
-            }
-        }
-    }
-    Ok(data)
 }

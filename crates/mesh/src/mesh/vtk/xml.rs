@@ -6,7 +6,7 @@ use super::lattice_pieces::{Part, joined};
 use super::piece::{self, DataArray, Labels, Piece};
 use super::polydata::{self, Cells, KINDS};
 use super::storage::Stored;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::reader::{Encoding, Reader};
 use crate::mesh::source::MeshSource;
 use std::borrow::Cow;
@@ -16,16 +16,18 @@ use std::borrow::Cow;
 const MOST_GROWTH: u64 = 100;
 /// The number of bytes that is allowed in any file.
 const ALWAYS_ALLOWED: u64 = 1 << 24;
+/// The largest number of damaged arrays of a piece that are left out.
+const MOST_DAMAGED: usize = 20;
 
 /// Reads a grid, its arrays as text, in base64 or appended in base64 or raw, in either byte
-/// order, uncompressed or compressed by zlib.
+/// order, uncompressed or compressed by zlib, LZ4 or XZ.
 ///
 /// Cells of one type form one block if they agree in every array of whole numbers that has one number per cell and at
 /// most 1000 different numbers; each such array gives the group `array=number`. Pixels and voxels become quadrangles
 /// and hexahedra. Voxels of an image are cells if their label is not zero.
 ///
 /// # Errors
-/// The file is of another kind, damaged, cut short or compressed by another method than zlib, or has cells without a
+/// The file is of another kind, damaged, cut short or compressed by another method, or has cells without a
 /// fixed shape such as polygons.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     piece::mesh(pieces(bytes)?)
@@ -34,7 +36,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
 /// The pieces as they are in the file: cells are not checked, and points may not be finite.
 ///
 /// # Errors
-/// The file is of another kind, damaged, cut short or compressed by another method than zlib.
+/// The file is of another kind, damaged, cut short or compressed by another method.
 pub(in crate::mesh) fn pieces(bytes: &[u8]) -> Result<Vec<Piece>> {
     let document = Document::read(bytes)?;
     if document.pieces.is_empty() {
@@ -128,17 +130,13 @@ impl Arrays<'_> {
             Cells { ends: piece.ends, connectivity: piece.connectivity } = self.cells(tag, section, tag.cells)?;
         }
         for array in &tag.arrays {
-            match array.section {
-                Section::Points | Section::Cells | Section::Coordinates | Section::Polygons(_) => {}
-                Section::PointData => piece.point_arrays.push(self.data_array(array, tag.points)?),
-                Section::CellData if array.scalar.is_real() => {
-                    piece.cell_arrays.push(self.data_array(array, tag.cells)?);
+            // The mesh needs none of them.
+            match self.add_data(array, tag, &mut piece) {
+                Ok(()) => {}
+                Err(error) if error.kind() == ErrorKind::Limit || piece.remarks.len() >= MOST_DAMAGED => {
+                    return Err(error);
                 }
-                Section::CellData => {
-                    let labels = self.labels(array, tag.cells)?;
-                    piece.cell_arrays.extend(labels.as_ref().map(Labels::as_array));
-                    piece.labels.extend(labels);
-                }
+                Err(error) => piece.remarks.push(format!("an array is left out, for it is damaged: {error}")),
             }
         }
         if self.document.kind == GridKind::Polygonal {
@@ -149,6 +147,21 @@ impl Arrays<'_> {
             polydata::fill(&mut piece, kinds)?;
         }
         Ok(piece)
+    }
+
+    /// Adds an array of points or cells.
+    fn add_data(&mut self, array: &ArrayTag, tag: &PieceTag, piece: &mut Piece) -> Result<()> {
+        match array.section {
+            Section::Points | Section::Cells | Section::Coordinates | Section::Polygons(_) => {}
+            Section::PointData => piece.point_arrays.push(self.data_array(array, tag.points)?),
+            Section::CellData if array.scalar.is_real() => piece.cell_arrays.push(self.data_array(array, tag.cells)?),
+            Section::CellData => {
+                let labels = self.labels(array, tag.cells)?;
+                piece.cell_arrays.extend(labels.as_ref().map(Labels::as_array));
+                piece.labels.extend(labels);
+            }
+        }
+        Ok(())
     }
 
     fn points(&mut self, tag: &PieceTag) -> Result<Vec<[f64; 3]>> {
@@ -276,7 +289,7 @@ impl Arrays<'_> {
             let length = self.document.size();
             let expected =
                 format!("at most {most} bytes of data, stored and decoded, up to here in a file of {length}");
-            return Err(Error::new(format!("expected {expected}, found {}", self.size)));
+            return Err(Error::new(format!("expected {expected}, found {}", self.size)).of_kind(ErrorKind::Limit));
         }
         let Some(each) = array.scalar.size() else { return Err(Error::new("expected numbers, found bits or texts")) };
         if data.size as u64 != count.saturating_mul(each) {

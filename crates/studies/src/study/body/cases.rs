@@ -21,7 +21,7 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
         let at = |e| scene.at(&format!("fix[{i}]"), e);
         let points = part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
         if points.is_empty() {
-            return Err(at(Error::new("holds nothing: the selected part has no points")));
+            return Err(at(part.without_members("holds nothing: the selected part has no points", mesh)));
         }
         let all: Vec<usize> = (0..d).collect();
         let directions = axes.as_ref().unwrap_or(&all);
@@ -145,7 +145,11 @@ fn acting(
     let selection: Selection = part.selection(d)?;
     let points = selection.points(mesh)?;
     // The part has been checked: any other error is about the load.
-    let forces = nodal_forces(mesh, &selection, action, weights).map_err(|e| Error::new(e.problem()))?;
+    let of_load = |e: Error| match points.is_empty() {
+        true => part.without_members(e.problem(), mesh),
+        false => Error::new(e.problem()),
+    };
+    let forces = nodal_forces(mesh, &selection, action, weights).map_err(of_load)?;
     let mut support = fixed.clone();
     if let Action::Displacement(given) = action {
         let moved = |p: usize| given.iter().map(move |u| Some(u.as_ref()?.at(mesh.point(p))));

@@ -77,7 +77,7 @@ impl FineBody {
         let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
         // Bodies whose surfaces are not the same have points that no cell of the other has; conditions are then asked on the finer mesh.
         if entry.mesh.is_some() && embedding.outside == 0 && sampling.outside == 0 {
-            fine.choose_as_on(mesh, &embedding);
+            fine.choose_as_on(mesh, &embedding).map_err(another)?;
         }
         let support = held(scene, &fine)?;
         let material = scene.material_of(&fine)?;

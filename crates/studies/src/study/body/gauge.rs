@@ -32,7 +32,7 @@ impl Gauged {
         }
         let points = gauge.part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
         if points.is_empty() {
-            return Err(at(Error::new("measures nothing: the selected part has no points")));
+            return Err(at(gauge.part.without_members("measures nothing: the selected part has no points", mesh)));
         }
         let gauged = Gauged { points, axis: gauge.axis, area: gauge.area, forces: Vec::new() };
         if gauged.strain(mesh, &vec![0.0; mesh.points.len()]).is_none() {

@@ -1,6 +1,7 @@
 //! What must be known of loads before their results are trusted.
 
 use super::case::Case;
+use super::part_notes::part_notes;
 use crate::mesh::{Filled, Mesh};
 use crate::model::Action;
 use crate::study::scene::{LoadCase, Part, Scene};
@@ -14,7 +15,7 @@ const CONTRADICTS: f64 = 0.05;
 pub fn load_notes(scene: &Scene, mesh: &Mesh, cases: &[Case]) -> Vec<String> {
     let of_cases =
         cases.iter().zip(scene.loads()).flat_map(|(case, load)| [swallowed(case, load), contradicted(case, mesh)]);
-    of_tractions(scene, mesh).into_iter().chain(of_cases.flatten()).collect()
+    part_notes(scene, mesh).into_iter().chain(of_tractions(scene, mesh)).chain(of_cases.flatten()).collect()
 }
 
 /// That a part of a force acts on held points, where it does nothing. Of a body force that is the weight of what is held.

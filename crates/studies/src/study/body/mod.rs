@@ -11,6 +11,7 @@ mod iterated;
 mod large;
 mod linear;
 mod load_notes;
+mod part_notes;
 mod truth;
 
 pub use case::Case;

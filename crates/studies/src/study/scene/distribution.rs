@@ -47,17 +47,15 @@ pub struct DataEntry {
     #[schemars(extend("x-default" = "the SI unit"))]
     pub unit: Option<String>,
     /// One unit of the positions in the file has this length in m, above 0.
-    #[serde(default = "one", deserialize_with = "value::mesh_unit")]
-    #[schemars(schema_with = "value::mesh_unit_schema")]
-    pub scale: f64,
+    #[serde(default, deserialize_with = "value::optional_mesh_unit")]
+    #[schemars(schema_with = "value::mesh_unit_schema", extend("x-default" = "1, or that of the mesh in the same file"))]
+    pub scale: Option<f64>,
+    /// Places with this value have none, such as −9999; they are left out and counted.
+    pub missing: Option<f64>,
     /// Values between the places of the file are those of the nearest place (`nearest`), or of the plane through the nearest places by
     /// least squares within the range of their values (`linear`).
     #[schemars(extend("enum" = Interpolation::NAMES, "x-default" = "by what the values belong to"))]
     pub interpolation: Option<String>,
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 impl Distribution {

@@ -84,7 +84,8 @@ impl Scene {
     }
 
     fn checked(source: SceneSource) -> Result<Scene> {
-        let (entry, path) = (source.entries()?, source.path.clone());
+        let (mut entry, path) = (source.entries()?, source.path.clone());
+        entry.material.complete()?;
         for (i, fit) in entry.fit.iter().enumerate() {
             fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
         }
@@ -242,14 +243,18 @@ impl Scene {
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
     /// in this dimension are left to the places where they are asked.
     fn choose(&self, mesh: &mut Mesh) {
-        let loaded = self.loads.iter().filter_map(|load| Some(load.single()?.0.clone()));
-        let held = self.supports.iter().map(|(part, _)| part.clone());
-        let of_material = self.material_parts().into_iter().map(|(_, part)| part);
-        let d = mesh.dimension;
-        let conditions = held.chain(loaded).chain(of_material).filter_map(|part| match part.selection(d) {
-            Ok(Selection::Where(condition)) => Some(condition),
-            Ok(Selection::Group(_) | Selection::Everything) | Err(_) => None,
+        let loaded = self.loads.iter().filter_map(|load| {
+            let (part, action) = load.single()?;
+            Some((part.clone(), matches!(action, Action::Body(_))))
         });
+        let held = self.supports.iter().map(|(part, _)| (part.clone(), false));
+        let of_material = self.material_parts().into_iter().map(|(_, part)| (part, true));
+        let d = mesh.dimension;
+        let conditions =
+            held.chain(loaded).chain(of_material).filter_map(|(part, asks_cells)| match part.selection(d) {
+                Ok(Selection::Where(condition)) => Some((condition, asks_cells)),
+                Ok(Selection::Group(_) | Selection::Everything) | Err(_) => None,
+            });
         mesh.choose(conditions);
     }
 
@@ -286,7 +291,8 @@ impl Scene {
         let entry = self.material.first();
         if !self.material.is_uniform() || entry.part()? != Part::Everything {
             let folder = self.path().parent().unwrap_or(Path::new(""));
-            return material_map(&self.material, mesh, folder).map_err(|e| self.placed(e));
+            let own = self.mesh.file.as_ref().map(|file| (folder.join(file), self.mesh.scale));
+            return material_map(&self.material, mesh, folder, own).map_err(|e| self.placed(e));
         }
         let material = self.constants().and_then(|constants| constants.material(mesh));
         let material = MaterialMap::from(material.map_err(|e| self.at(&self.material.key(0), e))?);

@@ -35,6 +35,10 @@ pub struct MeshInput {
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     #[schemars(schema_with = "value::mesh_unit_schema")]
     pub scale: f64,
+    /// The mesh of a `file` is in a space of this dimension, 2 or 3. Without the key a surface of a format of surfaces (`.obj`, `.stl`, `.ply`, `.off`,
+    /// `.vtp`) is in space, and other surfaces and curves are in the plane where all their points have one z.
+    #[schemars(extend("x-default" = "by the file"))]
+    pub space: Option<usize>,
     /// These element files are searched before the shipped elements; paths are relative to the scene.
     #[serde(default)]
     #[schemars(extend("x-type" = "list of paths"))]
@@ -192,6 +196,14 @@ impl MeshInput {
             return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\", \"fill\"", found));
         }
         range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
+        if let Some(space) = self.space {
+            if self.file.is_none() {
+                return Err(Error::at("mesh.space", "belongs to a mesh in a \"file\": what is generated has its own"));
+            }
+            if !(2..=3).contains(&space) {
+                return Err(Error::expected("mesh.space", "2 or 3", space));
+            }
+        }
         if let Some(quality) = &self.quality {
             if self.file.is_none() {
                 return Err(Error::at("mesh.quality", "belongs to a mesh in a \"file\": what is generated is regular"));
@@ -287,7 +299,8 @@ impl MeshInput {
         }
         let mut fine = self.build_coarse(scene, self.halvings)?;
         if !mesh.conditions.is_empty() {
-            fine.choose_as_on(&mesh, &Embedding::of(&fine.points, &mesh).map_err(|e| e.in_file(scene))?);
+            let places = Embedding::of(&fine.points, &mesh).map_err(|e| e.in_file(scene))?;
+            fine.choose_as_on(&mesh, &places).map_err(|e| e.in_file(scene))?;
         }
         Ok(fine)
     }
@@ -300,7 +313,8 @@ impl MeshInput {
             let own = load_elements(&self.elements, folder).map_err(at("mesh"))?;
             let path = folder.join(file);
             let gate = self.quality.as_ref().map(QualityEntry::gate).transpose()?;
-            let source = MeshSource::read(&path)?;
+            let mut source = MeshSource::read(&path)?;
+            source.space = self.space.or(source.space);
             let mesh = Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path))?;
             check_unit(&mesh, self.scale, 0.0).map_err(at("mesh"))?;
             return Ok(mesh);

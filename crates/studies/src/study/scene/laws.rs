@@ -2,7 +2,7 @@
 
 use super::anisotropic::Axis;
 use super::material::{MaterialEntries, MaterialEntry};
-use super::regions::{Places, Values};
+use super::places::{Places, Values};
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Energy, EnergyMap, Material, MaterialMap, State};
 use crate::mesh::{CellIndex, Mesh};

@@ -4,6 +4,7 @@ use super::anisotropic::{
     AnisotropicLaw, Axis, AxisEntry, CubicEntry, NumberField, OrthotropicEntry, StiffnessEntry, TransverseEntry,
     of_rows,
 };
+use super::constants::{Constant, young_and_poisson};
 use super::distribution::{self, Distribution};
 use super::part::Part;
 use super::value;
@@ -23,7 +24,10 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("anyOf" = [
-    { "required": ["young", "poisson"] },
+    { "required": ["young"] },
+    { "required": ["poisson"] },
+    { "required": ["shear_modulus"] },
+    { "required": ["bulk_modulus"] },
     { "required": ["orthotropic"] },
     { "required": ["transversely-isotropic"] },
     { "required": ["cubic"] },
@@ -33,11 +37,11 @@ pub struct MaterialEntry {
     /// The cells of this group of the mesh have the material.
     #[schemars(extend("x-default" = "the rest"))]
     pub group: Option<String>,
-    /// The cells all of whose nodes satisfy this condition on x, y, z in m have the material.
+    /// The cells whose middle, the mean of their nodes, satisfies this condition on x, y, z in m have the material.
     #[serde(rename = "where")]
     #[schemars(extend("x-default" = "the rest"))]
     pub condition: Option<String>,
-    /// Young's modulus in Pa is above 0. An isotropic material has `young` and `poisson`.
+    /// Young's modulus in Pa is above 0. An isotropic material has two of `young`, `poisson`, `shear_modulus`, `bulk_modulus` and `lambda`.
     #[serde(default, deserialize_with = "distribution::optional_pressure")]
     #[schemars(schema_with = "distribution::pressure_schema", extend("x-default" = "required if isotropic"))]
     pub young: Option<Distribution>,
@@ -45,6 +49,18 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_ratio")]
     #[schemars(schema_with = "distribution::ratio_schema", extend("x-default" = "required if isotropic"))]
     pub poisson: Option<Distribution>,
+    /// The shear modulus μ in Pa is above 0. It is a number, one of two constants of an isotropic material.
+    #[serde(default, deserialize_with = "distribution::optional_pressure")]
+    #[schemars(schema_with = "distribution::pressure_schema")]
+    pub shear_modulus: Option<Distribution>,
+    /// The bulk modulus K in Pa is above 0. It is a number, one of two constants of an isotropic material.
+    #[serde(default, deserialize_with = "distribution::optional_pressure")]
+    #[schemars(schema_with = "distribution::pressure_schema")]
+    pub bulk_modulus: Option<Distribution>,
+    /// Lamé's first constant λ in Pa. It is a number, one of two constants of an isotropic material.
+    #[serde(default, deserialize_with = "distribution::optional_pressure")]
+    #[schemars(schema_with = "distribution::pressure_schema")]
+    pub lambda: Option<Distribution>,
     /// The material has three planes of symmetry. The key stands in place of `young` and `poisson`.
     pub orthotropic: Option<OrthotropicEntry>,
     /// The material has one axis of symmetry, which is its first axis. The key stands in place of `young` and `poisson`.
@@ -139,6 +155,41 @@ impl MaterialEntry {
     /// Two parts are given, or the condition is wrong.
     pub fn part(&self) -> Result<Part> {
         Part::optional(self.group.clone(), self.condition.clone())
+    }
+
+    /// Replaces the shear modulus, the bulk modulus and Lamé's first constant by Young's modulus and Poisson's ratio.
+    ///
+    /// # Errors
+    /// Three constants are given or one alone, one of those that are replaced or the other beside it is not a number, or there is no such material.
+    fn complete(&mut self) -> Result<()> {
+        let others = [
+            ("shear_modulus", self.shear_modulus.take()),
+            ("bulk_modulus", self.bulk_modulus.take()),
+            ("lambda", self.lambda.take()),
+        ];
+        if others.iter().all(|(_, given)| given.is_none()) {
+            return Ok(());
+        }
+        let own = [("young", self.young.take()), ("poisson", self.poisson.take())];
+        let given: Vec<(&str, Distribution)> =
+            own.into_iter().chain(others).filter_map(|(key, value)| Some((key, value?))).collect();
+        let keys = given.iter().map(|(key, _)| format!("\"{key}\"")).collect::<Vec<_>>().join(" and ");
+        let [(first, a), (second, b)] = &given[..] else {
+            let expected = "two of \"young\", \"poisson\", \"shear_modulus\", \"bulk_modulus\" and \"lambda\"";
+            return Err(Error::new(format!("expected {expected}, found {keys}")));
+        };
+        let number = |key: &str, value: &Distribution| {
+            let expected = "a number: young and poisson alone may differ from place to place";
+            value.number().ok_or_else(|| Error::expected(key, expected, "an expression or a file"))
+        };
+        let constants = Constant::named(first).zip(Constant::named(second)).expect("these keys are those of constants");
+        let (young, poisson) = young_and_poisson(constants, number(first, a)?, number(second, b)?);
+        if !(young > 0.0 && young.is_finite() && poisson > -1.0 && poisson < 0.5) {
+            let expected = "constants of a material with E above 0 and Poisson's ratio between -1 and 0.5";
+            return Err(Error::expected(keys, expected, format!("E = {young:.4e} Pa and {poisson:.4}")));
+        }
+        (self.young, self.poisson) = (Some(Distribution::of_number(young)), Some(Distribution::of_number(poisson)));
+        Ok(())
     }
 
     /// The name of the region in reports.
@@ -250,7 +301,8 @@ impl MaterialEntry {
         for (key, distribution) in self.distributions() {
             if let distribution::Source::Data(data) = &distribution.source {
                 data.interpolation().map_err(|e| e.under(&key))?;
-                range::positive("scale", data.scale, "metres per unit of the file").map_err(|e| e.under(&key))?;
+                let scale = data.scale.unwrap_or(1.0);
+                range::positive("scale", scale, "metres per unit of the file").map_err(|e| e.under(&key))?;
             }
         }
         let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
@@ -290,6 +342,18 @@ impl MaterialEntries {
     pub fn is_uniform(&self) -> bool {
         let first = self.first();
         self.all.len() == 1 && !first.varies() && first.young.is_some()
+    }
+
+    /// Gives every isotropic entry Young's modulus and Poisson's ratio, whatever constants it is stated by.
+    ///
+    /// # Errors
+    /// The constants of an entry are not two, or there is no such material.
+    pub fn complete(&mut self) -> Result<()> {
+        for i in 0..self.all.len() {
+            let key = self.key(i);
+            self.all[i].complete().map_err(|e| e.under(key))?;
+        }
+        Ok(())
     }
 
     /// The checks that do not depend on the mesh.

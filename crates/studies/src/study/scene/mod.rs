@@ -1,6 +1,7 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
 mod anisotropic;
+mod constants;
 mod distribution;
 mod document;
 mod elements;
@@ -15,6 +16,7 @@ mod motion;
 mod motion_recipe;
 mod output;
 mod part;
+mod places;
 mod reference;
 mod regions;
 mod setting;

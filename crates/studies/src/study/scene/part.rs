@@ -1,7 +1,8 @@
 //! A part of the mesh in a scene.
 
 use crate::error::{Error, Result};
-use crate::mesh::Selection;
+use crate::mesh::{Mesh, Selection};
+use crate::study::extent::extends;
 use crate::symbolic::Scope;
 
 /// A part of the mesh, as a scene names it. A condition is parsed again once the dimension of the mesh is known.
@@ -50,5 +51,13 @@ impl Part {
             }
             Part::Everything => Selection::Everything,
         })
+    }
+
+    /// The error of a part that has no points or cells, with where the body is if a condition selects the part.
+    pub(in crate::study) fn without_members(&self, problem: &str, mesh: &Mesh) -> Error {
+        match self {
+            Part::Where(_) => Error::new(format!("{problem}: the body extends {}", extends(mesh))),
+            Part::Group(_) | Part::Everything => Error::new(problem),
+        }
     }
 }

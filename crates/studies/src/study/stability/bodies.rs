@@ -6,7 +6,7 @@ use crate::dynamics::largest_square;
 use crate::element::Element;
 use crate::error::Result;
 use crate::material::Moduli;
-use crate::mesh::{BoxMesh, Format, Gate, Mesh, MeshSource, NumberOrigin, Selection, SourceBlock};
+use crate::mesh::{Annotations, BoxMesh, Format, Gate, Mesh, MeshSource, NumberOrigin, Selection, SourceBlock};
 use crate::model::{Action, Entries, LengthSpring, Network, Support, finite_elements, nodal_forces, unheld_bodies};
 use crate::solve::{Factor, System};
 use crate::springs::norm;
@@ -149,7 +149,10 @@ fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
             nodes_per_cell: 4,
             connectivity: cells.concat(),
             groups: Vec::new(),
+            is_marker: true,
         }],
+        space: None,
+        annotations: Annotations::default(),
     };
     let two: &[[f64; 2]] = &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [2.0, 0.0], [2.0, 1.0]];
     let sound = [[0, 1, 2, 3], [1, 4, 5, 2]];
