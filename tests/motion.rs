@@ -109,7 +109,8 @@ fn a_body_that_nothing_holds_falls() {
     }
 }
 
-/// A row of masses on springs along x: `f = √(E/ρ) sin(π (2i − 1)/4n)/πh` held at one end, `√(E/ρ) sin(π i/2n)/πh` free.
+/// A row of masses on springs along x: `f = √(E/ρ) sin(π (2i − 1)/4n)/πh` held at one end, `√(E/ρ) sin(π i/2n)/πh` free. With the consistent
+/// matrix of linear elements `ω² = 6 (E/ρh²) (1 − cos κ)/(2 + cos κ)`, κ twice these angles (Hughes, *The Finite Element Method*, 7.4).
 #[test]
 fn natural_frequencies_are_those_of_a_row_of_masses() {
     let text = r#"[mesh]
@@ -142,8 +143,13 @@ frequencies = 3
         for (i, f) in finite.frequencies.as_ref().unwrap().iter().enumerate() {
             let angle = PI * (i as f64 + 1.0 - place) / 20.0;
             assert_near(*f, speed * angle.sin() / (PI * 0.1), 1e-6 * f);
+            let cosine = (2.0 * angle).cos();
+            let square = 6.0 * speed * speed / (0.1 * 0.1) * (1.0 - cosine) / (2.0 + cosine);
+            let consistent = finite.consistent.as_ref().unwrap()[i];
+            assert_near(consistent, square.sqrt() / (2.0 * PI), 1e-6 * consistent);
         }
         let table = report::tables(&outcome);
+        assert!(table.contains("relative to the finite elements with consistent masses"), "{table}");
         assert!(table.contains("Natural frequencies") && table.contains("rigid motion") == (rigid > 0), "{table}");
         let json: serde_json::Value = serde_json::from_str(&report::report(&outcome)).unwrap();
         assert_eq!(json["frequencies"][0]["frequencies"].as_array().unwrap().len(), 3);

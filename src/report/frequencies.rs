@@ -2,30 +2,48 @@
 
 use super::table::Digits::{Signed, Significant};
 use super::table::{Cell, Column, Table};
-use crate::study::{FrequencyOutcome, Outcome, Standard};
+use crate::study::{BODY, FrequencyOutcome, Outcome, Standard, locks_at};
 
-/// One row per model, a network's frequencies with their distance from those of the finite elements.
+/// The words for both kinds of masses.
+const CONSISTENT: &str = "consistent";
+const LUMPED: &str = "lumped";
+
+/// Two rows per model, with consistent and with lumped masses, and how far they are off the finite elements with consistent masses: those with
+/// lumped masses err as much at higher frequencies as the networks that are compared with them.
 pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
-    let known = |model: &FrequencyOutcome| model.frequencies.clone().unwrap_or_default();
-    let most = models.iter().map(|model| known(model).len()).max().unwrap_or(0);
-    let finite = models.first().map(known).unwrap_or_default();
+    let rows: Vec<(&str, &str, &[f64])> = models
+        .iter()
+        .flat_map(|model| {
+            let kinds = [(CONSISTENT, &model.consistent), (LUMPED, &model.frequencies)];
+            let has_none = model.consistent.is_none();
+            let rows =
+                kinds.into_iter().filter(move |(masses, found)| found.is_some() || (has_none && *masses == LUMPED));
+            rows.map(|(masses, found)| (&*model.name, masses, found.as_deref().unwrap_or_default()))
+        })
+        .collect();
+    let most = rows.iter().map(|(.., found)| found.len()).max().unwrap_or(0);
+    let reference = rows.iter().position(|(name, _, found)| *name == BODY && !found.is_empty());
     let pair = |i: usize| {
         let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string());
         [column("f", "Hz"), column("off", "%")]
     };
-    let columns = std::iter::once(Column::words("model")).chain((1..=most).flat_map(pair)).collect();
-    let row = |(place, model): (usize, &FrequencyOutcome)| {
-        let values = known(model);
+    let columns =
+        [Column::words("model"), Column::words("masses")].into_iter().chain((1..=most).flat_map(pair)).collect();
+    let row = |(place, (name, masses, found)): (usize, &(&str, &str, &[f64]))| {
         let cells = |i: usize| {
-            let value = values.get(i).copied();
-            let body = finite.get(i).filter(|_| place > 0);
-            let off = value.zip(body).map(|(value, body)| value / body - 1.0);
+            let value = found.get(i).copied();
+            let right =
+                reference.filter(|reference| *reference != place).and_then(|reference| rows[reference].2.get(i));
+            let off = value.zip(right).map(|(value, right)| value / right - 1.0);
             [Cell::number(value, Significant(4)), Cell::percent(off, Signed(1))]
         };
-        std::iter::once(Cell::from(&*model.name)).chain((0..most).flat_map(cells)).collect::<Vec<_>>()
+        [Cell::from(*name), Cell::from(*masses)].into_iter().chain((0..most).flat_map(cells)).collect::<Vec<_>>()
     };
-    let rows: Vec<_> = if most > 0 { models.iter().enumerate().map(row).collect() } else { Vec::new() };
-    Table::new("frequencies", format!("Natural frequencies{}", rigid(models)), columns, rows)
+    let cells: Vec<_> = if most > 0 { rows.iter().enumerate().map(row).collect() } else { Vec::new() };
+    let note = reference
+        .filter(|_| most > 0)
+        .map(|reference| format!("off is relative to the finite elements with {} masses", rows[reference].1));
+    Table::new("frequencies", format!("Natural frequencies{}", rigid(models)), columns, cells).with_notes(note)
 }
 
 fn rigid(models: &[FrequencyOutcome]) -> String {
@@ -36,13 +54,22 @@ fn rigid(models: &[FrequencyOutcome]) -> String {
     }
 }
 
+/// Which frequencies are missing, and what those of the finite elements are not right for.
 pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
     let note = |model: &FrequencyOutcome| {
-        model.reason.as_ref().map(|why| format!("{}: no natural frequencies: {why}", model.name))
+        let kind = if model.frequencies.is_some() { " with consistent masses" } else { "" };
+        model.reason.as_ref().map(|why| format!("{}: no natural frequencies{kind}: {why}", model.name))
     };
+    let is_compared = !outcome.frequencies.is_empty();
     let has_finer =
         outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.standard == Standard::FinerBody));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
     let compared = (has_finer && outcome.frequencies.len() > 1).then(|| words.to_string());
-    outcome.frequencies.iter().filter_map(note).chain(compared).collect()
+    let locking = is_compared.then(|| locks_at(&outcome.mesh, &outcome.material)).flatten().map(|poisson| {
+        format!(
+            "at nu = {poisson} linear cells lock: natural frequencies are compared with those of elements that are too stiff, whose \
+             frequencies are too high"
+        )
+    });
+    outcome.frequencies.iter().filter_map(note).chain(compared).chain(locking).collect()
 }

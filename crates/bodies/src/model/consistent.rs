@@ -6,7 +6,7 @@ use super::integration::each_cell_points;
 use crate::element::Integrand;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::mesh::Mesh;
+use crate::mesh::{CellBlock, Mesh};
 
 /// The consistent mass matrix `M_ab = ∫ ρ N_a N_b dV` of a mesh as `GᵀG`, kg. Each quadrature point q is a row of G, with the numbers
 /// `√(ρ w_q |J_q|) N_a(ξ_q)` of the points a of its cell. It is the same in every direction.
@@ -65,6 +65,15 @@ impl ConsistentMasses {
         }
     }
 
+    /// The numbers that it takes for a mesh.
+    pub fn numbers(mesh: &Mesh) -> usize {
+        let of_block = |block: &CellBlock| {
+            let table = block.element.integration_table(Integrand::Mass);
+            block.cells().len() * table.points() * table.nodes
+        };
+        mesh.blocks.iter().map(of_block).sum()
+    }
+
     /// The mass `1ᵀ M 1`, kg.
     pub fn total(&self) -> f64 {
         self.rows().map(|(_, values)| values.iter().sum::<f64>().powi(2)).sum()
@@ -114,6 +123,11 @@ impl ConsistentMasses {
         if u.len() != self.point_count * dimension {
             return Err(Error::expected("vector", format!("{} numbers", self.point_count * dimension), u.len()));
         }
+        Ok(self.product_of(u, dimension))
+    }
+
+    /// [`ConsistentMasses::product`] with as many numbers as there must be.
+    pub(crate) fn product_of(&self, u: &[f64], dimension: usize) -> Vec<f64> {
         let mut product = vec![0.0; u.len()];
         for (points, values) in self.rows() {
             for k in 0..dimension {
@@ -121,7 +135,23 @@ impl ConsistentMasses {
                 points.iter().zip(values).for_each(|(&p, value)| product[p * dimension + k] += value * own);
             }
         }
-        Ok(product)
+        product
+    }
+
+    /// [`ConsistentMasses::entries`], those of a cell added: the rows of its points follow each other.
+    pub(crate) fn pairs(&self) -> Vec<(usize, usize, f64)> {
+        let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
+        let mut last: &[usize] = &[];
+        for (points, values) in self.rows() {
+            if points != last {
+                pairs.extend(points.iter().flat_map(|&a| points.iter().map(move |&b| (a, b, 0.0))));
+                last = points;
+            }
+            let begin = pairs.len() - points.len() * points.len();
+            let products = values.iter().flat_map(|a| values.iter().map(move |b| a * b));
+            pairs[begin..].iter_mut().zip(products).for_each(|(pair, product)| pair.2 += product);
+        }
+        pairs
     }
 
     /// The entries `M_ab` with their points a and b; those of one pair are to be added.

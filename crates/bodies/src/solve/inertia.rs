@@ -2,7 +2,6 @@
 
 use crate::error::{Error, Result};
 use crate::model::ConsistentMasses;
-use nalgebra::DMatrix;
 
 /// The masses of a model.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +39,7 @@ impl Masses<'_> {
     }
 
     /// The diagonal of the matrix, `[points]`, kg.
-    fn diagonal(&self) -> Vec<f64> {
+    pub fn diagonal(&self) -> Vec<f64> {
         match self {
             Masses::Lumped(masses) => masses.to_vec(),
             Masses::Consistent(masses) => {
@@ -52,21 +51,31 @@ impl Masses<'_> {
             }
         }
     }
+
+    /// The entries of the matrix with their points, kg; those of one pair are to be added.
+    pub fn entries(&self) -> Vec<(usize, usize, f64)> {
+        match self {
+            Masses::Lumped(masses) => masses.iter().enumerate().map(|(p, mass)| (p, p, *mass)).collect(),
+            Masses::Consistent(masses) => masses.pairs(),
+        }
+    }
 }
 
-/// A matrix G with `M = GᵀG` on the degrees of freedom that may move.
-pub(super) struct MassRoot<'a> {
+/// The masses M on the degrees of freedom that may move, with the roots `D = diag(M)^½`. In `y = D x` the product of two motions is
+/// `yᵀ W y'`, `W = D⁻¹ M D⁻¹`: the identity where masses are lumped, else near it, whatever the sizes of cells and densities (Wathen,
+/// IMA J. Numer. Anal. 7, 1987).
+pub(super) struct Inertia<'a> {
     masses: Masses<'a>,
     free: &'a [usize],
     dimension: usize,
-    /// The roots of the diagonal of M, `[free]`: G itself where masses are lumped.
-    diagonal: Vec<f64>,
+    /// The diagonal of D, `[free]`, kg^½.
+    roots: Vec<f64>,
 }
 
-impl<'a> MassRoot<'a> {
+impl<'a> Inertia<'a> {
     /// # Errors
     /// There are fewer masses than points with these degrees of freedom, or a point that may move has no mass.
-    pub fn new(masses: Masses<'a>, free: &'a [usize], dimension: usize) -> Result<MassRoot<'a>> {
+    pub fn new(masses: Masses<'a>, free: &'a [usize], dimension: usize) -> Result<Inertia<'a>> {
         if !(1..=3).contains(&dimension) {
             return Err(Error::expected("dimension", "1, 2 or 3", dimension));
         }
@@ -79,66 +88,49 @@ impl<'a> MassRoot<'a> {
         if let Some(p) = points().find(|&p| !(of_points[p] > 0.0 && of_points[p].is_finite())) {
             return Err(Error::expected("masses", format!("a mass above zero at point {p}"), of_points[p]));
         }
-        Ok(MassRoot { masses, free, dimension, diagonal: points().map(|p| of_points[p].sqrt()).collect() })
+        Ok(Inertia { masses, free, dimension, roots: points().map(|p| of_points[p].sqrt()).collect() })
     }
 
-    /// The number of rows of G.
-    pub fn rows(&self) -> usize {
+    /// The degrees of freedom that may move.
+    pub fn size(&self) -> usize {
+        self.free.len()
+    }
+
+    /// `D X` in place of X, `[free × columns]`, one column after the other; as all below.
+    pub fn scale(&self, x: &mut [f64]) {
+        x.chunks_exact_mut(self.roots.len().max(1))
+            .for_each(|x| x.iter_mut().zip(&self.roots).for_each(|(x, d)| *x *= d));
+    }
+
+    /// `D⁻¹ Y` in place of Y.
+    pub fn unscale(&self, y: &mut [f64]) {
+        y.chunks_exact_mut(self.roots.len().max(1))
+            .for_each(|y| y.iter_mut().zip(&self.roots).for_each(|(y, d)| *y /= d));
+    }
+
+    /// `W Y`; `None` where W is the identity.
+    pub fn metric(&self, y: &[f64]) -> Option<Vec<f64>> {
+        let Masses::Consistent(masses) = self.masses else { return None };
+        let mut product = y.to_vec();
+        self.unscale(&mut product);
+        self.multiply(masses, &mut product);
+        self.unscale(&mut product);
+        Some(product)
+    }
+
+    /// `M X` in place of X.
+    pub fn weigh(&self, x: &mut [f64]) {
         match self.masses {
-            Masses::Lumped(_) => self.free.len(),
-            Masses::Consistent(masses) => masses.row_count() * self.dimension,
+            Masses::Lumped(_) => (0..2).for_each(|_| self.scale(x)),
+            Masses::Consistent(masses) => self.multiply(masses, x),
         }
     }
 
-    /// `G X`, `[rows × columns]` of `[free × columns]`.
-    pub fn product(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
-        let Masses::Consistent(masses) = self.masses else { return self.scaled(x) };
-        let d = self.dimension;
-        let mut product = DMatrix::zeros(self.rows(), x.ncols());
-        for (x, mut product) in x.column_iter().zip(product.column_iter_mut()) {
-            let all = self.spread(x.as_slice());
-            for (row, (points, values)) in masses.rows().enumerate() {
-                for k in 0..d {
-                    product[row * d + k] = points.iter().zip(values).map(|(&p, value)| value * all[p * d + k]).sum();
-                }
-            }
+    fn multiply(&self, masses: &ConsistentMasses, x: &mut [f64]) {
+        for x in x.chunks_exact_mut(self.free.len().max(1)) {
+            let all = masses.product_of(&self.spread(x), self.dimension);
+            x.iter_mut().zip(self.free).for_each(|(x, &dof)| *x = all[dof]);
         }
-        product
-    }
-
-    /// `Gᵀ Y`, `[free × columns]` of `[rows × columns]`.
-    pub fn transposed(&self, y: &DMatrix<f64>) -> DMatrix<f64> {
-        let Masses::Consistent(masses) = self.masses else { return self.scaled(y) };
-        let d = self.dimension;
-        let mut product = DMatrix::zeros(self.free.len(), y.ncols());
-        for (y, mut product) in y.column_iter().zip(product.column_iter_mut()) {
-            let mut all = vec![0.0; masses.point_count() * d];
-            for (row, (points, values)) in masses.rows().enumerate() {
-                for (&p, value) in points.iter().zip(values) {
-                    (0..d).for_each(|k| all[p * d + k] += value * y[row * d + k]);
-                }
-            }
-            product.iter_mut().zip(self.free).for_each(|(x, &dof)| *x = all[dof]);
-        }
-        product
-    }
-
-    /// The shape of unit mass that belongs to the unit eigenvector y of `G K⁻¹ Gᵀ` with the eigenvalue θ: `φ = K⁻¹ Gᵀ y/θ`, which is
-    /// `G⁻¹ y` if G has an inverse.
-    pub fn shape(
-        &self,
-        y: &DMatrix<f64>,
-        theta: f64,
-        solve: impl Fn(&mut [f64]) -> Result<()>,
-    ) -> Result<DMatrix<f64>> {
-        let mut x = match self.masses {
-            Masses::Lumped(_) => {
-                return Ok(DMatrix::from_fn(y.nrows(), 1, |i, _| y[i] / self.diagonal[i]));
-            }
-            Masses::Consistent(_) => self.transposed(y),
-        };
-        solve(x.as_mut_slice())?;
-        Ok(x / theta)
     }
 
     /// Numbers on all degrees of freedom, `[points · dimension]`, zero where they are held.
@@ -146,11 +138,5 @@ impl<'a> MassRoot<'a> {
         let mut all = vec![0.0; self.masses.points() * self.dimension];
         self.free.iter().zip(x).for_each(|(&dof, &x)| all[dof] = x);
         all
-    }
-
-    fn scaled(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut scaled = x.clone();
-        scaled.column_iter_mut().for_each(|mut x| x.iter_mut().zip(&self.diagonal).for_each(|(x, root)| *x *= root));
-        scaled
     }
 }

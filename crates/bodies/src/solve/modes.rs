@@ -2,9 +2,10 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
-use super::inertia::{MassRoot, Masses};
+use super::inertia::{Inertia, Masses};
 use super::linear::{Factor, System};
 use crate::error::{Error, ErrorKind, Result};
+use crate::springs::dot;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -43,7 +44,8 @@ impl Modes {
 /// The `count` lowest modes of `system`, whose matrix K has the factor `factor`, with masses at the points, `[points]`, kg, or with
 /// [`ConsistentMasses`](crate::model::ConsistentMasses). The result is reproducible to the last bit.
 ///
-/// They are the largest eigenvalues `θ = 1/ω²` of `A = G K⁻¹ Gᵀ`, where `M = GᵀG`, with `φ = K⁻¹ Gᵀ y/θ`. Each mode is verified with K:
+/// They are the largest eigenvalues `θ = 1/ω²` of `A = D K⁻¹ D W` with `D = diag(M)^½`, `W = D⁻¹ M D⁻¹` and `φ = D⁻¹ y`; A is symmetric in the
+/// product `yᵀ W y'`, which is the usual one where masses are lumped. Each mode is verified with K:
 /// `√(rᵀ K⁻¹ r/φᵀ K φ)` of its residual `r = K φ − ω² M φ` bounds the relative distance of ω² from an eigenvalue
 /// (Weinstein's bound in the energy norm; the Euclidean norm of r is dominated by the rounding of stiff motions).
 ///
@@ -85,19 +87,23 @@ pub(super) fn modes_of(
     if count > n {
         return Err(Error::expected("modes", format!("at most {n}, the free degrees of freedom"), count));
     }
-    let root = MassRoot::new(masses, free, dimension)?;
-    let operator = |block: &mut DMatrix<f64>| {
-        let mut x = root.transposed(block);
+    let inertia = Inertia::new(masses, free, dimension)?;
+    let inverse = |dual: &DMatrix<f64>| {
+        let mut x = dual.clone();
+        inertia.scale(x.as_mut_slice());
         solve(x.as_mut_slice())?;
-        *block = root.product(&x);
-        Ok(())
+        inertia.scale(x.as_mut_slice());
+        Ok(x)
     };
     let mut modes = Modes { squares: Vec::with_capacity(count), shapes: Vec::with_capacity(count) };
-    for (theta, y) in largest_eigenpairs(root.rows(), count, operator)? {
+    for (theta, y) in largest_eigenpairs(&inertia, count, inverse)? {
         let square = 1.0 / theta;
-        let phi = root.shape(&y, theta, &solve)?;
+        let mut phi = y;
+        inertia.unscale(phi.as_mut_slice());
         let force = DMatrix::from_vec(n, 1, apply(phi.as_slice()));
-        let residual = &force - root.transposed(&root.product(&phi)) * square;
+        let mut momentum = phi.clone();
+        inertia.weigh(momentum.as_mut_slice());
+        let residual = &force - momentum * square;
         let mut off = residual.clone();
         solve(off.as_mut_slice())?;
         let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
@@ -108,13 +114,13 @@ pub(super) fn modes_of(
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
         modes.squares.push(square);
-        modes.shapes.push(root.spread(phi.as_slice()));
+        modes.shapes.push(inertia.spread(phi.as_slice()));
     }
     Ok(modes)
 }
 
-/// The `count` largest eigenvalues of a symmetric positive definite operator on vectors of n entries, in descending
-/// order, with unit eigenvectors. `apply` replaces each column by its image.
+/// The `count` largest eigenvalues of `A = B W` on vectors of n entries, in descending order, with eigenvectors of `yᵀ W y = 1`. B and W are
+/// symmetric and positive definite: `apply` gives the columns of `B X`, `inertia` those of `W X`.
 ///
 /// The method is block Krylov iteration with Rayleigh–Ritz projection. The residuals of the leading pairs extend the
 /// basis, and restarts keep their vectors (Wu, Simon, SIAM J. Matrix Anal. Appl. 22, 2000). The first block is wider
@@ -124,26 +130,28 @@ pub(super) fn modes_of(
 /// # Errors
 /// The operator gives numbers that are not finite, or an error.
 fn largest_eigenpairs(
-    n: usize,
+    inertia: &Inertia,
     count: usize,
-    apply: impl Fn(&mut DMatrix<f64>) -> Result<()>,
+    apply: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>>,
 ) -> Result<Vec<(f64, DMatrix<f64>)>> {
+    let n = inertia.size();
     let width = (count + SPARE).min(n);
     if count == 0 {
         return Ok(Vec::new());
     }
-    let (mut basis, mut images, mut projected) = (DMatrix::zeros(n, 0), DMatrix::zeros(n, 0), DMatrix::zeros(0, 0));
+    let none = || DMatrix::zeros(n, 0);
+    let (mut basis, mut images, mut projected) = (Basis::new(none(), inertia), none(), DMatrix::zeros(0, 0));
     let mut random = generator();
-    let mut block = orthonormal(&basis, DMatrix::from_fn(n, width, |_, _| random()));
+    let mut block = orthonormal(&basis, DMatrix::from_fn(n, width, |_, _| random()), inertia);
     let mut round = 0;
     loop {
         round += 1;
-        let old = basis.ncols();
-        basis = beside(basis, &block);
-        apply(&mut block)?;
-        images = beside(images, &block);
-        let m = basis.ncols();
-        let products = basis.tr_mul(&block);
+        let old = basis.vectors.ncols();
+        basis = basis.beside(&block);
+        let image = apply(block.duals())?;
+        images = beside(images, &image);
+        let m = basis.vectors.ncols();
+        let products = basis.duals().tr_mul(&image);
         projected = projected.resize(m, m, 0.0);
         for (j, column) in (old..m).zip(products.column_iter()) {
             projected.column_mut(j).copy_from(&column);
@@ -160,26 +168,50 @@ fn largest_eigenpairs(
         let is_full = m + width > BLOCKS * width;
         let kept = if is_full { 2 * width } else { width };
         let leading = eigen.eigenvectors.select_columns(&order[..kept]);
-        let (vectors, moved) = (&basis * &leading, &images * &leading);
+        let (vectors, moved) = (&basis.vectors * &leading, &images * &leading);
         let mut residuals: Vec<DVector<f64>> = Vec::new();
         let mut is_found = true;
         for k in 0..width {
             let residual = moved.column(k) - vectors.column(k) * theta[k];
-            if residual.norm() > (FOUND * theta[k]).max(ROUNDING * theta[0]) {
+            if norm(&residual, inertia) > (FOUND * theta[k]).max(ROUNDING * theta[0]) {
                 is_found &= k >= count;
                 residuals.push(residual);
             }
         }
         if is_full {
             projected = DMatrix::from_diagonal(&theta.rows(0, kept).into_owned());
-            (basis, images) = (vectors.clone(), moved);
+            (basis, images) = (Basis::new(vectors.clone(), inertia), moved);
         }
         if !is_found && round < ROUNDS {
-            block = orthonormal(&basis, DMatrix::from_columns(&residuals));
+            block = orthonormal(&basis, DMatrix::from_columns(&residuals), inertia);
         }
-        if is_found || round == ROUNDS || block.is_empty() {
+        if is_found || round == ROUNDS || block.vectors.is_empty() {
             return Ok((0..count).map(|k| (theta[k], vectors.columns(k, 1).into_owned())).collect());
         }
+    }
+}
+
+/// Vectors with `yᵢᵀ W yⱼ = δᵢⱼ`.
+struct Basis {
+    vectors: DMatrix<f64>,
+    /// `W Y`, where W is not the identity.
+    duals: Option<DMatrix<f64>>,
+}
+
+impl Basis {
+    fn new(vectors: DMatrix<f64>, inertia: &Inertia) -> Basis {
+        let duals = inertia.metric(vectors.as_slice());
+        let duals = duals.map(|duals| DMatrix::from_vec(vectors.nrows(), vectors.ncols(), duals));
+        Basis { vectors, duals }
+    }
+
+    fn duals(&self) -> &DMatrix<f64> {
+        self.duals.as_ref().unwrap_or(&self.vectors)
+    }
+
+    fn beside(self, block: &Basis) -> Basis {
+        let duals = self.duals.map(|duals| beside(duals, block.duals()));
+        Basis { vectors: beside(self.vectors, &block.vectors), duals }
     }
 }
 
@@ -191,28 +223,37 @@ fn beside(matrix: DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     matrix
 }
 
+/// `√(yᵀ W y)`.
+fn norm(y: &DVector<f64>, inertia: &Inertia) -> f64 {
+    inertia.metric(y.as_slice()).map_or_else(|| y.norm(), |dual| dot(y.as_slice(), &dual).max(0.0).sqrt())
+}
+
 /// Unit vectors that span what the columns of `block` add to the orthonormal `basis`: the Gram–Schmidt method, applied
 /// twice.
-fn orthonormal(basis: &DMatrix<f64>, mut block: DMatrix<f64>) -> DMatrix<f64> {
+fn orthonormal(basis: &Basis, mut block: DMatrix<f64>, inertia: &Inertia) -> Basis {
     for _ in 0..2 {
-        let sizes: Vec<f64> = block.column_iter().map(|column| column.norm()).collect();
-        block -= basis * basis.tr_mul(&block);
-        let mut added: Vec<DVector<f64>> = Vec::new();
+        let sizes: Vec<f64> = block.column_iter().map(|column| norm(&column.into_owned(), inertia)).collect();
+        block -= &basis.vectors * basis.duals().tr_mul(&block);
+        let mut added: Vec<(DVector<f64>, Option<DVector<f64>>)> = Vec::new();
         for (column, size) in block.column_iter().zip(&sizes) {
             let mut column = column.into_owned();
-            added.iter().for_each(|q| column.axpy(-q.dot(&column), q, 1.0));
+            for (vector, dual) in &added {
+                column.axpy(-dual.as_ref().unwrap_or(vector).dot(&column), vector, 1.0);
+            }
             // What remains of a dependent vector is a rounding error.
-            if column.norm() > 1e-8 * size {
-                column.normalize_mut();
-                added.push(column);
+            let left = norm(&column, inertia);
+            if left > 1e-8 * size {
+                column /= left;
+                let dual = inertia.metric(column.as_slice()).map(DVector::from_vec);
+                added.push((column, dual));
             }
         }
         if added.is_empty() {
-            return DMatrix::zeros(block.nrows(), 0);
+            return Basis::new(DMatrix::zeros(block.nrows(), 0), inertia);
         }
-        block = DMatrix::from_columns(&added);
+        block = DMatrix::from_columns(&added.into_iter().map(|(vector, _)| vector).collect::<Vec<_>>());
     }
-    block
+    Basis::new(block, inertia)
 }
 
 /// Numbers between −½ and ½, the same on every machine.

@@ -38,6 +38,11 @@ impl Locking {
     }
 }
 
+/// The largest Poisson's ratio of the cells of a body that lock: linear cells from Poisson's ratio 0.4 on; `None` where none do.
+pub fn locks_at(mesh: &Mesh, material: &MaterialMap) -> Option<f64> {
+    Locking::of(mesh, material, &|_| true).map(|locking| locking.poisson)
+}
+
 /// The largest mesh whose boundary is looked at: the search takes a tenth of a second.
 const MOST_CELLS: usize = 100_000;
 

@@ -62,7 +62,7 @@ pub use fits::{
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
-pub use locking::is_one_cell_across;
+pub use locking::{is_one_cell_across, locks_at};
 pub use masses::{PointMasses, point_masses};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,

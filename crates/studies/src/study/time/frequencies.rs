@@ -2,11 +2,13 @@
 
 use super::raised::{RELEASE, Raised};
 use crate::error::{Error, Result};
+use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{
-    BlockStiffness, Entries, Lumping, Support, check_body, finite_elements, lumped_masses, unheld_bodies,
+    BlockStiffness, ConsistentMasses, Entries, Lumping, Support, check_body, finite_elements, lumped_masses,
+    unheld_bodies,
 };
-use crate::solve::{Levels, System, lowest_modes};
+use crate::solve::{Levels, Masses, System, lowest_modes};
 use crate::study::outcome::{FrequencyOutcome, Outcome};
 use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
@@ -15,8 +17,12 @@ use crate::study::scene::Scene;
 /// The share of the largest ω² by which all are shifted if some motion has no stiffness.
 const SHIFT: f64 = 1e-4;
 
-/// The frequencies of the finite elements and of each network, with the `[[fix]]` support. Masses are row sums or, if
-/// these are not positive, those of the HRZ method, unless the motion of the scene says which or they were fitted.
+/// The numbers of a mass matrix that are kept at most: 1.6 GB, those of 460 000 hexahedra or of 6 million tetrahedra.
+const MOST_NUMBERS: usize = 100_000_000;
+
+/// The frequencies of the finite elements and of each network, with the `[[fix]]` support: with lumped masses, which are row sums or, if
+/// these are not positive, those of the HRZ method, unless the motion of the scene says which or they were fitted; and with consistent
+/// masses, the matrix of the cells.
 ///
 /// # Errors
 /// There are fewer frequencies than requested. A model without frequencies is not an error.
@@ -44,21 +50,31 @@ pub fn natural_frequencies(
     progress(Event::stage("frequencies", 0, total));
     // Rigid motions make the stiffness singular: levels alone do not find those after them.
     let iterates = rigid == 0 && scene.solver().iterates(mesh, 1);
+    let consistent = consistent_masses(mesh, material);
     let of = |name: &str,
               masses: &[f64],
               blocks: &dyn Fn() -> Result<BlockStiffness>,
               entries: &dyn Fn() -> Result<Entries>| {
-        let vibrations = Vibrations { mesh, support, masses, rigid, count };
+        let masses: Vec<Masses> =
+            std::iter::once(masses.into()).chain(consistent.as_ref().ok().map(Masses::from)).collect();
+        let vibrations = Vibrations { mesh, support, masses: &masses, rigid, count };
         let iterated = if iterates { vibrations.by_levels(blocks()?) } else { None };
         let found = match iterated {
-            Some(found) => Ok(found),
-            None => vibrations.of(&entries()?).map_err(|e| e.problem().to_string()),
+            Some(found) => found,
+            None => vibrations.of(&entries()?),
         };
-        let (frequencies, reason) = match found {
-            Ok(found) => (Some(found), None),
-            Err(why) => (None, Some(why)),
+        let mut reason = None;
+        let mut known = |found: Result<Vec<f64>>| found.map_err(|e| reason.get_or_insert(e.problem().to_string())).ok();
+        let mut found = found.into_iter();
+        let frequencies = found.next().and_then(&mut known);
+        let consistent = match &consistent {
+            Ok(_) => found.next().and_then(&mut known),
+            Err(why) => {
+                reason.get_or_insert(why.clone());
+                None
+            }
         };
-        Ok(FrequencyOutcome { name: name.into(), frequencies, rigid, reason })
+        Ok(FrequencyOutcome { name: name.into(), frequencies, consistent, rigid, reason })
     };
     let entries = || {
         check_body(mesh)?;
@@ -78,40 +94,64 @@ pub fn natural_frequencies(
     Ok(all)
 }
 
+/// The mass matrix of the cells, or why there is none.
+fn consistent_masses(mesh: &Mesh, material: &MaterialMap) -> std::result::Result<ConsistentMasses, String> {
+    let numbers = ConsistentMasses::numbers(mesh);
+    if numbers > MOST_NUMBERS {
+        return Err(format!("the mass matrix would take {numbers} numbers, at most {MOST_NUMBERS} are kept"));
+    }
+    ConsistentMasses::of_mesh(mesh, material.densities(), material.thicknesses()).map_err(|e| e.problem().to_string())
+}
+
 struct Vibrations<'a> {
     mesh: &'a Mesh,
     support: &'a Support,
-    /// The masses, `[points]`, kg.
-    masses: &'a [f64],
+    /// The kinds of masses with which the same stiffness vibrates.
+    masses: &'a [Masses<'a>],
     rigid: usize,
     count: usize,
 }
 
 impl Vibrations<'_> {
-    /// Hz; `None` where the stiffness is not shown to be positive definite, or the iterations stall.
-    fn by_levels(&self, stiffness: BlockStiffness) -> Option<Vec<f64>> {
+    /// The frequencies with each kind of masses, Hz; `None` where the stiffness is not shown to be positive definite, or the iterations
+    /// stall.
+    fn by_levels(&self, stiffness: BlockStiffness) -> Option<Vec<Result<Vec<f64>>>> {
         let levels = Levels::new(stiffness, &self.mesh.points, self.support).ok()?.ok()?;
         if levels.prove().ok()?.is_some() {
             return None;
         }
-        Some(levels.lowest_modes(self.masses, self.mesh.dimension, self.count).ok()?.frequencies())
+        let of = |masses| Some(Ok(levels.lowest_modes(masses, self.mesh.dimension, self.count).ok()?.frequencies()));
+        self.masses.iter().map(|masses| of(*masses)).collect()
     }
 
-    /// The frequencies, Hz.
-    fn of(&self, stiffness: &Entries) -> Result<Vec<f64>> {
+    /// The frequencies with each kind of masses, Hz.
+    fn of(&self, stiffness: &Entries) -> Vec<Result<Vec<f64>>> {
         let d = self.mesh.dimension;
-        let system = System::new(stiffness, self.support)?.placed(&self.mesh.points, d);
-        if let Some(factor) = system.cholesky()?.filter(|_| self.rigid == 0) {
-            return Ok(lowest_modes(&system, &factor, self.masses, d, self.count)?.frequencies());
+        let factored = || {
+            let system = System::new(stiffness, self.support)?.placed(&self.mesh.points, d);
+            let factor = system.cholesky()?.filter(|_| self.rigid == 0);
+            Ok(factor.map(|factor| (system, factor)))
+        };
+        match factored() {
+            Ok(Some((system, factor))) => {
+                let of = |masses| Ok(lowest_modes(&system, &factor, masses, d, self.count)?.frequencies());
+                self.masses.iter().map(|masses| of(*masses)).collect()
+            }
+            Ok(None) => self.masses.iter().map(|masses| self.raised(stiffness, *masses)).collect(),
+            Err(e) => vec![Err(e)],
         }
-        // (K + σ M) φ = (ω² + σ) M φ.
-        let mut raised = Raised::new(stiffness.clone(), self.masses, self.support, self.mesh);
+    }
+
+    /// Those of `(K + σ M) φ = (ω² + σ) M φ`, Hz.
+    fn raised(&self, stiffness: &Entries, masses: Masses) -> Result<Vec<f64>> {
+        let d = self.mesh.dimension;
+        let mut raised = Raised::new(stiffness.clone(), masses, self.support, self.mesh);
         let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
         raised.by(RELEASE * largest)?.cholesky()?.ok_or_else(releases)?;
         let system = raised.by(SHIFT * largest)?;
         let factor = system.cholesky()?.ok_or_else(releases)?;
-        let modes = lowest_modes(&system, &factor, self.masses, d, self.rigid + self.count)?;
+        let modes = lowest_modes(&system, &factor, masses, d, self.rigid + self.count)?;
         let squares = modes.squares[self.rigid..].iter().map(|square| square - SHIFT * largest);
         Ok(squares.map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU).collect())
     }

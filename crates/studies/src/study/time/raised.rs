@@ -1,10 +1,10 @@
-//! The shifted stiffness `K + σ M` of a model with masses lumped at its points.
+//! The shifted stiffness `K + σ M` of a model.
 
 use crate::dynamics::largest_square;
 use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::model::{Entries, Support};
-use crate::solve::System;
+use crate::solve::{Masses, System};
 use faer::sparse::Triplet;
 
 /// A model releases energy if some ω² is negative by this share of the largest; less is rounding.
@@ -12,27 +12,38 @@ pub const RELEASE: f64 = 1e-9;
 
 /// The equations for any σ, with one analysis of their pattern.
 pub struct Raised<'a> {
-    /// The entries of K, then the diagonal of σ M.
+    /// The entries of K, then those of σ M.
     entries: Entries,
     springs: usize,
-    /// The masses of the degrees of freedom, kg.
+    /// The entries of M, kg, in this order.
     masses: Vec<f64>,
     support: &'a Support,
     mesh: &'a Mesh,
     system: Option<System>,
-    /// An upper bound of the largest ω², rad²/s².
+    /// An upper bound of the largest ω² with the diagonal of M, rad²/s².
     pub largest: f64,
 }
 
 impl<'a> Raised<'a> {
-    /// The equations of this K; `masses` are `[points]`, kg.
-    pub fn new(mut entries: Entries, masses: &[f64], support: &'a Support, mesh: &'a Mesh) -> Raised<'a> {
-        let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, mesh.dimension)).collect();
-        let held: Vec<bool> = (0..masses.len()).map(|dof| support.is_fixed(dof)).collect();
-        let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
+    /// The equations of this K with these masses.
+    pub fn new<'m>(
+        mut entries: Entries,
+        masses: impl Into<Masses<'m>>,
+        support: &'a Support,
+        mesh: &'a Mesh,
+    ) -> Raised<'a> {
+        let (d, masses) = (mesh.dimension, masses.into());
+        let diagonal: Vec<f64> = masses.diagonal().iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
+        let held: Vec<bool> = (0..diagonal.len()).map(|dof| support.is_fixed(dof)).collect();
+        let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &diagonal, &held);
         let springs = entries.len();
-        entries.extend((0..masses.len()).map(|dof| Triplet::new(dof, dof, 0.0)));
-        Raised { entries, springs, masses, support, mesh, system: None, largest }
+        let mut values = Vec::new();
+        // The entries of K have each pair of different degrees of freedom once.
+        for (a, b, mass) in masses.entries().into_iter().filter(|(a, b, _)| a >= b) {
+            entries.extend((0..d).map(|k| Triplet::new(a * d + k, b * d + k, 0.0)));
+            values.extend(std::iter::repeat_n(mass, d));
+        }
+        Raised { entries, springs, masses: values, support, mesh, system: None, largest }
     }
 
     /// The equations with this σ, rad²/s².
