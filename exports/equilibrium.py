@@ -60,20 +60,29 @@ def forces_and_tangent(net, x):
     return force, tangent.reshape(n * d, n * d)
 
 
-def rest_under_gravity(net, gravity):
-    """Positions at rest, [points, d]; the residual is at rounding."""
+def rest_under_gravity(net, gravity, load=None, steps=1):
+    """Positions at rest, [points, d], under gravity and the load of this name in so many steps; the residual is at rounding."""
     x = np.array(net["points"])
     n, d = x.shape
     held = np.zeros((n, d), bool)
     for support in net["held"]:
         held[support["point"]] = [u is not None for u in support["displacement"]]
     weight = np.array(net["masses"])[:, None] * np.array(gravity)
+    for own in next(own["forces"] for own in net["loads"] if own["name"] == load) if load else []:
+        weight[own["point"]] += own["force"]
     free = np.flatnonzero(~held.ravel())
+    for step in range(1, steps + 1):
+        settle(net, x, step / steps * weight, free)
+    return x
+
+
+def settle(net, x, forces, free):
+    """Moves the positions x to where they rest under these forces."""
     for _ in range(30):
         force, tangent = forces_and_tangent(net, x)
-        left = (weight - force).ravel()[free]
+        left = (forces - force).ravel()[free]
         step = np.linalg.solve(tangent[np.ix_(free, free)], left)
         x.ravel()[free] += step
         if np.abs(step).max() < 1e-13 * np.ptp(x):
-            return x
+            return
     raise RuntimeError("no equilibrium was found")

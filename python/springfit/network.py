@@ -305,10 +305,11 @@ class Network:
             gravity: m/s², shape (dimension,); 9.81 against the last axis if None.
 
         Returns:
-            The files. A warning names what the program does not represent.
+            The files. A warning names what the program does not represent, and what a held body does at rest that it would not move as the
+            network does.
 
         Raises:
-            SpringfitError: The program does not hold this network, and a fit that it holds is named.
+            SpringfitError: The program does not hold this network, and a fit that it holds is named; or cells turn inside out under gravity.
         """
         along = None if gravity is None else typed("gravity", array("gravity", gravity), np.float64).tolist()
         files, left_out, _ = self._core.export(to, os.fspath(folder), along)

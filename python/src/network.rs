@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
-use springfit::export::{target_named, write_files};
+use springfit::export::{target_named, with_warnings, write_files};
 use springfit::fit::{CellFits, Spread};
 use springfit::mesh::Mesh;
 use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
@@ -226,11 +226,14 @@ impl Network {
         let (files, left_out) = alone(py, move || {
             outcome.fits[0].network.check_formulas()?;
             let network = NetworkFile::of(&outcome, &outcome.fits[0]).record();
-            let files = target.files(&network, gravity.as_deref()).map_err(|e| match e.key() {
+            let of_gravity = |e: springfit::error::Error| match e.key() {
                 Some("--gravity") => e.at_key("gravity"),
                 _ => e,
-            })?;
-            Ok((files, target.left_out(&network)))
+            };
+            let files = target.files(&network, gravity.as_deref()).map_err(of_gravity)?;
+            let warnings = target.at_rest(&network, gravity.as_deref()).map_err(of_gravity)?;
+            let files = with_warnings(files, &warnings);
+            Ok((files, [warnings, target.left_out(&network)].concat()))
         })?;
         let written = apart(py, || write_files(&files, &folder, &[]));
         Ok((written.map_err(|error| raised(py, error))?, left_out, target.command))

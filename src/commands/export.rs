@@ -5,7 +5,7 @@ use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::export::{target_list, target_named, write_files};
+use springfit::export::{target_list, target_named, with_warnings, write_files};
 use springfit::report::{NetworkFile, NetworkRecord, read_network};
 use springfit::study::{Controls, run_with};
 use springfit::unknown;
@@ -53,6 +53,8 @@ impl Export {
         let network = if is_network { self.read()? } else { self.fitted(terminal, &mut inputs)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
+        let warnings = target.at_rest(&network, gravity.as_deref()).map_err(of_network)?;
+        let files = with_warnings(files, &warnings);
         let written = write_files(&files, &folder, &inputs)?;
         terminal.print(&summary(&network))?;
         if network.held.is_empty() {
@@ -61,8 +63,7 @@ impl Export {
         if !network.loads.is_empty() {
             let names: Vec<String> = network.loads.iter().map(|load| format!("\"{}\"", load.name)).collect();
             let names = names.join(", ");
-            let has_arrays = files.iter().any(|(name, _)| *name == "network.npz");
-            terminal.note(&match (has_arrays, target.command.is_empty()) {
+            terminal.note(&match (target.has_loads, target.command.is_empty()) {
                 (true, false) => format!(
                     "the loads {names} act where the script is given --load NAME, and are arrays of network.npz"
                 ),
@@ -70,6 +71,7 @@ impl Export {
                 (false, _) => format!("the loads {names} are not exported: supports and gravity are"),
             });
         }
+        warnings.iter().for_each(|words| terminal.note(words));
         target.left_out(&network).iter().for_each(|words| terminal.note(words));
         if !target.command.is_empty() {
             terminal.print(&format!("run it: cd {} && {}\n", folder.display(), target.command))?;

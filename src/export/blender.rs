@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, content_dampers, script};
+use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -16,6 +16,8 @@ pub const TARGET: Target = Target {
     title: "a Python script for Blender: springs as edges with attributes, the motion as shape keys",
     command: "python run.py",
     leaves_out: content_dampers,
+    has_loads: true,
+    stands: Stands::Network,
     write,
 };
 

@@ -1,7 +1,7 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
 use super::job::{Holds, Job, Tension};
-use super::target::{Content, NamedFile, Target, dampers, mass_damping};
+use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub const TARGET: Target = Target {
     title: "a Node script for Jolt: edge and volume constraints of a soft body",
     command: "npm install jolt-physics@1.1.0 && node run.mjs",
     leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
+    has_loads: false,
+    stands: Stands::Network,
     write,
 };
 

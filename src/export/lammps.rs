@@ -1,7 +1,7 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
 use super::job::{Holds, Job, Tension};
-use super::target::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::fmt::Write;
@@ -15,6 +15,8 @@ pub const TARGET: Target = Target {
     title: "a data file and an input script for LAMMPS: harmonic bonds",
     command: "lmp -in in.network",
     leaves_out: dampers,
+    has_loads: false,
+    stands: Stands::Network,
     write,
 };
 

@@ -13,12 +13,13 @@ mod mujoco;
 mod newton;
 mod npz;
 mod phystwin;
+mod rest;
 mod sofa;
 mod target;
 mod vtu;
 
 pub use job::{Holds, Job, Tension};
-pub use target::{Content, NamedFile, Target, write_files};
+pub use target::{Content, NamedFile, Target, with_warnings, write_files};
 
 use crate::error::Result;
 use crate::unknown;

@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, dampers, script};
+use super::target::{Content, NamedFile, Stands, Target, dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -16,6 +16,8 @@ pub const TARGET: Target = Target {
     title: "a Python script for MuJoCo: a flex of tetrahedra with the stiffness of the springs",
     command: "python run.py",
     leaves_out: dampers,
+    has_loads: true,
+    stands: Stands::SquaredLengths,
     write,
 };
 

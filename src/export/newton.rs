@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
-use super::target::{Content, NamedFile, Target, content_dampers, mass_damping, script};
+use super::target::{Content, NamedFile, Stands, Target, content_dampers, mass_damping, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
@@ -15,6 +15,8 @@ pub const TARGET: Target = Target {
     title: "a Python script for Newton (Warp): springs with dampers, and volume springs",
     command: "python run.py",
     leaves_out: |network| [content_dampers(network), mass_damping(network)].concat(),
+    has_loads: true,
+    stands: Stands::Network,
     write,
 };
 

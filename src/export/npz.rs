@@ -2,7 +2,7 @@
 
 use super::extent::check_parts;
 use super::job::{Job, spatial};
-use super::target::{Content, NamedFile, Target, content_dampers};
+use super::target::{Content, NamedFile, Stands, Target, content_dampers};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
 use std::io::Cursor;
@@ -13,6 +13,8 @@ pub const TARGET: Target = Target {
     title: "arrays of NumPy, for scripts of your own",
     command: "",
     leaves_out: content_dampers,
+    has_loads: true,
+    stands: Stands::Network,
     write,
 };
 

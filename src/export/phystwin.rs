@@ -1,7 +1,7 @@
 //! PhysTwin: the arrays of its simulator `SpringMassSystemWarp`.
 
 use super::job::{Holds, Job, Tension, named};
-use super::target::{Content, NamedFile, Target, dampers};
+use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
 use std::io::{self, Cursor};
@@ -16,6 +16,8 @@ pub const TARGET: Target = Target {
     title: "the arrays of a spring-mass system of PhysTwin, with the logarithms of its stiffnesses",
     command: "",
     leaves_out: different_dampers,
+    has_loads: false,
+    stands: Stands::Network,
     write,
 };
 

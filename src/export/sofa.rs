@@ -1,7 +1,7 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
 use super::job::{Holds, Job, Tension};
-use super::target::{Content, NamedFile, Target, mass_damping};
+use super::target::{Content, NamedFile, Stands, Target, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::collections::HashSet;
@@ -16,6 +16,8 @@ pub const TARGET: Target = Target {
     title: "a file of the format Xsp for SOFA: masses and springs with dampers",
     command: "",
     leaves_out: mass_damping,
+    has_loads: false,
+    stands: Stands::Network,
     write,
 };
 

@@ -49,8 +49,34 @@ pub(super) fn script(text: &str) -> Content {
     Content::Bytes(text.replacen(import, &format!("\n\n{}\n\n", rule.trim_end()), 1).into_bytes())
 }
 
+/// How a line that is not read begins, by the ending of a script.
+const COMMENTS: [(&str, &str); 3] = [(".py", "# "), (".mjs", "// "), ("in.network", "# ")];
+
+/// The files with these sentences at the top of their scripts.
+pub fn with_warnings(mut files: Vec<NamedFile>, warnings: &[String]) -> Vec<NamedFile> {
+    for (name, content) in &mut files {
+        let comment = COMMENTS.iter().find(|(ending, _)| name.ends_with(ending));
+        if let (Some((_, comment)), Content::Bytes(bytes)) = (comment, content) {
+            let lines: String = warnings.iter().map(|words| format!("{comment}Beware: {words}.\n")).collect();
+            bytes.splice(0..0, lines.into_bytes());
+        }
+    }
+    files
+}
+
 /// Makes the files of a network with a gravity that may be given.
 type Writer = fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>;
+
+/// Up to which deformation a program moves a body as the network would.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stands {
+    /// As far as the network itself: the program has its energy.
+    Network,
+    /// Springs whose energy is quadratic in the square of their length, `k/(8 L²) (l² − L²)²`.
+    SquaredLengths,
+    /// The program does not move it.
+    Still,
+}
 
 /// A program that networks are written for.
 pub struct Target {
@@ -62,6 +88,10 @@ pub struct Target {
     pub command: &'static str,
     /// The damping that this program leaves out and others hold, in lines of words.
     pub(super) leaves_out: fn(&NetworkRecord) -> Vec<String>,
+    /// Whether the loads of the scene are in its files.
+    pub has_loads: bool,
+    /// Up to which deformation it moves the network.
+    pub(super) stands: Stands,
     pub(super) write: Writer,
 }
 

@@ -1,6 +1,6 @@
 //! VTU: a picture of the network for ParaView.
 
-use super::target::{Content, NamedFile, Target, nothing};
+use super::target::{Content, NamedFile, Stands, Target, nothing};
 use crate::error::{Error, Result};
 use crate::mesh::vtk::{Array, Grid};
 use crate::report::NetworkRecord;
@@ -14,6 +14,8 @@ pub const TARGET: Target = Target {
     title: "springs as lines with their constants, for ParaView",
     command: "",
     leaves_out: nothing,
+    has_loads: false,
+    stands: Stands::Still,
     write,
 };
 

@@ -24,17 +24,29 @@ pub struct FactorCost {
 /// # Errors
 /// The analysis does not fit into memory.
 pub fn factor_cost(mesh: &Mesh) -> Result<FactorCost> {
-    let count = mesh.point_count();
+    factor_cost_of(&mesh.points, mesh.dimension, mesh.blocks.iter().flat_map(|block| block.cells()))
+}
+
+/// [`factor_cost`] of points, `[points × dimension]`, m, and of the lists of those that act on each other.
+///
+/// # Errors
+/// As there.
+pub fn factor_cost_of<'a>(
+    points: &[f64],
+    dimension: usize,
+    coupled: impl Iterator<Item = &'a [usize]>,
+) -> Result<FactorCost> {
+    let count = points.len() / dimension.max(1);
     let mut places: Vec<Pair<usize, usize>> = (0..count).map(|point| Pair::new(point, point)).collect();
-    for nodes in mesh.blocks.iter().flat_map(|block| block.cells()) {
+    for nodes in coupled {
         let all = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b)));
         places.extend(all.filter(|(a, b)| a != b).map(|(a, b)| Pair::new(a, b)));
     }
     let pattern = SymbolicSparseColMat::try_new_from_indices(count, count, &places);
     let (pattern, _) = pattern.map_err(|_| Error::new("the pattern of the stiffness does not fit into memory"))?;
-    let places = Places { coordinates: mesh.points.clone(), dimension: mesh.dimension };
+    let places = Places { coordinates: points.to_vec(), dimension };
     let (entries, operations) = Analysis::new(pattern.as_ref(), Some(&places))?.cost();
-    let d = mesh.dimension as f64;
+    let d = dimension as f64;
     Ok(FactorCost { entries: d.powi(2) * entries, operations: d.powi(3) * operations })
 }
 

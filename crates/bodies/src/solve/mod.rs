@@ -20,7 +20,7 @@ mod stability;
 
 pub(crate) use cholesky::elimination_order;
 pub use equations::Equations;
-pub use expectation::{FactorCost, dense_rate, factor_cost};
+pub use expectation::{FactorCost, dense_rate, factor_cost, factor_cost_of};
 pub use inertia::Masses;
 pub use known::KnownEquations;
 pub use levels::{Levels, Solved, compare_levels};
@@ -29,4 +29,4 @@ pub use method::{StaticMethod, StaticSolver};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};
-pub use stability::{Stability, Standing, compare_energies};
+pub use stability::{Stability, Standing, compare_energies, is_definite};

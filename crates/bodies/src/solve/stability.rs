@@ -4,7 +4,10 @@
 
 use super::lanczos::{Ritz, ends, noise};
 use super::linear::{Factor, System};
+use crate::error::Result;
+use crate::model::{Entries, Support};
 use crate::springs::dot;
+use faer::sparse::Triplet;
 
 /// Steps of a search at most. 20 to 80 are usual; ratios that differ by many orders may take more.
 const STEPS: usize = 200;
@@ -46,6 +49,18 @@ pub enum Standing {
     Indefinite,
     /// Singular: some motion meets no resistance; the network is a mechanism.
     Singular,
+}
+
+/// Whether a stiffness is positive definite where it is free, once this share of its largest diagonal entry is added to its diagonal. With a share
+/// beyond rounding motions without resistance pass, and only those that release energy do not.
+///
+/// # Errors
+/// The matrix does not fit into memory.
+pub fn is_definite(stiffness: &Entries, support: &Support, share: f64) -> Result<bool> {
+    let largest = stiffness.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
+    let mut entries = stiffness.clone();
+    entries.extend((0..support.prescribed.len()).map(|dof| Triplet::new(dof, dof, share * largest)));
+    Ok(System::new(&entries, support)?.cholesky()?.is_some())
 }
 
 /// The extreme ratios of the energies of `network` and `body`, both with the same support, each that of a motion.

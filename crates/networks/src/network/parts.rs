@@ -1,10 +1,13 @@
 //! The springs of a network that programs with springs between two points and volume springs hold.
 
 use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord};
+use crate::element::{SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
-use crate::model::Network;
+use crate::model::{LengthSpring, MeasureSpring, Network};
+use crate::springs::Measure;
 use smallvec::SmallVec;
 use std::borrow::Borrow;
+use std::sync::Arc;
 
 /// A linear spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +47,24 @@ impl Parts {
     /// A spring has a law or measures something else; kind `Unsupported`, and the key is the place of the spring.
     pub fn of(network: &NetworkRecord) -> Result<Parts> {
         Parts::default().with_springs(network, &network.springs)
+    }
+
+    /// The springs as a model in this dimension, without dampers.
+    pub fn network(&self, dimension: usize) -> Network {
+        let kind = if dimension == 2 { SpringKind::Area } else { SpringKind::Volume };
+        let measure = Measure::Span(Arc::new(simplex_table(dimension)));
+        let of_length =
+            |part: &LengthPart| LengthSpring { points: part.points, constant: part.constant, rest: part.rest };
+        let of_content = |part: &ContentPart| MeasureSpring {
+            kind,
+            points: part.points.clone(),
+            constant: part.constant,
+            rest: part.rest,
+            measure: measure.clone(),
+            law: None,
+        };
+        let others = self.contents.iter().map(of_content).collect();
+        Network { dimension, lengths: self.lengths.iter().map(of_length).collect(), others }
     }
 
     /// No springs yet, and memory for those of a network. A list that grew would leave behind the memory of its shorter forms.
@@ -92,6 +113,20 @@ impl Parts {
             }
         }
         Ok(self)
+    }
+}
+
+/// The simplex between the origin and the units of the axes, at its centre: a weight of 1/d!, and the gradients of `1 − Σ ξ_k`, ξ_1, …
+fn simplex_table(d: usize) -> Tabulation {
+    let gradient = |(a, k): (usize, usize)| if a == 0 { -1.0 } else { f64::from(u8::from(a == k + 1)) };
+    Tabulation {
+        nodes: d + 1,
+        dimension: d,
+        space: d,
+        weights: vec![1.0 / (1..=d).product::<usize>() as f64],
+        volumetric: Vec::new(),
+        values: vec![1.0 / (d + 1) as f64; d + 1],
+        gradients: (0..=d).flat_map(|a| (0..d).map(move |k| (a, k))).map(gradient).collect(),
     }
 }
 

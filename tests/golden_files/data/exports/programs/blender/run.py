@@ -1,3 +1,4 @@
+# Beware: 17 of 412 cells are inside out at rest under gravity and the load "shear".
 """A springfit network in Blender (pip install bpy numpy, or Blender itself).
 
     python run.py            one second of motion, written to network.blend

@@ -1,3 +1,5 @@
+# Beware: 17 of 412 cells are inside out at rest under gravity and the load "shear".
+# Beware: at rest the network is stretched by 0.86 to 1.15 under gravity and the load "tension": an energy that is quadratic in squared lengths is another one there; --to newton has the network's own energy.
 """A springfit network in MuJoCo (pip install mujoco numpy).
 
     python run.py            two seconds of motion, then where the points are

@@ -1,3 +1,4 @@
+# Beware: 17 of 412 cells are inside out at rest under gravity and the load "shear".
 """A springfit network in Newton (pip install newton numpy).
 
     python run.py            half a second of motion, then where the points are
