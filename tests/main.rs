@@ -13,6 +13,7 @@ mod converge;
 mod corpora;
 mod covariance;
 mod crash;
+mod curved_cells;
 mod derive;
 mod digits;
 mod domains;

@@ -45,6 +45,13 @@ pub(super) fn quality_lines(quality: &Quality) -> Vec<String> {
         let (cells, are, were) = with_verbs(quality.folded, "cell");
         lines.push(format!("{cells} that {are} folded over their neighbours {were} left out"));
     }
+    if let Some((count, which)) = &quality.folding {
+        let folds = if *count == 1 { "folds" } else { "fold" };
+        lines.push(format!(
+            "{} {folds} between quadrature points, where the Jacobian is negative, so that the map of the cell is not one to one: {which}",
+            counted(*count, "curved cell")
+        ));
+    }
     if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
         lines.push(format!(
             "{} with a quality below {:e}, the worst {:.1e} ({}): such spring constants lose accuracy in proportion",

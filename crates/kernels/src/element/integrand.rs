@@ -25,6 +25,16 @@ const FURTHER: usize = 6;
 /// The largest order that is tried, by dimension: 34 points per direction in the plane, 15 in space.
 const MOST_ORDER: [usize; 3] = [28, 28, 11];
 
+/// The degree of the Jacobian determinant of functions of degree p: in each coordinate of boxes and pyramids, in all together of others.
+fn jacobian_degree(cell: Cell, p: usize) -> usize {
+    let d = cell.dimension();
+    match cell {
+        Cell::Interval => p - 1,
+        Cell::Quadrilateral | Cell::Hexahedron | Cell::Pyramid => d * p - 1,
+        Cell::Triangle | Cell::Tetrahedron | Cell::Wedge | Cell::Pentagon => d * (p - 1),
+    }
+}
+
 impl Element {
     /// The shape functions at the points of a rule that integrates the integrand and its Jacobian.
     ///
@@ -54,17 +64,17 @@ impl Element {
     }
 
     fn degree_of(&self, region: Cell, integrand: Integrand) -> usize {
-        let (p, d) = (self.order(), region.dimension());
+        let p = self.order();
         let factor = match integrand {
             Integrand::Load(m) => p.saturating_mul(m),
             Integrand::Mass => p,
         };
-        let jacobian = match region {
-            Cell::Interval => p - 1,
-            Cell::Quadrilateral | Cell::Hexahedron | Cell::Pyramid => d * p - 1,
-            Cell::Triangle | Cell::Tetrahedron | Cell::Wedge | Cell::Pentagon => d * (p - 1),
-        };
-        p.saturating_add(factor).saturating_add(jacobian)
+        p.saturating_add(factor).saturating_add(jacobian_degree(region, p))
+    }
+
+    /// The degree of det J along each direction of a box that is mapped to the cell.
+    pub(super) fn jacobian_degree(&self) -> usize {
+        jacobian_degree(self.cell, self.order())
     }
 
     /// The degree of the shape functions: in each coordinate on a box, in all together otherwise. For functions that

@@ -5,6 +5,7 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+mod bounds;
 mod cell;
 mod constant;
 mod definition;
@@ -20,6 +21,7 @@ mod rational;
 mod symmetry;
 mod tabulation;
 
+pub use bounds::JacobianBounds;
 pub use cell::{Cell, Side};
 pub use definition::{FormatEntry, Formats, schema};
 pub use formula::coordinate_names;

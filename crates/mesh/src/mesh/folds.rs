@@ -1,7 +1,10 @@
-//! Cells that are folded over their neighbours.
+//! Cells that are folded over their neighbours, or within themselves.
 
-use super::mesh::{CellIndex, Mesh, SideIndex};
+use super::mesh::{CellBlock, CellIndex, Mesh, SideIndex};
+use crate::element::JacobianBounds;
 use crate::springs::{distance, dot};
+use crate::stiffness::gather;
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Heights below this share of the lengths count as zero.
@@ -53,6 +56,26 @@ impl Mesh {
         }
         folded.sort_unstable_by_key(|cell| (cell.block, cell.cell));
         folded
+    }
+
+    /// The curved cells whose Jacobian determinant is negative somewhere between their quadrature points. Cells whose nodes are
+    /// their corners or lie straight between them are not looked at.
+    pub fn folding(&self) -> Vec<CellIndex> {
+        let of_block = |(index, block): (usize, &CellBlock)| {
+            let Some(bounds) =
+                JacobianBounds::of(&block.element).filter(|_| block.element.dimension() == self.dimension)
+            else {
+                return Vec::new();
+            };
+            let n = block.element.nodes();
+            let folds = |(cell, nodes): (usize, &[usize])| {
+                let mut x = vec![0.0; n * self.dimension];
+                gather(&self.points, self.dimension, nodes, &mut x);
+                bounds.folds(&x).then_some(CellIndex { block: index, cell })
+            };
+            block.connectivity.par_chunks_exact(n).enumerate().filter_map(folds).collect()
+        };
+        self.blocks.iter().enumerate().flat_map(of_block).collect()
     }
 
     /// Whether the cells of two sides with the same points lie on the same side of it.

@@ -30,12 +30,23 @@ impl Mesh {
             let found = format!("{} below it, the least {:.2e} of {}", cells(poor.len()), worst.quality, worst.cell);
             return Err(Error::expected("quality", format!("cells of at least {:e}", gate.least), found));
         }
+        let folding = self.folding();
+        if gate.below == Below::Refuse && !folding.is_empty() {
+            let found =
+                format!("{} that fold between quadrature points: {}", cells(folding.len()), self.named(&folding));
+            return Err(Error::expected("quality", "cells whose Jacobian is positive everywhere", found));
+        }
+        if gate.below == Below::Skip {
+            let known: HashSet<CellIndex> = poor.iter().copied().collect();
+            poor.extend(folding.iter().filter(|cell| !known.contains(cell)));
+        }
         if gate.below == Below::Skip && !poor.is_empty() {
             self.quality.skipped += poor.len();
             self.remove(&poor)?;
             return self.pass(gate);
         }
         self.quality.worst = named;
+        self.quality.folding = (!folding.is_empty()).then(|| (folding.len(), self.named(&folding)));
         (self.quality.poor, self.quality.least) = (poor.len(), gate.least);
         Ok(())
     }

@@ -12,8 +12,8 @@ pub enum Below {
     Warn,
     /// The mesh is refused.
     Refuse,
-    /// They are removed, as are cells that are flat or tangled, repeat another cell or are folded over their
-    /// neighbours.
+    /// They are removed, as are cells that are flat or tangled, fold between quadrature points, repeat another cell or are folded
+    /// over their neighbours.
     Skip,
 }
 
@@ -71,6 +71,8 @@ pub struct Quality {
     pub poor: usize,
     /// The least quality that was required.
     pub least: f64,
+    /// The curved cells that were kept and fold between their quadrature points, in words, and their number.
+    pub folding: Option<(usize, String)>,
     /// The number of cells removed for poor quality, or because they are flat or tangled.
     pub skipped: usize,
     /// The number of cells removed because they have the nodes of another cell.
