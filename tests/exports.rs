@@ -502,3 +502,22 @@ fn a_body_that_takes_long_is_not_solved() {
     let told = target_named("mujoco").unwrap().at_rest(network, None).unwrap();
     assert!(told.len() == 1 && told[0].contains("is not known under gravity"), "{told:?}");
 }
+
+/// One spring with five times its constant against it makes any of these networks release energy: held or not, under gravity or without it.
+#[test]
+fn a_network_that_is_not_stable_is_told() {
+    let light = SCENE.replace("1e4", "1e6");
+    for text in [light.clone(), light.replace("[[fix]]\ngroup = \"zmin\"\n", "")] {
+        let mut network = networks(&text)["classical"].clone();
+        let target = target_named("newton").unwrap();
+        assert!(target.at_rest(&network, None).unwrap().is_empty());
+        // The last spring joins points that are free.
+        network.springs.last_mut().unwrap().constant *= -5.0;
+        for gravity in [None, Some(&[0.0; 3][..])] {
+            let told = target.at_rest(&network, gravity).unwrap();
+            assert!(told.len() == 1 && told[0].contains("not stable: a motion from rest releases energy"), "{told:?}");
+            assert!(told[0].contains("1 of its"), "{told:?}");
+        }
+        assert!(target_named("vtu").unwrap().at_rest(&network, None).unwrap().is_empty(), "a picture does not move");
+    }
+}

@@ -22,6 +22,8 @@ const MOST_OPERATIONS: f64 = 6e10;
 const FACTORS: f64 = 12.0;
 /// More points are not even counted: their analysis alone would be noticed.
 const MOST_POINTS: usize = 40_000;
+/// The share of the largest diagonal entry of the stiffness by which motions without resistance are told from those that release energy.
+const SHIFT: f64 = 1e-9;
 /// How exactly forces balance.
 const TOLERANCE: f64 = 1e-8;
 
@@ -39,8 +41,8 @@ struct Stretches {
 }
 
 impl Target {
-    /// What a reader must know of the body at rest under the exported gravity, and under each load beside it, in sentences: that no
-    /// equilibrium was found, that it is deformed beyond what the program moves as the network would. Bodies that are
+    /// What a reader must know of the body at rest under the exported gravity, and under each load beside it, in sentences: that the network is not
+    /// stable, that no equilibrium was found, that it is deformed beyond what the program moves as the network would. Bodies that are
     /// not held are not solved, and neither are those that would take more than some seconds; of the latter a sentence says so.
     ///
     /// # Errors
@@ -66,8 +68,17 @@ impl Target {
         });
         cases.truncate(affordable);
         let body = Body { network: parts.network(d), record: network, points, support: support(network) };
+        let resists = affordable > 0 && body.resists(0.0)?;
+        if affordable > 0 && !resists && !body.resists(SHIFT)? {
+            return Ok(vec![format!(
+                "the network is not stable: a motion from rest releases energy and grows, in any program; {} of its {} springs are negative, and \
+                 nonnegative = true has none of them",
+                body.network.negative(),
+                body.network.len()
+            )]);
+        }
         let mut found = Vec::new();
-        if !network.held.is_empty() && !cases.is_empty() && body.resists(0.0)? {
+        if !network.held.is_empty() && resists {
             for case in &cases {
                 found.push((&*case.words, body.at_rest(case)?));
             }
