@@ -205,6 +205,18 @@ fn loads_that_a_fit_has_made_worse_are_listed() {
         // Before any fit the exact network is the finite elements, and springs on edges leave less than half of their error.
         assert!(close(of("exact"), of("finite elements")), "{held_out:?}");
         assert!(element == "hex8" || of("exact edges patches") < 0.5 * of("exact"), "{held_out:?}");
+        // The note says what share of the smoothed springs' error is left; hexahedra have none of these.
+        let notes = outcome.fits[1].kind.whole().unwrap().notes().join("\n");
+        let words =
+            |share: f64| format!("the fit leaves {share:.2} of the median error of springs on edges with patches");
+        match element {
+            "hex8" => assert!(!notes.contains("springs on edges with patches"), "{notes}"),
+            _ => {
+                let share = of("fitted") / of("exact edges patches");
+                assert!(notes.contains(&words(share)), "{share}: {notes}");
+                assert_eq!(notes.contains("it gains nothing here"), share > 0.9, "{share}: {notes}");
+            }
+        }
     }
 }
 

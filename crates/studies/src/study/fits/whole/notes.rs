@@ -75,8 +75,9 @@ impl WholeOutcome {
                     worse.join(", ")
                 )
             };
+            let gain = held_out.gain().map_or(String::new(), |gain| format!("; {gain}"));
             format!(
-                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}{listed}",
+                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}{gain}{listed}",
                 models.join(", ")
             )
         });
