@@ -57,7 +57,7 @@ def kind_of(message, path):
     """The message without what belongs to one file."""
     text = message.replace(str(path), "FILE").replace(path.name, "FILE")
     text = re.sub(r"\"[^\"]*\"|`[^`]*`|'[^']*'", "…", text)
-    text = re.sub(r"(?<=INPUT=)[^:]+|(?<=content of )\S+", "…", text)
+    text = re.sub(r"(?i)(?<=INPUT=)[^:]+|(?<=content of )\S+", "…", text)
     text = re.sub(r"(?<![A-Za-z])[-+]?\d[\d.]*([eE][-+]?\d+)?", "#", text)
     return re.sub(r"#(, #)+", "#, #", text)[:200]
 
@@ -101,6 +101,8 @@ def differences(record, volume, found):
         here, there = ours[kind], found["body"].get(kind, 0)
         if here != there:
             yield f"{kind}: {here} cells, expected {there}", {abs(here - there), there}
+    for kind, count in found["loose"].items():
+        yield f"{count} {kind} that lie on no cell of the body are left out", {count}
     if record["points"] != found["points"]:
         yield f"{record['points']} points, expected {found['points']}", {abs(record["points"] - found["points"])}
     here = sorted(record["extent"], reverse=True)

@@ -5,6 +5,7 @@ Gmsh files are read by Gmsh (pip install gmsh), those of VTK by VTK (pip install
 
     cells    how many of each kind; the names are those of springfit's elements, and VTK's or the file's for other kinds
     body     the same, of the highest dimension alone
+    loose    cells of fewer dimensions that lie on no cell of the body, such as a rod between two solids
     points   how many points cells of the body have
     extent   the size of the box around them
     volume   of the body, an area or a length below three dimensions; null if a kind has no formula here
@@ -47,6 +48,14 @@ class Found:
         used = sorted({node for _, _, nodes, _ in body for node in nodes})
         lost = [node for node in used if node not in self.places]
         places = np.array([self.places[node] for node in used if node not in lost], dtype=float).reshape(-1, 3)
+        of_node = collections.defaultdict(set)
+        for number, (_, _, nodes, _) in enumerate(body):
+            for node in nodes:
+                of_node[node].add(number)
+        loose = collections.Counter()
+        for kind, dimension, nodes, _ in self.cells:
+            if 0 < dimension < highest and not set.intersection(*[of_node.get(node, set()) for node in nodes]):
+                loose[kind] += 1
         groups = collections.defaultdict(lambda: {"cells": 0, "sides": 0, "points": 0})
         sides = collections.defaultdict(set)
         for _, dimension, nodes, names in self.cells:
@@ -67,6 +76,7 @@ class Found:
             "cells": dict(collections.Counter(kind for kind, _, _, _ in self.cells)),
             "body": dict(collections.Counter(kind for kind, _, _, _ in body)),
             "dimension": highest,
+            "loose": dict(loose),
             "points": len(used),
             "undefined points": len(lost),
             "all points": len(self.places),
