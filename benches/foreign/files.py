@@ -38,10 +38,8 @@ def git(clone, *arguments):
 def clones(folder):
     """Project names and their clones."""
     for path in sorted(folder.iterdir()):
-        for clone in (path, path / "repo"):
-            if (clone / ".git").exists() or (clone / "HEAD").exists():
-                yield path.name, clone
-                break
+        if (path / ".git").exists() or (path / "HEAD").exists():
+            yield path.name, path
 
 
 def is_mesh(ending, content):

@@ -323,7 +323,8 @@ def abaqus(shell, assembly):
             if nodes:
                 lines += [f"*NSET, NSET={name}"] + [", ".join(map(str, nodes[k : k + 8])) for k in range(0, len(nodes), 8)]
         if assembly:
-            lines += ["*END PART", "*ASSEMBLY, NAME=all", "*INSTANCE, NAME=one-1, PART=one", "0.5, 0., 0.", "*END INSTANCE", "*END ASSEMBLY"]
+            lines += ["*END PART", "*ASSEMBLY, NAME=all", "*INSTANCE, NAME=one-1, PART=one", "0.5, 0., 0.", "*END INSTANCE"]
+            lines += ["*END ASSEMBLY"]
         path.write_text("\n".join([*lines, ""]))
 
     return write

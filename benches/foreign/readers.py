@@ -448,8 +448,8 @@ def nastran_cards(path):
     found = Found()
     for name, *fields in cards:
         if name == "GRID":
-            places = [re.sub(r"(?<=[\d.])([+-])", r"e\1", (word or "0").lower().replace("d", "e").replace("ee", "e")) for word in fields[2:5]]
-            places = [word.replace("ee", "e") for word in places]
+            places = [(word or "0").lower().replace("d", "e") for word in fields[2:5]]
+            places = [re.sub(r"(?<=[\d.])([+-])", r"e\1", word) for word in places]  # 1.5-3 is 1.5e-3
             found.places[int(fields[0])] = [float(word) for word in places]
         elif name in NASTRAN:
             first, most = (1, 2) if name == "CONROD" else (2, max(NASTRAN[name]))
@@ -562,8 +562,8 @@ def abaqus_kind(name):
     return f"element {name}"
 
 
-READERS = {"msh": gmsh, "inp": abaqus, "bdf": nastran, "nas": nastran, "dat": nastran, "node": tetgen, "ele": tetgen, "obj": obj, "off": off,
-           "stl": stl, "ply": ply, **dict.fromkeys(["vtk", "vtu", "vtp", "vti", "vts", "vtr"], vtk_file)}  # fmt: skip
+READERS = {"msh": gmsh, "inp": abaqus, "bdf": nastran, "nas": nastran, "dat": nastran, "node": tetgen, "ele": tetgen, "obj": obj,
+           "off": off, "stl": stl, "ply": ply, **dict.fromkeys(["vtk", "vtu", "vtp", "vti", "vts", "vtr"], vtk_file)}  # fmt: skip
 
 
 def main():
