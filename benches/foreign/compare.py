@@ -71,7 +71,8 @@ def springfit(program, path):
     code, output, errors = run([program, "groups", str(path), "--json"])
     if code != 0:
         return None, error(errors) or f"exit code {code}", None, [], ""
-    record, notes = json.loads(output), notes_of(errors)
+    record = json.loads(output)
+    notes = notes_of(errors) + record.get("notes", [])
     dimension = max(KINDS[entry["element"]][1] for entry in record["elements"])
     with tempfile.TemporaryDirectory() as folder:
         network = Path(folder) / "network.json"

@@ -13,7 +13,8 @@ use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
     let filled = outcome.mesh.quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
-    filled.into_iter().chain(notes_beside_summary(outcome)).collect()
+    let annotations = outcome.mesh.annotations.notes();
+    filled.into_iter().chain(annotations).chain(notes_beside_summary(outcome)).collect()
 }
 
 /// Says what a reader must know before trusting a row, one sentence per line, without the lines that `summary` has.

@@ -30,7 +30,11 @@ impl Mesh {
     pub fn resolve_within(source: &MeshSource, own: &[Arc<Element>], scale: f64, gate: Option<Gate>) -> Result<Mesh> {
         let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
         if dimension == 0 {
-            return Err(Error::expected("cells", "lines, surface or solid cells", "none"));
+            let error = Error::expected("cells", "lines, surface or solid cells", "none");
+            return Err(match source.annotations.left_out.is_empty() {
+                true => error,
+                false => error.followed_by(format!(" but {}", source.annotations.left_out_words())),
+            });
         }
         let is_flat = dimension < 3 && in_one_plane(source);
         let space = match source.space {

@@ -38,10 +38,26 @@ impl Image {
             return Ok(piece);
         }
         let around_points = of_cells.is_empty();
+        // An array of zeros alone says nothing of the body.
+        let has_labels = |labels: &Labels| labels.values.iter().any(|label| *label != 0);
+        let is_active = |labels: &Labels| active == Some(labels.name.as_str());
+        let (of_cells, of_points): (Vec<Labels>, Vec<Labels>) = {
+            let kept = |all: Vec<Labels>| match all.len() > 1 && all.iter().any(has_labels) {
+                true => all.into_iter().filter(|labels| has_labels(labels) || is_active(labels)).collect(),
+                false => all,
+            };
+            (kept(of_cells), kept(of_points))
+        };
         let mut arrays = if around_points { of_points } else { of_cells };
         let mask = match (&arrays[..], active.and_then(|name| arrays.iter().position(|labels| labels.name == name))) {
             (_, Some(place)) => place,
             ([_], None) => 0,
+            // Several with the same background mean the same body.
+            ([first, others @ ..], None)
+                if !others.is_empty() && others.iter().all(|other| same_background(first, other)) =>
+            {
+                0
+            }
             (several, None) => {
                 let names: Vec<String> = several.iter().map(|labels| format!("\"{}\"", labels.name)).collect();
                 let found = if names.is_empty() { "none".to_string() } else { names.join(", ") };
@@ -76,6 +92,10 @@ impl Image {
         piece.labels = arrays;
         Ok(piece)
     }
+}
+
+fn same_background(a: &Labels, b: &Labels) -> bool {
+    a.values.iter().map(|label| *label == 0).eq(b.values.iter().map(|label| *label == 0))
 }
 
 fn check(labels: &Labels) -> Result<()> {
