@@ -70,7 +70,7 @@ type Writer = fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>;
 /// Up to which deformation a program moves a body as the network would.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stands {
-    /// As far as the network itself: the program has its energy.
+    /// The program has the energy of the network and moves the body as far as the network does.
     Network,
     /// Springs whose energy is quadratic in the square of their length, `k/(8 L²) (l² − L²)²`.
     SquaredLengths,

@@ -30,7 +30,7 @@ pub fn factor_cost(mesh: &Mesh) -> Result<FactorCost> {
 /// [`factor_cost`] of points, `[points × dimension]`, m, and of the lists of those that act on each other.
 ///
 /// # Errors
-/// As there.
+/// The analysis does not fit into memory.
 pub fn factor_cost_of<'a>(
     points: &[f64],
     dimension: usize,

@@ -48,7 +48,7 @@ const BODILESS: [&str; 30] = [
     "CHACAB", "CHACBR", "CONTRLT", "CTYPE", "CIFHEX",
 ];
 
-/// Of these beginnings, those of elements.
+/// Names of cards that begin so are of elements that connect points and have no cell.
 const CONNECTORS: [&str; 10] = ["CELAS", "CDAMP", "CMASS", "CONM", "CBUSH", "CGAP", "CVISC", "CFAST", "CWELD", "CSEAM"];
 
 /// Elements that are counted and left out.
@@ -70,7 +70,7 @@ pub(super) enum Other {
     Passed,
 }
 
-/// What a card is that is none of an element with an element here.
+/// The use of a card that neither gives a point nor a cell of a known element.
 ///
 /// # Errors
 /// It is of an element without one here, or repeats the card before it.

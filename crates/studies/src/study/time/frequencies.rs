@@ -142,7 +142,7 @@ impl Vibrations<'_> {
         }
     }
 
-    /// Those of `(K + σ M) φ = (ω² + σ) M φ`, Hz.
+    /// Returns the frequencies of a body whose stiffness has no Cholesky factor, Hz, from `(K + σ M) φ = (ω² + σ) M φ`.
     fn raised(&self, stiffness: &Entries, masses: Masses) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;
         let mut raised = Raised::new(stiffness.clone(), masses, self.support, self.mesh);
