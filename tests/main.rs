@@ -72,6 +72,7 @@ mod paper;
 mod pieces;
 mod plot;
 mod prepared;
+mod pressure;
 mod programs;
 mod published;
 mod quadrature;

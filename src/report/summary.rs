@@ -5,7 +5,7 @@ use super::linear_theory::distrust;
 use super::quality::{changes, counted, quality_lines};
 use super::region_record::RegionRecord;
 use super::table::{Table, run_text};
-use crate::study::{BodyLoad, Outcome, Reading, extent};
+use crate::study::{BodyLoad, Followed, Outcome, Reading, extent};
 use crate::text::printable;
 use std::fmt::Write;
 
@@ -75,7 +75,8 @@ pub(super) fn size(extent: &[f64]) -> String {
 /// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
 pub fn tables(outcome: &Outcome) -> String {
     let mut tables = Table::all(&Report::of(outcome));
-    let mut sentences: Vec<String> = largest(outcome).into_iter().chain(gauge(outcome)).collect();
+    let mut sentences: Vec<String> =
+        largest(outcome).into_iter().chain(pressures(outcome)).chain(gauge(outcome)).collect();
     if let Some(errors) = tables.iter_mut().find(|table| table.name == "errors") {
         errors.notes.append(&mut sentences);
     }
@@ -92,6 +93,21 @@ fn gauge(outcome: &Outcome) -> Vec<String> {
         ))
     };
     outcome.loads.iter().filter_map(line).collect()
+}
+
+/// The pressures in cavities that are filled to a given volume.
+fn pressures(outcome: &Outcome) -> Vec<String> {
+    let words = |followed: Option<Followed>, name: &str| {
+        let followed = followed?;
+        let passed = followed.pressure_passed.map_or(String::new(), |most| format!(", after {most:.4e}"));
+        Some(format!("{:.4e} Pa{passed} ({name})", followed.pressure?))
+    };
+    let line = |(i, load): (usize, &BodyLoad)| {
+        let fits = outcome.fits.iter().filter_map(|fit| words(fit.loads.get(i)?.followed, &fit.fit.name));
+        let all: Vec<String> = words(load.followed, "finite elements").into_iter().chain(fits).collect();
+        (!all.is_empty()).then(|| format!("Pressure in the cavity under {}: {}.", load.name, all.join("; ")))
+    };
+    outcome.loads.iter().enumerate().filter_map(line).collect()
 }
 
 /// How far the finite elements move under the loads that they reach, which percentages hide.

@@ -260,3 +260,28 @@ fn a_flat_sheet_hangs_whatever_its_axis() {
         .collect();
     assert!(largest[0] > 0.0 && (largest[0] - largest[1]).abs() < 1e-9 * largest[0], "{largest:?}");
 }
+
+/// A pressure on all sides of a block without a side along the axes: by `u = −p (1 − 2ν)/E x` it shrinks evenly.
+#[test]
+fn a_pressed_block_shrinks() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = "0 0 0\n1 0 0\n1.2 1 0.1\n0 1 0\n0.1 0 1\n1 0.2 1.1\n1 1 1.3\n0 1.1 0.9\n";
+    let cells =
+        ["0 1 2 6", "0 2 3 6", "0 3 7 6", "0 7 4 6", "0 4 5 6", "0 5 1 6"].map(|nodes| format!("4 {nodes}\n")).concat();
+    let text = format!(
+        "# vtk DataFile Version 3.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n{points}CELLS 6 30\n{cells}\
+         CELL_TYPES 6\n{}",
+        "10\n".repeat(6)
+    );
+    fs::write(folder.path().join("block.vtk"), text).unwrap();
+    let scene = "mesh = { file = \"block.vtk\" }\nmaterial = { young = 1e4, poisson = 0.3 }\nfit = [{ objective = \"exact\" }]\n\
+                 fix = [{ where = \"x < 1e-9 && y < 1e-9 && z < 1e-9\" }, { where = \"x > 0.99 && x < 1.01 && y < 1e-9\", axes = [\"y\", \"z\"] },\n\
+                 { where = \"x < 1e-9 && y > 0.99 && y < 1.01\", axes = [\"z\"] }]\n\
+                 load = [{ name = \"pressure\", where = \"x > -100\", pressure = 100 }]\n";
+    let outcome = outcome(scene, folder.path()).unwrap();
+    let fem = &outcome.loads[0].fem;
+    let worst =
+        fem.iter().zip(&outcome.mesh.points).map(|(u, x)| (u + 100.0 * 0.4 / 1e4 * x).abs()).fold(0.0, f64::max);
+    assert!(worst < 1e-15, "{worst:e}");
+    assert!((outcome.loads[0].largest_displacement(3) - 7.684e-3).abs() < 5e-7);
+}

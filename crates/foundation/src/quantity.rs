@@ -9,6 +9,8 @@ pub enum Quantity {
     Length,
     /// An area, in m².
     Area,
+    /// A volume, in m³.
+    Volume,
     /// A pressure, a modulus or a stress, in Pa.
     Pressure,
     /// A mass density, in kg/m³.
@@ -28,6 +30,21 @@ const LENGTHS: [Unit; 8] =
 /// Units of area.
 const AREAS: [Unit; 8] =
     [("m^2", 0), ("m²", 0), ("cm^2", -4), ("cm²", -4), ("mm^2", -6), ("mm²", -6), ("um^2", -12), ("µm²", -12)];
+/// Units of volume.
+const VOLUMES: [Unit; 12] = [
+    ("m^3", 0),
+    ("m³", 0),
+    ("dm^3", -3),
+    ("dm³", -3),
+    ("cm^3", -6),
+    ("cm³", -6),
+    ("mm^3", -9),
+    ("mm³", -9),
+    ("ml", -6),
+    ("mL", -6),
+    ("l", -3),
+    ("L", -3),
+];
 /// Units of pressure.
 const PRESSURES: [Unit; 8] =
     [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9), ("N/m^2", 0), ("N/m²", 0), ("N/mm^2", 6), ("N/mm²", 6)];
@@ -41,6 +58,7 @@ impl Quantity {
         match self {
             Quantity::Length | Quantity::MeshUnit => &LENGTHS,
             Quantity::Area => &AREAS,
+            Quantity::Volume => &VOLUMES,
             Quantity::Pressure => &PRESSURES,
             Quantity::Density => &DENSITIES,
             Quantity::Time => &TIMES,
@@ -52,6 +70,7 @@ impl Quantity {
         match self {
             Quantity::Length => "a length such as 0.005, \"5 mm\" or \"0.5cm\"",
             Quantity::Area => "an area such as 1e-4, \"100 mm^2\" or \"1cm^2\"",
+            Quantity::Volume => "a volume such as 3e-5, \"30 ml\" or \"30 cm^3\"",
             Quantity::Pressure => "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\"",
             Quantity::Density => "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\"",
             Quantity::Time => "a time such as 0.005, \"5 ms\" or \"5e-3 s\"",

@@ -2,7 +2,9 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+use super::component::Component;
 use super::integration::each_cell_points;
+use super::pressed::PressedFaces;
 use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::material::CellMap;
@@ -10,7 +12,6 @@ use crate::mesh::{Carrier, CellIndex, Mesh, Selection, SideIndex};
 use crate::range;
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gather;
-use crate::symbolic::{Expr, Polynomial};
 use std::cell::RefCell;
 
 /// What acts on a selected part of the mesh, with one entry per direction.
@@ -18,6 +19,10 @@ use std::cell::RefCell;
 pub enum Action {
     /// A force per area on sides, Pa.
     Traction(Vec<Component>),
+    /// A pressure on sides, or on the cells of a surface in space, against their normals, Pa; see [`PressedFaces`].
+    Pressure(Component),
+    /// A volume, m³, that the sides enclose, which close a cavity; it has no forces of its own.
+    Volume(f64),
     /// A total force, N: shared over the sides or the cells by their shape functions, or over points alone in equal shares; see
     /// [`Selection::carrier`].
     Force(Vec<f64>),
@@ -26,38 +31,6 @@ pub enum Action {
     /// A prescribed displacement of points, m; `None` leaves a direction free.
     Displacement(Vec<Option<Component>>),
 }
-
-/// One direction of a load: constant, or a function of the position.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Component {
-    /// The load has this value everywhere.
-    Constant(f64),
-    /// A function of the coordinates x, y (, z) in m.
-    Varying(Expr),
-}
-
-impl Component {
-    /// The value at the position x, `[dimension]`, m.
-    pub fn at(&self, x: &[f64]) -> f64 {
-        match self {
-            Component::Constant(value) => *value,
-            Component::Varying(expression) => expression.evaluate(x),
-        }
-    }
-
-    /// The degree of the polynomial, or the degree by which another function is integrated.
-    fn degree(&self) -> usize {
-        match self {
-            Component::Constant(_) => 0,
-            Component::Varying(expression) => {
-                Polynomial::expand(expression, 3).map_or(SMOOTH, |polynomial| polynomial.degree() as usize)
-            }
-        }
-    }
-}
-
-/// The polynomial degree with which a load that is not a polynomial is integrated.
-const SMOOTH: usize = 8;
 
 /// The load integrand of the largest degree of the components.
 fn load_of(components: &[Component]) -> Integrand {
@@ -102,7 +75,7 @@ impl Action {
     }
 }
 
-/// The nodal forces `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A prescribed displacement has
+/// The nodal forces `f_a = ∫ N_a t dA` and `f_a = ∫ N_a b dV`, `[points · dimension]`, N. A prescribed displacement or volume has
 /// none.
 ///
 /// The quadrature rules are chosen by the degree of the load as a polynomial of the position, whatever the rule of the
@@ -133,6 +106,15 @@ pub fn nodal_forces(
             values.check("Pa")?;
             forces
         }
+        Action::Pressure(pressure) => {
+            let pressed = PressedFaces::new(mesh, part, pressure, thickness)?;
+            finite_at(mesh, std::slice::from_ref(pressure), pressed.points())?;
+            let values = Values::of(std::slice::from_ref(pressure));
+            pressed.points().for_each(|p| _ = values.at(mesh.point(p)));
+            values.check("Pa")?;
+            pressed.forces(&mesh.points)
+        }
+        Action::Volume(_) => vec![0.0; mesh.points.len()],
         Action::Force(force) => {
             let weights = match part.carrier(mesh)? {
                 Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),
@@ -189,7 +171,11 @@ fn finite_at(mesh: &Mesh, components: &[Component], mut points: impl Iterator<It
         let values = is_new.then(|| components.iter().map(|component| component.at(mesh.point(p))));
         values?.zip(["x", "y", "z"]).find(|(value, _)| !value.is_finite()).map(|(value, axis)| (p, value, axis))
     });
-    fault.map_or(Ok(()), |(p, value, axis)| Err(not_finite(mesh, p, "at", &format!("{value} along {axis}"))))
+    let found = |value: f64, axis: &str| match components {
+        [_] => value.to_string(),
+        _ => format!("{value} along {axis}"),
+    };
+    fault.map_or(Ok(()), |(p, value, axis)| Err(not_finite(mesh, p, "at", &found(value, axis))))
 }
 
 fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {

@@ -3,10 +3,12 @@
 //!
 //! Theory: pages *Stiffness and the reduced space* and *Precision* of the book.
 
+mod applied;
 mod cholesky;
 mod equations;
 mod expectation;
 mod inertia;
+mod inflation;
 mod internal;
 mod known;
 mod lanczos;
@@ -18,6 +20,7 @@ mod newton;
 mod ordering;
 mod stability;
 
+pub use applied::Applied;
 pub(crate) use cholesky::elimination_order;
 pub use equations::Equations;
 pub use expectation::{FactorCost, dense_rate, factor_cost, factor_cost_of};

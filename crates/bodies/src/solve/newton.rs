@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Precision* of the book.
 
+use super::applied::{Applied, Following};
 use super::internal::{Form, Internal, Rest, masked};
 use super::linear::System;
 use crate::error::Result;
@@ -10,6 +11,7 @@ use crate::springs::{dot, norm};
 use faer::sparse::Triplet;
 use serde::{Deserialize, Serialize};
 use springfit_numerics::newton::{falls_enough, shifts};
+use std::borrow::Cow;
 
 /// How a load is applied.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,11 +71,13 @@ pub struct Equilibrium {
     pub shifted: usize,
     /// Whether the equilibrium is accurate only to the rounding of the forces, which exceeds the tolerance.
     pub is_rounded: bool,
+    /// The pressures in a cavity that is filled at the volumes on the way, as `path`, Pa; else empty.
+    pub pressures: Vec<f64>,
 }
 
 /// The largest rounding error of the forces, relative to the applied forces, at which a balance of forces counts as an
 /// equilibrium.
-const ROUGHEST: f64 = 1e-4;
+pub(super) const ROUGHEST: f64 = 1e-4;
 /// The relative accuracy to which prescribed displacements are reached.
 const REACHED: f64 = 1e-14;
 /// The largest number of halvings of a load step.
@@ -81,14 +85,23 @@ const HALVINGS: u32 = 8;
 /// The largest number of halvings of a Newton step.
 const SHORTER: usize = 30;
 
+/// Finds the equilibrium under a share of a load, from displacements that it changes; returns the residuals, and whether the forces balance.
+type Settle<'a> = dyn FnMut(f64, &mut Vec<f64>) -> Result<(Vec<f64>, ForceBalance)> + 'a;
+
 impl Newton {
     /// Applies the load from rest at `points`, `[points × dimension]`: `forces`, N, and the displacements that
     /// `support` prescribes grow together.
     ///
     /// # Errors
     /// The tangent does not fit into memory.
-    pub fn solve(&self, model: &dyn Elastic, points: &[f64], support: &Support, forces: &[f64]) -> Result<Equilibrium> {
-        self.solve_with(model, points, support, forces, None)
+    pub fn solve<'a>(
+        &self,
+        model: &dyn Elastic,
+        points: &[f64],
+        support: &Support,
+        forces: impl Into<Applied<'a>>,
+    ) -> Result<Equilibrium> {
+        self.solve_with(model, points, support, forces.into(), None)
     }
 
     /// Applies the load as [`Newton::solve`] does, with the [pattern](Newton::pattern) of the tangents, if it is known.
@@ -100,25 +113,33 @@ impl Newton {
         model: &dyn Elastic,
         points: &[f64],
         support: &Support,
-        forces: &[f64],
+        forces: Applied,
         pattern: Option<&System>,
     ) -> Result<Equilibrium> {
         let mut statics = Statics::new(*self, Rest { model, points, support }, forces, pattern);
+        let mut found = self.stepped(points.len(), &mut |load, u| statics.settle(load, u))?;
+        found.shifted = statics.shifted;
+        Ok(found)
+    }
+
+    /// Applies a load in steps; `settle` finds the equilibrium under a share of it from displacements nearby, of `dofs` degrees of freedom.
+    pub(super) fn stepped(&self, dofs: usize, settle: &mut Settle) -> Result<Equilibrium> {
         let mut found = Equilibrium {
             ending: Ending::Converged,
-            displacement: vec![0.0; points.len()],
+            displacement: vec![0.0; dofs],
             path: Vec::new(),
             load: 0.0,
             residuals: Vec::new(),
             shifted: 0,
             is_rounded: false,
+            pressures: Vec::new(),
         };
         let first = 1.0 / self.steps.max(1) as f64;
         let mut step = first;
         while found.load < 1.0 {
             let target = if found.load + step > 1.0 - 1e-12 { 1.0 } else { found.load + step };
             let mut u = found.displacement.clone();
-            let (history, balance) = statics.settle(target, &mut u)?;
+            let (history, balance) = settle(target, &mut u)?;
             match balance {
                 ForceBalance::Exact | ForceBalance::Rounded => {
                     found.residuals.push(history);
@@ -137,7 +158,6 @@ impl Newton {
                 }
             }
         }
-        found.shifted = statics.shifted;
         Ok(found)
     }
 
@@ -154,7 +174,7 @@ impl Newton {
         guess: &[f64],
         pattern: Option<&System>,
     ) -> Result<Option<Vec<f64>>> {
-        let mut statics = Statics::new(*self, Rest { model, points, support }, forces, pattern);
+        let mut statics = Statics::new(*self, Rest { model, points, support }, forces.into(), pattern);
         let mut u = guess.to_vec();
         let (_, balance) = statics.settle(1.0, &mut u)?;
         Ok((balance != ForceBalance::None).then_some(u))
@@ -169,6 +189,15 @@ impl Newton {
         System::new(&raised(tangent, support.prescribed.len(), 0.0), support)
     }
 
+    /// The [pattern](Newton::pattern) of a model with this tangent at rest under these forces.
+    ///
+    /// # Errors
+    /// The tangent does not fit into memory.
+    pub fn pattern_under(tangent: &Entries, support: &Support, points: &[f64], forces: Applied) -> Result<System> {
+        let following = forces.stiffness(points, &vec![0.0; points.len()], 1.0);
+        Newton::pattern(&with(tangent, &following), support)
+    }
+
     /// The equations of a tangent in a known [pattern](Newton::pattern).
     ///
     /// # Errors
@@ -178,8 +207,16 @@ impl Newton {
     }
 }
 
+/// A tangent with that of forces that follow.
+pub(super) fn with<'a>(tangent: &'a Entries, following: &Following) -> Cow<'a, Entries> {
+    match following.is_empty() {
+        true => Cow::Borrowed(tangent),
+        false => Cow::Owned(tangent.iter().copied().chain(following.symmetric()).collect()),
+    }
+}
+
 /// A tangent with `shift` on its diagonal, in entries after its own.
-fn raised(tangent: &Entries, size: usize, shift: f64) -> Entries {
+pub(super) fn raised(tangent: &Entries, size: usize, shift: f64) -> Entries {
     let mut raised = tangent.clone();
     raised.extend((0..size).map(|i| Triplet::new(i, i, shift)));
     raised
@@ -187,7 +224,7 @@ fn raised(tangent: &Entries, size: usize, shift: f64) -> Entries {
 
 /// Whether the forces are in equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ForceBalance {
+pub(super) enum ForceBalance {
     /// To the tolerance.
     Exact,
     /// To their rounding error.
@@ -201,7 +238,7 @@ struct Statics<'a> {
     rest: Rest<'a>,
     /// The internal forces at rest, N: springs that pull against each other are not a load.
     tension: Vec<f64>,
-    forces: &'a [f64],
+    forces: Applied<'a>,
     /// The equations of the last tangent; all tangents have the same pattern.
     known: Option<System>,
     /// The number of iterations whose tangent was shifted.
@@ -209,8 +246,8 @@ struct Statics<'a> {
 }
 
 impl<'a> Statics<'a> {
-    fn new(newton: Newton, rest: Rest<'a>, forces: &'a [f64], pattern: Option<&System>) -> Statics<'a> {
-        let mut tension = vec![0.0; forces.len()];
+    fn new(newton: Newton, rest: Rest<'a>, forces: Applied<'a>, pattern: Option<&System>) -> Statics<'a> {
+        let mut tension = vec![0.0; forces.forces.len()];
         if !rest.model.forces(rest.points, &mut tension) {
             tension.fill(0.0);
         }
@@ -231,10 +268,14 @@ impl<'a> Statics<'a> {
             let held = support.prescribed.iter().zip(&*u).filter_map(|(p, u)| p.map(|p| (load * p).abs().max(u.abs())));
             let farthest = held.fold(0.0, f64::max);
             let moved = moves.iter().flatten().all(|m| m.abs() <= REACHED * farthest);
-            let left = |force: &[f64]| -> Vec<f64> { forces.iter().zip(force).map(|(f, g)| load * f - g).collect() };
+            let applied = forces.at(model.points, u);
+            let of = |applied: &[f64], force: &[f64]| -> Vec<f64> {
+                applied.iter().zip(force).map(|(f, g)| load * f - g).collect()
+            };
+            let left = |force: &[f64]| of(&applied, force);
             let acting = |force: &[f64]| {
                 let own: Vec<f64> = force.iter().zip(&*tension).map(|(g, t)| g - t).collect();
-                norm(&own).max(load * norm(forces))
+                norm(&own).max(load * norm(&applied))
             };
             let mut rest = left(&now.force);
             let is_hidden = |now: &Internal, rest: &[f64]| moved && model.free(rest) <= now.rounding;
@@ -254,12 +295,13 @@ impl<'a> Statics<'a> {
             let hidden = is_hidden(&now, &rest);
             let rounded =
                 if hidden && now.rounding <= ROUGHEST * acting { ForceBalance::Rounded } else { ForceBalance::None };
-            let Some((step, shift)) = direction(&now.response.tangent, moves, &rest, known)? else {
+            let following = forces.stiffness(model.points, u, load);
+            let Some((step, shift)) = direction(&now.response.tangent, &following, moves, &rest, known)? else {
                 return Ok((history, rounded));
             };
             *shifted += usize::from(shift);
             // The energy minus the work of the load; it has no meaning while supports move.
-            let potential = |r: &Internal, u: &[f64]| r.response.energy - load * dot(forces, u);
+            let potential = |r: &Internal, to: &[f64]| r.response.energy - load * forces.work(model.points, u, to);
             let (before, slope) = (potential(&now, u), -dot(&masked(&rest, support), &step));
             let mut length = 1.0;
             // If rounding hides the energy, only the full step can improve the result.
@@ -269,7 +311,7 @@ impl<'a> Statics<'a> {
                 let good = internal.as_ref().is_some_and(|r| {
                     let falls = !hidden && falls_enough(before, potential(r, &tried), length * slope);
                     // Near the solution the rounding of the energy hides its decrease.
-                    !moved || falls || model.free(&left(&r.force)) < 0.5 * size
+                    !moved || falls || model.free(&of(&forces.at(model.points, &tried), &r.force)) < 0.5 * size
                 });
                 length /= 2.0;
                 internal.filter(|_| good).map(|r| (tried, r))
@@ -291,13 +333,17 @@ impl<'a> Statics<'a> {
 
 /// The Newton step, with the tangent shifted until it is positive definite; `None` if the shift would exceed the
 /// tangent.
+///
+/// Forces that follow may have a part of their tangent that is not symmetric, where faces end at free points, see [`Following::corrected`].
 fn direction(
     tangent: &Entries,
+    following: &Following,
     moves: Vec<Option<f64>>,
     rest: &[f64],
     known: &mut Option<System>,
 ) -> Result<Option<(Vec<f64>, bool)>> {
     let support = Support { prescribed: moves };
+    let tangent = &*with(tangent, following);
     let diagonal = tangent.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
     for shift in std::iter::once(0.0).chain(shifts()) {
         let shifted = raised(tangent, rest.len(), shift * diagonal);
@@ -308,6 +354,7 @@ fn direction(
         let system = known.insert(system);
         if let Some(factor) = system.cholesky()? {
             let (step, _) = system.solve(&factor, rest);
+            let step = if following.is_empty() { step } else { following.corrected(system, &factor, step) };
             return Ok(step.iter().all(|s| s.is_finite()).then_some((step, shift > 0.0)));
         }
     }

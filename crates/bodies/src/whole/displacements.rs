@@ -194,7 +194,8 @@ impl<'a> Displacements<'a> {
             let u = match near {
                 Some(u) => u,
                 None => {
-                    let found = newton.solve_with(network, points, &target.support, &target.forces, Some(pattern))?;
+                    let found =
+                        newton.solve_with(network, points, &target.support, (&target.forces).into(), Some(pattern))?;
                     if found.load < 1.0 {
                         return Ok(None);
                     }

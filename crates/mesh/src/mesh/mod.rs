@@ -17,6 +17,7 @@ mod disc;
 mod disjoint;
 mod duplicates;
 mod embedding;
+mod facets;
 mod field;
 mod fill;
 mod folds;

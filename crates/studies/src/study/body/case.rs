@@ -2,7 +2,8 @@
 
 use crate::analysis::metrics::{DisplacementError, displacement_error, product};
 use crate::mesh::Field;
-use crate::model::Support;
+use crate::model::{Cavity, PressedFaces, Support};
+use crate::solve::Applied;
 use crate::study::outcome::{Measured, Standard};
 
 /// A load case on a mesh: its support and nodal forces.
@@ -11,9 +12,13 @@ pub struct Case {
     pub name: String,
     /// What is held or moved.
     pub support: Support,
-    /// `[points · dimension]`, N.
+    /// `[points · dimension]`, N; those of pressures with the points at rest.
     pub forces: Vec<f64>,
-    /// Whether the load prescribes displacements; its work is then that of the forces that hold them.
+    /// The faces of the pressures among them, which follow these at large deformation.
+    pub pressed: Option<PressedFaces>,
+    /// The cavity that is filled to a given volume; its pressure is found, and is none of the forces above.
+    pub cavity: Option<Cavity>,
+    /// Whether the load prescribes displacements or a volume; its work is then that of the forces that hold them.
     pub is_prescribed: bool,
     /// Displacements that were measured under the load, or are those of a finer body, `[points · dimension]`, m, if there are any.
     pub measured: Option<Field>,
@@ -36,6 +41,11 @@ pub struct FinerSolution {
 }
 
 impl Case {
+    /// What acts, at large deformation.
+    pub fn applied(&self) -> Applied<'_> {
+        Applied { forces: &self.forces, pressed: self.pressed.as_ref() }
+    }
+
     /// The work of the final forces along the final displacements, J, which is twice the energy of a linear model:
     /// `f·u`, or `gᵀu` under prescribed displacements, which `held` computes. `None` if it is not finite.
     pub fn work(&self, u: &[f64], held: impl FnOnce() -> Option<f64>) -> Option<f64> {

@@ -4,7 +4,7 @@ use super::case::Case;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::{Field, Mesh, Selection};
-use crate::model::{Action, Component, Support, nodal_forces, unheld_bodies};
+use crate::model::{Action, Cavity, Component, PressedFaces, Support, nodal_forces, unheld_bodies};
 use crate::study::scene::{LoadKind, MeasuredEntry, Part, Scene};
 use std::path::Path;
 
@@ -67,12 +67,12 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
     let masses = material.density().map_or(thicknesses.clone(), |density| density.product(&thicknesses));
     for (i, load) in scene.loads().iter().enumerate() {
         let at = |e| scene.at(&format!("load[{i}]"), e);
-        let (forces, support) = match load.single() {
+        let Acting { forces, support, pressed, cavity } = match load.single() {
             Some((part, action)) => {
                 let weights = if load.is_acceleration() { &masses } else { &thicknesses };
                 acting(mesh, weights, &fixed, (load.key(), part, action)).map_err(at)?
             }
-            None => (Vec::new(), fixed.clone()),
+            None => Acting { forces: Vec::new(), support: fixed.clone(), pressed: None, cavity: None },
         };
         if let Some(body) = unheld_bodies(mesh, &support).first() {
             let expected = "supports that hold every body";
@@ -84,7 +84,11 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
             );
             return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(scene.path()));
         }
-        let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_))));
+        let is_prescribed = matches!(load.single(), Some((_, Action::Displacement(_) | Action::Volume(_))));
+        if cavity.is_some() && scene.law().is_none() {
+            let expected = "a material with a law: without one the pressure is proportional to the change of volume";
+            return Err(at(Error::expected("volume", expected, "none")));
+        }
         let (is_measured, noise) = (load.measured.is_some(), load.measured.as_ref().and_then(|entry| entry.sigma));
         let (measured, finer) = (None, None);
         if let Some(sigma) = noise.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
@@ -92,19 +96,24 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
             return Err(at(Error::expected("sigma", expected, sigma).under("measured")));
         }
         let name = load.name.clone();
-        cases.push(Case { name, support, forces, is_prescribed, measured, is_measured, finer, noise });
+        cases.push(Case { name, support, forces, pressed, cavity, is_prescribed, measured, is_measured, finer, noise });
     }
     for (i, load) in scene.loads().iter().enumerate() {
         if let LoadKind::Sum(parts) = &load.kind {
             let sum = |dof: usize| parts.iter().map(|&part| cases[part].forces[dof]).sum();
             let forces: Vec<f64> = (0..mesh.points.len()).map(sum).collect();
             let largest = |forces: &[f64]| forces.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
-            let parts = parts.iter().map(|&part| largest(&cases[part].forces)).fold(0.0, f64::max);
+            let most = parts.iter().map(|&part| largest(&cases[part].forces)).fold(0.0, f64::max);
             // What is left is a rounding error.
-            if !(largest(&forces) > CANCELLED * parts) {
+            if !(largest(&forces) > CANCELLED * most) {
                 return Err(scene.at(&format!("load[{i}]"), Error::at("sum", "has loads that cancel each other")));
             }
             cases[i].forces = forces;
+            let pressed = parts.iter().filter_map(|&part| cases[part].pressed.clone());
+            cases[i].pressed = pressed.reduce(|mut all, pressed| {
+                all.append(pressed);
+                all
+            });
         }
     }
     Ok((fixed, cases))
@@ -116,17 +125,28 @@ const ROUNDING: f64 = 1e-12;
 /// Loads cancel each other if their sum is smaller than this share of the largest of them.
 const CANCELLED: f64 = 1e-12;
 
-/// The nodal forces of an action, which has this key, and the supports under it. `weights` is what makes a content of a cell a volume or,
+/// What an action does to a body.
+struct Acting {
+    forces: Vec<f64>,
+    support: Support,
+    /// The faces on which it is a pressure.
+    pressed: Option<PressedFaces>,
+    /// The cavity that it fills.
+    cavity: Option<Cavity>,
+}
+
+/// What the action with this key does. `weights` is what makes a content of a cell a volume or,
 /// for accelerations, a mass.
 fn acting(
     mesh: &Mesh,
     weights: &CellMap<f64>,
     fixed: &Support,
     (key, part, action): (&str, &Part, &Action),
-) -> Result<(Vec<f64>, Support)> {
+) -> Result<Acting> {
     let d = mesh.dimension;
     let entries = match action {
         Action::Traction(v) | Action::Body(v) => v.len(),
+        Action::Pressure(_) | Action::Volume(_) => d,
         Action::Force(v) => v.len(),
         Action::Displacement(v) => v.len(),
     };
@@ -137,10 +157,12 @@ fn acting(
     let of_z = match action {
         Action::Traction(v) | Action::Body(v) => v.iter().position(uses_z),
         Action::Displacement(v) => v.iter().position(|c| c.as_ref().is_some_and(uses_z)),
-        Action::Force(_) => None,
+        Action::Pressure(p) => uses_z(p).then_some(0),
+        Action::Force(_) | Action::Volume(_) => None,
     };
     if let (Some(i), 2) = (of_z, d) {
-        return Err(Error::expected(format!("{key}[{i}]"), "an expression of x and y in a plane mesh", "z"));
+        let key = if matches!(action, Action::Pressure(_)) { key.to_string() } else { format!("{key}[{i}]") };
+        return Err(Error::expected(key, "an expression of x and y in a plane mesh", "z"));
     }
     let selection: Selection = part.selection(d)?;
     let points = selection.points(mesh)?;
@@ -150,6 +172,24 @@ fn acting(
         false => Error::new(e.problem()),
     };
     let forces = nodal_forces(mesh, &selection, action, weights).map_err(of_load)?;
+    let pressed = match action {
+        Action::Pressure(pressure) => Some(PressedFaces::new(mesh, &selection, pressure, weights)?),
+        _ => None,
+    };
+    let cavity = match action {
+        Action::Volume(volume) => {
+            let cavity = Cavity::new(mesh, &selection, *volume, weights).map_err(|e| match points.is_empty() {
+                true => part.without_members(e.problem(), mesh),
+                false => e,
+            })?;
+            let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !fixed.is_fixed(dof));
+            if !cavity.sides.points().any(moves) {
+                return Err(Error::at(key, "acts on nothing that can move"));
+            }
+            Some(cavity)
+        }
+        _ => None,
+    };
     let mut support = fixed.clone();
     if let Action::Displacement(given) = action {
         let moved = |p: usize| given.iter().map(move |u| Some(u.as_ref()?.at(mesh.point(p))));
@@ -174,5 +214,5 @@ fn acting(
     if forces.iter().any(|force| *force != 0.0) && !forces.iter().enumerate().any(acts) {
         return Err(Error::at(key, "acts on nothing that can move"));
     }
-    Ok((forces, support))
+    Ok(Acting { forces, support, pressed, cavity })
 }

@@ -192,6 +192,8 @@ impl Finer for FineBody {
             name: load.name,
             support: support.clone(),
             forces: load.forces,
+            pressed: None,
+            cavity: None,
             is_prescribed: false,
             measured: None,
             is_measured: false,

@@ -54,7 +54,8 @@ impl Gauged {
         let force = |(case, load): (&Case, &LoadCase)| {
             let along = |k: usize| case.forces.iter().skip(k).step_by(d).sum::<f64>();
             let largest = (0..d).map(|k| along(k).abs()).fold(0.0, f64::max);
-            let pulls = matches!(load.single(), Some((_, Action::Traction(_) | Action::Force(_))));
+            let pulls =
+                matches!(load.single(), Some((_, Action::Traction(_) | Action::Pressure(_) | Action::Force(_))));
             Some(along(gauge.axis)).filter(|f| pulls && aside(case) && largest > 0.0 && f.abs() > 1e-6 * largest)
         };
         Ok(Gauged { forces: cases.iter().zip(scene.loads()).map(force).collect(), ..gauged })

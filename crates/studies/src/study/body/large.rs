@@ -60,8 +60,7 @@ impl LargeBody {
             progress(Event::stage("finite elements", done, cases.len()));
             let start = Instant::now();
             let model = Body { mesh, laws: &body.laws };
-            let pattern = pattern(&model, mesh, case)?;
-            let found = newton.solve_with(&model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
+            let found = reach(&newton, &model, mesh, case)?;
             body.seconds.push(start.elapsed().as_secs_f64());
             body.followed.push(Followed::of(&found, &model));
             body.works.push(work(case, &model, &mesh.points, &found.displacement));
@@ -104,8 +103,7 @@ impl LargeBody {
         for (i, case) in cases.iter().enumerate() {
             let start = Instant::now();
             let model: &dyn Elastic = network;
-            let pattern = pattern(model, mesh, case)?;
-            let found = self.newton.solve_with(model, &mesh.points, &case.support, &case.forces, pattern.as_ref())?;
+            let found = reach(&self.newton, model, mesh, case)?;
             let seconds_lem = start.elapsed().as_secs_f64();
             let followed = Followed::of(&found, &Body { mesh, laws: &self.laws });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
@@ -131,17 +129,36 @@ impl LargeBody {
     }
 }
 
+/// The equilibrium of a model under a load, or the last one on the way to it.
+fn reach(newton: &Newton, model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Equilibrium> {
+    if let Some(cavity) = &case.cavity {
+        return newton.fill(model, &mesh.points, &case.support, cavity);
+    }
+    let pattern = pattern(model, mesh, case)?;
+    newton.solve_with(model, &mesh.points, &case.support, case.applied(), pattern.as_ref())
+}
+
 /// The equations of all steps of a load, without values; `None` if the model has no tangent at rest.
 fn pattern(model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Option<System>> {
     let Some(rest) = model.respond(&mesh.points) else { return Ok(None) };
-    Ok(Some(Newton::pattern(&rest.tangent, &case.support)?.placed(&mesh.points, mesh.dimension)))
+    let pattern = Newton::pattern_under(&rest.tangent, &case.support, &mesh.points, case.applied())?;
+    Ok(Some(pattern.placed(&mesh.points, mesh.dimension)))
 }
 
 fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {
+    if case.pressed.is_some() {
+        return Some(product(&case.applied().at(points, u), u)).filter(|work| work.is_finite());
+    }
     case.work(u, || {
         let mut force = vec![0.0; u.len()];
         model.forces(&displaced(points, u), &mut force).then(|| product(&force, u))
     })
+}
+
+/// The largest pressure, if another one came after it.
+fn passed(pressures: &[f64]) -> Option<f64> {
+    let largest = pressures.iter().copied().reduce(f64::max)?;
+    pressures.last().is_some_and(|last| *last < largest).then_some(largest)
 }
 
 impl Followed {
@@ -155,6 +172,8 @@ impl Followed {
             shifted: found.shifted,
             is_rounded: found.is_rounded,
             inverted: body.inverted(&displaced(&body.mesh.points, &found.displacement)),
+            pressure: found.pressures.last().copied(),
+            pressure_passed: passed(&found.pressures),
         }
     }
 }

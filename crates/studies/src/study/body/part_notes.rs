@@ -41,21 +41,25 @@ fn several(name: &str, group: &Group, mesh: &Mesh) -> Option<String> {
             other => format!("the points of its {other}s"),
         };
         format!(
-            "the name \"{name}\" stands for {counts}, which are different parts of the body: supports, displacements and forces take {taken}, tractions \
+            "the name \"{name}\" stands for {counts}, which are different parts of the body: supports, displacements and forces take {taken}, tractions and pressures \
              its sides, materials and body forces its cells"
         )
     })
 }
 
-/// That a traction acts on a group which lists no sides.
+/// That a traction or a pressure acts on a group which lists no sides.
 fn of_tractions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let on_points = scene.loads().iter().filter_map(|load| {
-        let (Part::Group(name), Action::Traction(_)) = load.single()? else { return None };
+        let (Part::Group(name), Action::Traction(_) | Action::Pressure(_) | Action::Volume(_)) = load.single()? else { return None };
+        if load.key() == "pressure" && mesh.cell_dimension() < mesh.dimension {
+            return None;
+        }
         let group = mesh.groups.get(name).filter(|group| group.sides.is_empty())?;
         let sides = Selection::Group(name.clone()).sides(mesh).ok()?.len();
         let what = if group.is_of_points() { "points" } else { "cells" };
         Some(format!(
-            "the group \"{name}\" lists {what} and no sides: the traction {} acts on the {sides} outer sides all of whose points it has",
+            "the group \"{name}\" lists {what} and no sides: the {} {} acts on the {sides} outer sides all of whose points it has",
+            load.key(),
             load.name
         ))
     });
@@ -67,7 +71,12 @@ fn of_conditions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let supports = scene.supports().iter().enumerate().map(|(i, (part, _))| (format!("fix[{i}]"), part));
     let loads = scene.loads().iter().filter_map(|load| {
         let (part, action) = load.single()?;
-        (!matches!(action, Action::Body(_))).then(|| (format!("the load {}", load.name), part))
+        let is_of_cells = match action {
+            Action::Body(_) => true,
+            Action::Pressure(_) => mesh.cell_dimension() < mesh.dimension,
+            Action::Traction(_) | Action::Force(_) | Action::Displacement(_) | Action::Volume(_) => false,
+        };
+        (!is_of_cells).then(|| (format!("the load {}", load.name), part))
     });
     let all = supports.chain(loads).filter_map(|(what, part)| {
         let (Part::Where(text), Selection::Where(condition)) = (part, part.selection(mesh.dimension).ok()?) else {

@@ -30,8 +30,11 @@ impl Quantities {
         let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
             let (unit, part) = match load.single() {
-                Some((_, Action::Displacement(_))) => return Ok(None),
-                Some((part, Action::Traction(_))) => (Action::traction(&along_x), part),
+                Some((_, Action::Displacement(_) | Action::Volume(_))) => return Ok(None),
+                Some((part, Action::Pressure(_))) if mesh.cell_dimension() < mesh.dimension => {
+                    (Action::body(&along_x), part)
+                }
+                Some((part, Action::Traction(_) | Action::Pressure(_))) => (Action::traction(&along_x), part),
                 Some((part, Action::Force(_))) => (Action::Force(along_x), part),
                 Some((part, Action::Body(_))) => (Action::body(&along_x), part),
                 // Of several parts the mean is that of the body.

@@ -141,6 +141,12 @@ pub struct Followed {
     /// This number of elements is turned inside out at the end, at a quadrature point or more.
     #[serde(rename = "inverted_elements")]
     pub inverted: usize,
+    /// The cavity that is filled has this pressure in Pa; the key is absent under other loads.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<f64>,
+    /// The pressure had this largest value on the way, in Pa, where the cavity was filled beyond it; else the key is absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_passed: Option<f64>,
 }
 
 impl BodyLoad {

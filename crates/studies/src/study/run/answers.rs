@@ -4,8 +4,9 @@ use super::posed::Posed;
 use super::solved::{Solved, solve_linear};
 use crate::error::Result;
 use crate::material::EnergyMap;
+use crate::mesh::Mesh;
 use crate::model::Deformation;
-use crate::study::body::{LargeBody, LinearBody, load_notes};
+use crate::study::body::{Case, LargeBody, LinearBody, load_notes};
 use crate::study::masses::PointMasses;
 use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
 use crate::study::progress::{Event, Progress};
@@ -62,7 +63,7 @@ impl Answers {
         let loads = answers.map(|(i, ((case, (fem, work)), followed))| BodyLoad {
             name: case.name.clone(),
             support: case.support.clone(),
-            forces: case.forces.clone(),
+            forces: forces(case, followed.as_ref(), &mesh),
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
             measured: case.measured(&fem, work, mesh.dimension),
             deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),
@@ -92,6 +93,15 @@ impl Answers {
             frequencies: Vec::new(),
         };
         (outcome, plan, laws)
+    }
+}
+
+/// The nodal forces of a load; those of a cavity that is filled are those of its pressure with the points at rest.
+fn forces(case: &Case, followed: Option<&Followed>, mesh: &Mesh) -> Vec<f64> {
+    let pressure = followed.and_then(|followed| followed.pressure);
+    match case.cavity.as_ref().zip(pressure) {
+        Some((cavity, pressure)) => cavity.sides.forces(&mesh.points).iter().map(|f| pressure * f).collect(),
+        None => case.forces.clone(),
     }
 }
 

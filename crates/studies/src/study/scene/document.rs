@@ -245,7 +245,8 @@ impl Scene {
     fn choose(&self, mesh: &mut Mesh) {
         let loaded = self.loads.iter().filter_map(|load| {
             let (part, action) = load.single()?;
-            Some((part.clone(), matches!(action, Action::Body(_))))
+            // A pressure on a surface in space acts on cells.
+            Some((part.clone(), matches!(action, Action::Body(_) | Action::Pressure(_))))
         });
         let held = self.supports.iter().map(|(part, _)| (part.clone(), false));
         let of_material = self.material_parts().into_iter().map(|(_, part)| (part, true));
@@ -265,7 +266,8 @@ impl Scene {
         let varies = |action: &Action| match action {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
             Action::Displacement(v) => v.iter().any(|c| matches!(c, Some(Component::Varying(_)))),
-            Action::Force(_) => false,
+            Action::Pressure(component) => matches!(component, Component::Varying(_)),
+            Action::Force(_) | Action::Volume(_) => false,
         };
         let of_place = |entry: &MaterialEntry| {
             entry.condition.is_some() || entry.axes.is_some() || entry.fibre.is_some() || entry.varies()

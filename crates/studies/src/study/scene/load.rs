@@ -1,7 +1,7 @@
 //! A load of a scene.
 
 use super::part::Part;
-use super::value::{self, PRESCRIBED, PrescribedComponent, Varying};
+use super::value::{self, PRESCRIBED, PRESSURE, PrescribedComponent, Varying, VaryingPressure};
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::named::unknown;
@@ -47,6 +47,8 @@ impl LoadCase {
             LoadKind::Single { is_acceleration: true, .. } => "gravity",
             LoadKind::Single { action, .. } => match action {
                 Action::Traction(_) => "traction",
+                Action::Pressure(_) => "pressure",
+                Action::Volume(_) => "volume",
                 Action::Force(_) => "force",
                 Action::Body(_) => "body",
                 Action::Displacement(_) => "displacement",
@@ -82,8 +84,17 @@ pub struct LoadEntry {
     #[serde(rename = "where")]
     pub condition: Option<String>,
     /// A traction in Pa acts on the sides of the part: for each direction a number or an expression of x, y, z in m, such as `"-1e5*y"`.
-    /// One of `traction`, `force`, `body`, `gravity`, `displacement` and `sum` is required.
+    /// One of `traction`, `pressure`, `volume`, `force`, `body`, `gravity`, `displacement` and `sum` is required.
     pub traction: Option<Vec<Varying>>,
+    /// A pressure acts on the sides of the part against the normal that points out of the body: a number in Pa, a text with a unit such as
+    /// `"1 kPa"`, or an expression of x, y, z in m. Of a surface in space it acts on the cells, against the outward normal of a closed surface and
+    /// else against the one of most cells. With a law it follows the sides where they move and turn.
+    pub pressure: Option<VaryingPressure>,
+    /// The sides of the part, which close a cavity, are filled until they enclose this volume: a number in m³ or a text with a unit such as
+    /// `"30 ml"`; of a plane body the area times the thickness. The pressure is found. The material has a law.
+    #[serde(default, deserialize_with = "value::optional_volume")]
+    #[schemars(schema_with = "value::volume_schema")]
+    pub volume: Option<f64>,
     /// A force in N acts on the part in all. It is shared over sides, cells or points of the part.
     pub force: Option<Vec<f64>>,
     /// A body force in N/m³ acts on the cells: for each direction a number or an expression of x, y, z in m.
@@ -148,8 +159,9 @@ pub fn read_loads(entries: Vec<LoadEntry>) -> Result<Vec<LoadCase>> {
 }
 
 fn summed(names: &[String], loads: &[LoadCase]) -> Result<LoadKind> {
-    let is_force =
-        |load: &&LoadCase| load.single().is_some_and(|(_, action)| !matches!(action, Action::Displacement(_)));
+    let is_force = |load: &&LoadCase| {
+        load.single().is_some_and(|(_, action)| !matches!(action, Action::Displacement(_) | Action::Volume(_)))
+    };
     let able = || loads.iter().filter(is_force).map(|load| load.name.as_str());
     if names.len() < 2 || (1..names.len()).any(|i| names[..i].contains(&names[i])) {
         return Err(Error::expected("sum", "two loads or more, each once", format!("{names:?}")));
@@ -212,6 +224,19 @@ impl LoadEntry {
         if let Some(v) = self.traction {
             actions.push(Action::Traction(varying("traction", v, "Pa")?));
         }
+        if let Some(VaryingPressure(v)) = self.pressure {
+            sized("pressure", &[&v], "Pa")?;
+            let is_word = matches!(&v, Varying::Text(text) if text.chars().all(|c| !c.is_ascii_digit()));
+            let pressure = component(v.clone()).map_err(|e| match v {
+                // A text without a number is no expression that someone meant.
+                Varying::Text(text) if is_word => Error::expected("pressure", PRESSURE, format!("\"{text}\"")),
+                Varying::Text(_) | Varying::Number(_) => e.under("pressure"),
+            })?;
+            actions.push(Action::Pressure(pressure));
+        }
+        if let Some(v) = self.volume {
+            actions.push(Action::Volume(range::positive("volume", v, "m³")?));
+        }
         if let Some(v) = self.force {
             range::largest("force", v.iter().copied(), "N")?;
             actions.push(Action::Force(v));
@@ -234,7 +259,7 @@ impl LoadEntry {
             return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured });
         }
         if actions.len() != 1 {
-            let expected = "one of \"traction\", \"force\", \"body\", \"gravity\", \"displacement\", or \"sum\"";
+            let expected = "one of \"traction\", \"pressure\", \"volume\", \"force\", \"body\", \"gravity\", \"displacement\", or \"sum\"";
             let hint = if actions.len() > 1 {
                 "; loads that act together are a load with sum = [\"…\", \"…\"]"
             } else {

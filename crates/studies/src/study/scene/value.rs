@@ -14,12 +14,19 @@ pub enum Varying {
     Text(String),
 }
 
+/// A pressure: a number in Pa, a text with a unit, or an expression in x, y, z in m.
+#[derive(Debug, Clone)]
+pub struct VaryingPressure(pub Varying);
+
 /// One direction of a prescribed displacement: a number in m, an expression in x, y, z in m, or none if it is `"free"`.
 #[derive(Debug, Clone)]
 pub struct PrescribedComponent(pub Option<Varying>);
 
 /// What a direction of a prescribed displacement is.
 pub const PRESCRIBED: &str = "a finite number of metres, an expression of x, y, z, or \"free\"";
+
+/// What a pressure is.
+pub const PRESSURE: &str = "a pressure such as 1000 or \"1 kPa\", or an expression of x, y, z in Pa such as \"1e4*z\"";
 
 /// A visitor of values that are numbers or texts.
 struct NumberOrText<T> {
@@ -60,6 +67,19 @@ impl<'de> Deserialize<'de> for PrescribedComponent {
     }
 }
 
+impl<'de> Deserialize<'de> for VaryingPressure {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<VaryingPressure, D::Error> {
+        deserializer.deserialize_any(NumberOrText {
+            expected: PRESSURE,
+            number: |v| Some(VaryingPressure(Varying::Number(v))),
+            text: |v| {
+                let is_quantity = Quantity::Pressure.parse(v);
+                Ok(VaryingPressure(is_quantity.map_or_else(|_| Varying::Text(v.into()), Varying::Number)))
+            },
+        })
+    }
+}
+
 impl<'de> Deserialize<'de> for Varying {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Varying, D::Error> {
         deserializer.deserialize_any(NumberOrText {
@@ -75,6 +95,7 @@ pub fn name_and_unit(quantity: Quantity) -> (&'static str, &'static str) {
     match quantity {
         Quantity::Length | Quantity::MeshUnit => ("length", "m"),
         Quantity::Area => ("area", "m²"),
+        Quantity::Volume => ("volume", "m³"),
         Quantity::Pressure => ("pressure", "Pa"),
         Quantity::Density => ("density", "kg/m³"),
         Quantity::Time => ("time", "s"),
@@ -104,6 +125,7 @@ macro_rules! schemas {
 
 schemas! {
     Varying: "number or expression", "A number, or an expression of x, y, z (m) such as \"1e5*x\".";
+    VaryingPressure: "pressure or expression", "A number of Pa, a text with a unit such as \"1 kPa\", or an expression of x, y, z (m) in Pa such as \"1e4*z\".";
     PrescribedComponent: "number, expression or `\"free\"`", "A number of metres, an expression of x, y, z (m) such as \"-0.1*y\", or \"free\".";
 }
 
@@ -157,6 +179,7 @@ macro_rules! quantities {
 quantities! {
     length, optional_length, length_schema: Length,
     area, optional_area, area_schema: Area,
+    volume, optional_volume, volume_schema: Volume,
     time, optional_time, time_schema: Time,
     mesh_unit, optional_mesh_unit, mesh_unit_schema: MeshUnit,
 }

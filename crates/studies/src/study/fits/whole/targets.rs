@@ -4,7 +4,7 @@ use super::body::WholeBody;
 use super::finer::Answers;
 use super::outcome::SupportPart;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::model::{Support, unheld_bodies};
 use crate::named::unknown;
@@ -171,6 +171,15 @@ impl WholeBody<'_> {
         for name in &named.names {
             let mut cases = self.cases.iter().zip(&self.displacements);
             let Some((case, displacement)) = cases.find(|(case, _)| case.name == *name) else { continue };
+            if (case.pressed.is_some() || case.cavity.is_some()) && self.newton.is_some() {
+                let expected = "loads whose forces keep their directions, of a material with a law";
+                return Err(Error::expected(
+                    key,
+                    expected,
+                    format!("the pressure of \"{}\", which follows the body", case.name),
+                )
+                .of_kind(ErrorKind::Unsupported));
+            }
             let target = |u| Target::new(case.name.clone(), case.support.clone(), case.forces.clone(), u);
             targets.push(match (&case.measured, displacement) {
                 (Some(field), _) => {
