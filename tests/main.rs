@@ -16,6 +16,7 @@ mod crash;
 mod curved_cells;
 mod derive;
 mod digits;
+mod dimensions;
 mod domains;
 mod door;
 mod dynamics;

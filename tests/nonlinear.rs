@@ -60,6 +60,63 @@ fn element_forces_and_tangents_are_those_of_differences() {
     }
 }
 
+/// Cells of surfaces and curves in space: forces and tangents against differences, the same energy wherever the cell is turned, and that of the plane.
+#[test]
+fn membranes_and_rods_in_space_have_the_forces_of_their_energy() {
+    let mut tested = 0;
+    for element in elements().iter().filter(|element| element.dimension() < 3 && element.nodes() <= 8) {
+        let d = element.dimension();
+        let mut random = Random(4);
+        let local = distorted(element, &mut random);
+        let mut geometry = Geometry::new(&element.tabulation);
+        geometry.set(&element.tabulation, &local).unwrap();
+        let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
+        for space in d + 1..=3 {
+            for name in ["neo-hookean", "corotational", "mooney-rivlin", "st-venant-kirchhoff"] {
+                let energy = Energy::load(name, material).unwrap();
+                let at = |x: &[f64]| geometry.respond(&energy, material.state(), x).unwrap();
+                let raised = |x: &[f64], turn: &Matrix3<f64>| -> Vec<f64> {
+                    let place = |x: &[f64]| turn * nalgebra::Vector3::new(x[0], x.get(1).copied().unwrap_or(0.0), 0.0);
+                    x.chunks_exact(d).flat_map(|x| place(x).as_slice()[..space].to_vec()).collect()
+                };
+                let (s, c) = 0.7f64.sin_cos();
+                let turn = match space {
+                    2 => Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0),
+                    _ => *nalgebra::Rotation3::from_euler_angles(0.4, -1.1, 0.7).matrix(),
+                };
+                let pulled: Vec<f64> = local.iter().map(|x| 1.15 * x + 0.05 * random.next()).collect();
+                let flat = at(&pulled);
+                let turned = at(&raised(&pulled, &turn));
+                assert!((flat.energy - turned.energy).abs() < 1e-13, "{} {name}: {}", element.name, flat.energy);
+                assert!(geometry.bend(&raised(&local, &turn)) < 1e-12, "{}", element.name);
+                // Out of its plane as well.
+                let x: Vec<f64> = raised(&pulled, &turn).iter().map(|x| x + 0.03 * random.next()).collect();
+                let now = at(&x);
+                let size = now.tangent.norm();
+                let mut forces = vec![0.0; x.len()];
+                assert!(geometry.forces(&energy, material.state(), &x, f64::NEG_INFINITY, &mut forces));
+                for i in 0..x.len() {
+                    assert!((forces[i] - now.force[i]).abs() < 1e-12 * size, "{} {name}", element.name);
+                    let moved = |h: f64| {
+                        let mut x = x.clone();
+                        x[i] += h;
+                        at(&x)
+                    };
+                    let (ahead, behind) = (moved(1e-6), moved(-1e-6));
+                    let slope = (ahead.energy - behind.energy) / 2e-6;
+                    assert!((slope - now.force[i]).abs() < 1e-7 * size, "{} {name} in {space}", element.name);
+                    for j in 0..x.len() {
+                        let (slope, own) = ((ahead.force[j] - behind.force[j]) / 2e-6, now.tangent[(j, i)]);
+                        assert!((slope - own).abs() < 1e-7 * size, "{} {name} in {space}: {slope} {own}", element.name);
+                    }
+                }
+                tested += 1;
+            }
+        }
+    }
+    assert!(tested >= 24, "{tested}");
+}
+
 /// At rest the tangent is the linear stiffness, in every state.
 #[test]
 fn the_tangent_at_rest_is_the_linear_stiffness() {

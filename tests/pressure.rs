@@ -1,17 +1,17 @@
 //! Pressures on faces, at rest and on faces that move; and cavities that are filled to a given volume.
 
+use crate::shapes::bodies::{grid, mapped, patch, sphere};
 use crate::shapes::{Random, distorted, elements};
 use springfit::element::Element;
 use springfit::material::{CellMap, Energy, Material, State};
-use springfit::mesh::{BoxMesh, CellBlock, CellIndex, Mesh, Selection};
+use springfit::mesh::{CellBlock, CellIndex, Mesh, Selection};
 use springfit::model::{
     Action, Body, Cavity, Component, Elastic, PressedFaces, Support, displaced, finite_elements, nodal_forces,
 };
 use springfit::solve::{Applied, Ending, Newton, System};
 use springfit::study::{Scene, run};
 use springfit::symbolic::Scope;
-use std::collections::HashMap;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -26,11 +26,6 @@ fn at(condition: &str) -> Selection {
 
 fn pressed(mesh: &Mesh, part: &Selection, pressure: f64) -> PressedFaces {
     PressedFaces::new(mesh, part, &Component::Constant(pressure), &CellMap::Uniform(1.0)).unwrap()
-}
-
-fn grid(name: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    let element = Arc::new(Element::load(name).unwrap());
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; cells.len()] }.build().unwrap()
 }
 
 /// The sum of the forces and of their moments, and the largest force times the size of the body.
@@ -120,12 +115,6 @@ fn the_tangent_of_a_pressure_is_that_of_differences() {
     }
 }
 
-/// A body whose points are moved by a map.
-fn mapped(mut mesh: Mesh, map: impl Fn(&[f64]) -> Vec<f64>) -> Mesh {
-    mesh.points = mesh.points.chunks_exact(mesh.dimension).flat_map(map).collect();
-    mesh
-}
-
 fn solved(mesh: &Mesh, material: Material, support: &Support, forces: &[f64]) -> Vec<f64> {
     let system = System::new(&finite_elements(mesh, material.moduli()), support).unwrap();
     let factor = system.cholesky().unwrap().expect("the body is held");
@@ -211,42 +200,6 @@ fn a_thick_sphere_is_that_of_lame() {
         });
         assert_converges(name, errors);
     }
-}
-
-/// The unit cube onto the sixth of a thick sphere around the z axis.
-fn patch(inner: f64, outer: f64) -> impl Fn(&[f64]) -> Vec<f64> {
-    move |x| {
-        let (a, b) = ((FRAC_PI_4 * (2.0 * x[0] - 1.0)).tan(), (FRAC_PI_4 * (2.0 * x[1] - 1.0)).tan());
-        let r = (inner + (outer - inner) * x[2]) / (a * a + b * b + 1.0).sqrt();
-        vec![r * a, r * b, r]
-    }
-}
-
-/// A thick sphere of six patches of hexahedra.
-fn sphere(name: &str, inner: f64, outer: f64, [across, through]: [usize; 2]) -> Mesh {
-    let one = mapped(grid(name, &[1.0, 1.0, 1.0], &[across, across, through]), patch(inner, outer));
-    // Proper rotations, by rows, that take the z axis to each of the six half axes.
-    let turns: [[[f64; 3]; 3]; 6] = [
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]],
-        [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
-        [[0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 0.0, 0.0]],
-    ];
-    let (mut points, mut connectivity, mut known) = (Vec::new(), Vec::new(), HashMap::new());
-    for turn in turns {
-        for &p in &one.blocks[0].connectivity {
-            let x = one.point(p);
-            let x = turn.map(|row| row.iter().zip(x).map(|(t, x)| t * x).sum::<f64>());
-            let place = *known.entry(x.map(|x| (x * 1e8).round() as i64)).or_insert_with(|| {
-                points.extend(x);
-                points.len() / 3 - 1
-            });
-            connectivity.push(place);
-        }
-    }
-    Mesh::of_cells(3, points, vec![CellBlock { element: one.blocks[0].element.clone(), connectivity }])
 }
 
 /// Holds six displacements that are zero by symmetry, at points on the axes.
@@ -425,6 +378,46 @@ fn a_ball_is_filled_through_its_maximum() {
             let near = of_incompressible_ball(mu, radii, stretch);
             assert!((of_ball(mu, lambda, radii, stretch) / near - 1.0).abs() < 0.06, "{near}");
         }
+    }
+}
+
+/// A thin balloon, a closed surface of triangles in space, under a pressure inside that follows it: `p = 2 μ h/R (1/l − 1/l⁷)` of an incompressible
+/// one at the stretch l (Green and Adkins 1960).
+#[test]
+fn a_thin_balloon_is_blown_up() {
+    let solid = sphere("hex8", 0.5, 1.0, [8, 1]);
+    let mut connectivity = Vec::new();
+    for side in solid.surface_faces() {
+        if side.iter().all(|&p| solid.point(p).iter().map(|x| x * x).sum::<f64>() > 0.9) {
+            connectivity.extend([side[0], side[1], side[2], side[0], side[2], side[3]]);
+        }
+    }
+    let used: Vec<usize> = (0..solid.point_count()).filter(|p| connectivity.contains(p)).collect();
+    connectivity.iter_mut().for_each(|p| *p = used.binary_search(p).unwrap());
+    let points = used.iter().flat_map(|&p| solid.point(p).to_vec()).collect();
+    let element = Arc::new(Element::load("tri3").unwrap().in_space(3));
+    let mesh = Mesh::of_cells(3, points, vec![CellBlock { element, connectivity }]);
+    let (young, poisson, thickness) = (1e6, 0.4999, 1e-3);
+    let material = Material::new(young, poisson, State::PlaneStress { thickness }).unwrap();
+    let laws = (Energy::load("neo-hookean", material).unwrap(), material.state()).into();
+    let body = Body { mesh: &mesh, laws: &laws };
+    assert!(body.bent().is_none());
+    let support = held_by_symmetry(&mesh, 1.0);
+    let mu = young / (2.0 * (1.0 + poisson));
+    let pressure = |l: f64| 2.0 * mu * thickness * (1.0 / l - l.powi(-7));
+    // The largest pressure is at 1.38.
+    for stretch in [1.05, 1.15, 1.25] {
+        // Against the outward normal a pressure from outside is positive.
+        let faces = pressed(&mesh, &Selection::Everything, -pressure(stretch));
+        let forces = faces.forces(&mesh.points);
+        let applied = Applied { forces: &forces, pressed: Some(&faces) };
+        let found = Newton { steps: 4, ..Newton::default() }.solve(&body, &mesh.points, &support, applied).unwrap();
+        assert_eq!(found.ending, Ending::Converged, "{stretch}: {:?}", found.residuals);
+        let x = displaced(&mesh.points, &found.displacement);
+        let radii: Vec<f64> = x.chunks_exact(3).map(|x| x.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        assert!((mean / stretch - 1.0).abs() < 0.01, "{stretch}: {mean}");
+        assert!(radii.iter().all(|r| (r / mean - 1.0).abs() < 0.02), "{stretch}");
     }
 }
 

@@ -164,7 +164,13 @@ fn cells_that_are_no_part_of_the_body_are_counted() {
     fs::write(folder.path().join("s.toml"), scene).unwrap();
     let (output, said) = springfit(folder.path(), "run s.toml");
     assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(said.contains("group \"REBAR\" has none of the body") && said.contains("2 lines of REBAR"), "{said}");
+    assert!(said.contains("material[1].area: expected the cross-section of the rods"), "{said}");
+    fs::write(folder.path().join("s.toml"), scene.to_string() + "area = 1e-4\n").unwrap();
+    let (output, said) = springfit(folder.path(), "run s.toml");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(printed.contains("that they make: MASS (1), 1 quadrangle of SKIN"), "{printed}");
+    assert!(printed.contains("1 hex8, 2 bar2"), "{printed}");
     let shells = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT, TYPE=S4, ELSET=PLATE\n1, 1,2,3,4\n*SHELL SECTION, ELSET=PLATE, MATERIAL=S\n0.002\n";
     let mesh = read(shells, "inp");
     assert_eq!(mesh.annotations.notes(), ["1 S4 element is membranes, without bending stiffness here"]);

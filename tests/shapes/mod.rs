@@ -1,5 +1,6 @@
 //! Random shapes and materials of every shipped element.
 
+pub mod bodies;
 pub mod statics;
 
 use nalgebra::{DMatrix, DVector};

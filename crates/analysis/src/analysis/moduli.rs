@@ -103,13 +103,13 @@ impl Lattice {
 }
 
 /// The moduli of a whole body under `u = ε x` on its boundary, with its inner points in equilibrium. They approach
-/// those of its material as the number of inner points grows. `None` if some strain meets no resistance, or there is no
-/// inner point.
+/// those of its material as the number of inner points grows. `None` if some strain meets no resistance, there is no
+/// inner point, or membranes or rods are attached to the body.
 pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<EffectiveModuli>> {
     let d = mesh.dimension;
     let outer = mesh.outer_points();
     let boundary: BTreeSet<usize> = (0..mesh.point_count()).filter(|&p| outer[p]).collect();
-    if d != mesh.cell_dimension() || boundary.len() == mesh.point_count() {
+    if d != mesh.cell_dimension() || mesh.is_mixed() || boundary.len() == mesh.point_count() {
         return Ok(None);
     }
     let strains = strains(d);

@@ -6,7 +6,7 @@ use super::rows::Rows;
 use super::system::{self, dofs};
 use super::{Entries, Response};
 use crate::material::{Energy, EnergyMap, State};
-use crate::mesh::Mesh;
+use crate::mesh::{CellIndex, Mesh};
 use crate::stiffness::{Geometry, gather};
 use faer::sparse::Triplet;
 
@@ -52,6 +52,9 @@ pub trait Elastic {
     }
 }
 
+/// The strain by which a cell of a surface in space may differ from a flat one: coordinates in files have six digits or more.
+const BENT: f64 = 1e-5;
+
 /// The finite element model of a hyperelastic body.
 #[derive(Debug)]
 pub struct Body<'a> {
@@ -65,11 +68,29 @@ impl Body<'_> {
     /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
         let mut inverted = 0;
-        system::each_cell(self.mesh, |_, nodes, geometry| {
+        // Membranes and rods have no inside.
+        let d = self.mesh.dimension;
+        let has_inside = |block: usize| self.mesh.blocks[block].element.dimension() == d;
+        system::each_cell(self.mesh, |cell, nodes, geometry| {
+            if !has_inside(cell.block) {
+                return;
+            }
             let local = self.places(x, nodes);
             inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
         });
         inverted
+    }
+
+    /// The first cell of a surface or curve in space that is bent at rest, and how far: it would not be at rest as a flat one.
+    pub fn bent(&self) -> Option<(CellIndex, f64)> {
+        let mut bent = None;
+        system::each_cell(self.mesh, |cell, nodes, geometry| {
+            if bent.is_none() && geometry.dimension < self.mesh.dimension {
+                let bend = geometry.bend(&self.places(&self.mesh.points, nodes));
+                bent = (bend > BENT).then_some((cell, bend));
+            }
+        });
+        bent
     }
 
     /// Visits the cells until one has no answer, with the positions of their nodes at x.

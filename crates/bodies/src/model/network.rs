@@ -174,6 +174,22 @@ pub struct Network {
 }
 
 impl Network {
+    /// The springs of both networks on the same points. Two springs between the same points without a rest length are one.
+    pub fn joined(mut self, other: Network) -> Network {
+        self.lengths.extend(other.lengths);
+        // The order of equal springs is kept, so that their sum has the same bits in each run.
+        self.lengths.sort_by_key(|spring| spring.points);
+        self.lengths.dedup_by(|later, first| {
+            let is_same = later.points == first.points && later.rest == 0.0 && first.rest == 0.0;
+            if is_same {
+                first.constant += later.constant;
+            }
+            is_same
+        });
+        self.others.extend(other.others);
+        self
+    }
+
     /// Checks that the law of force of every spring is an expression, which files hold.
     ///
     /// # Errors

@@ -43,6 +43,9 @@ impl PressedFaces {
         let mut pressed = PressedFaces { dimension: mesh.dimension, tables: Vec::new(), faces: Vec::new() };
         let integrand = Integrand::Load(pressure.degree());
         match (mesh.cell_dimension(), mesh.dimension) {
+            (3, 3) if part.sides(mesh)?.is_empty() && has_membranes(mesh, part)? => {
+                pressed.add_cells(mesh, part, pressure, integrand)?;
+            }
             (2, 3) => pressed.add_cells(mesh, part, pressure, integrand)?,
             (cells, space) if cells == space => pressed.add_sides(mesh, part, (pressure, thickness), integrand)?,
             (_, _) => {
@@ -78,13 +81,15 @@ impl PressedFaces {
     }
 
     fn add_cells(&mut self, mesh: &Mesh, part: &Selection, pressure: &Component, integrand: Integrand) -> Result<()> {
-        let cells = part.cells(mesh)?;
+        let mut cells = part.cells(mesh)?;
+        cells.retain(|cell| mesh.blocks[cell.block].element.dimension() == 2);
         if cells.is_empty() {
             return Err(Error::at(
                 "load",
                 "acts on nothing: the selected part has no cells, on which a pressure acts of a surface in space",
             ));
         }
+        // Of other blocks no table is used.
         self.tables = mesh.blocks.iter().map(|block| block.element.integration_table(integrand)).collect();
         for (cell, is_turned) in cells.iter().zip(mesh.turned(&cells)?) {
             let sign = if is_turned { -1.0 } else { 1.0 };
@@ -200,6 +205,11 @@ impl PressedFaces {
             visit(values, gradients, weight, &tangents);
         }
     }
+}
+
+/// Whether a part of a solid has membranes that are attached to it.
+fn has_membranes(mesh: &Mesh, part: &Selection) -> Result<bool> {
+    Ok(part.cells(mesh)?.iter().any(|cell| mesh.blocks[cell.block].element.dimension() == 2))
 }
 
 /// `∂x/∂ξ × ∂x/∂η`, which points out of the cell of a side.

@@ -14,8 +14,10 @@ pub fn linear_simplices<'a>(mesh: &'a Mesh, key: &str, others: &str, value: &str
         let found = format!("\"{value}\" with {found}");
         Err(Error::expected(key, expected, found).of_kind(ErrorKind::Unsupported))
     };
-    let [block] = &mesh.blocks[..] else {
-        let names: Vec<&str> = mesh.blocks.iter().map(|block| block.element.name.as_str()).collect();
+    // What is attached to the body is on cells of its own.
+    let blocks: Vec<&CellBlock> = mesh.body_blocks().map(|(_, block)| block).collect();
+    let [block] = blocks[..] else {
+        let names: Vec<&str> = blocks.iter().map(|block| block.element.name.as_str()).collect();
         return unsupported(format!("cells of {}", names.join(", ")));
     };
     let (element, d) = (&block.element, mesh.dimension);

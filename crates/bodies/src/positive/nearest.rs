@@ -45,6 +45,12 @@ pub fn nearest_positive(
     watch: &mut SearchProgress,
 ) -> Result<(Network, PositiveOutcome)> {
     check(mesh, network)?;
+    if mesh.is_mixed() {
+        let expected =
+            "a body of cells of one dimension, of which the nearest network without negative springs is known";
+        let found = "one with membranes or rods";
+        return Err(Error::expected("nonnegative", expected, found).of_kind(ErrorKind::Unsupported));
+    }
     let mut outcome = PositiveOutcome { tensions: [1.0; 2], ..PositiveOutcome::default() };
     outcome.negative = network.lengths.iter().filter(|s| s.constant < 0.0).count();
     if outcome.negative == 0 {

@@ -72,7 +72,7 @@ impl MaterialMap {
     /// A body of these materials, the names of its regions, and the region of each cell.
     ///
     /// # Errors
-    /// There is no cell, the cells are not all in the same kind of state, a stiffness in that state is not positive definite, or a cell
+    /// There is no cell, the cells of the body are not all in the same kind of state, a stiffness in that state is not positive definite, or a cell
     /// is in a region without a name.
     pub fn of_regions(
         materials: CellMap<LinearMaterial>,
@@ -82,7 +82,10 @@ impl MaterialMap {
         let Some(state) = materials.values().next().map(LinearMaterial::state) else {
             return Err(Error::expected("material", "that of at least one cell", "none"));
         };
-        let is_same = |other: State| std::mem::discriminant(&other) == std::mem::discriminant(&state);
+        // Membranes and rods that are attached to a body have states of their own.
+        let is_same = |other: State| {
+            std::mem::discriminant(&other) == std::mem::discriminant(&state) || other.dimension() < state.dimension()
+        };
         if !materials.values().all(|material| is_same(material.state())) {
             return Err(Error::expected("plane", "the same plane state in all cells", "both"));
         }
@@ -137,7 +140,7 @@ impl MaterialMap {
         self.materials.as_ref()?.uniform().copied()
     }
 
-    /// The state of the body; its thickness is that of the first cell.
+    /// The state of the body, whose cells come before those that are attached to it; its thickness is that of the first cell.
     pub fn state(&self) -> State {
         self.state
     }

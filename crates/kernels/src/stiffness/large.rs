@@ -23,12 +23,15 @@ pub struct ElementResponse {
 
 impl Geometry {
     /// The response with the nodes at `x`, `[nodes × dimension]`, m, where `self` is the geometry at rest.
-    /// `F = Σ_a x_a ∇N_aᵀ`; in the plane F has the stretch through the thickness that the state implies. `None` if the
-    /// energy is not finite.
+    /// `F = Σ_a x_a ∇N_aᵀ`; in the plane F has the stretch through the thickness that the state implies. A cell of a surface or curve has the
+    /// coordinates of its space in `x`, `[nodes × space]`, and so have force and tangent. `None` if the energy is not finite.
     ///
     /// The separate quadrature rule of the term λ (div u)² is not used here.
     pub fn respond(&self, energy: &Energy, state: State, x: &[f64]) -> Option<ElementResponse> {
         let (n, d) = (self.nodes, self.dimension);
+        if x.len() > n * d {
+            return self.respond_in_space(energy, state, x);
+        }
         let mut response =
             ElementResponse { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
         let free = free_axes(state);
@@ -66,6 +69,9 @@ impl Geometry {
     /// less than the share `upright` of the volume (in the plane of the area) is left at a quadrature point.
     pub fn forces(&self, energy: &Energy, state: State, x: &[f64], upright: f64, force: &mut [f64]) -> bool {
         let d = self.dimension;
+        if x.len() > self.nodes * d {
+            return self.forces_in_space(energy, state, x, force);
+        }
         let free = free_axes(state);
         force.fill(0.0);
         for (grad, v) in self.weighted() {
@@ -105,7 +111,7 @@ impl Geometry {
     }
 
     /// The gradients of the quadrature points that have a weight, `[nodes × dimension]`, and their volumes.
-    fn weighted(&self) -> impl Iterator<Item = (&[f64], f64)> {
+    pub(super) fn weighted(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let points = self.gradients.chunks_exact(self.nodes * self.dimension).zip(&self.volumes);
         points.map(|(grad, v)| (grad, *v)).filter(|(_, v)| *v != 0.0)
     }

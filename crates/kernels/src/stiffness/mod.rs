@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+mod embedded;
 mod fault;
 mod hyperelastic;
 mod large;

@@ -4,9 +4,10 @@ use super::mesh::{CellIndex, Mesh, SideIndex};
 use rayon::prelude::*;
 
 impl Mesh {
-    /// Calls `visit` for each set of points with the sides that have it, in the order of the cells. The sets have no order.
+    /// Calls `visit` for each set of points with the sides of the body's cells that have it, in the order of the cells. The sets have no order.
     pub fn each_side_set(&self, mut visit: impl FnMut(&[SideIndex])) {
-        let sides: Vec<usize> = self.blocks.iter().map(|block| block.element.sides().len()).collect();
+        let mut sides = vec![0; self.blocks.len()];
+        self.body_blocks().for_each(|(index, block)| sides[index] = block.element.sides().len());
         let counts = self.blocks.iter().zip(&sides).map(|(block, sides)| block.cells().len() * sides);
         let (starts, count) = running_sums(counts);
         let side = |item: usize| {

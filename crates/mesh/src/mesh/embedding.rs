@@ -106,7 +106,8 @@ struct Bins {
 
 impl Bins {
     fn of(mesh: &Mesh) -> Bins {
-        let boxes: Vec<CellBox> = mesh.cell_indices().map(|cell| CellBox::of(mesh, cell)).collect();
+        let of_body = mesh.cell_indices().filter(|cell| mesh.is_of_body(*cell));
+        let boxes: Vec<CellBox> = of_body.map(|cell| CellBox::of(mesh, cell)).collect();
         let mean =
             boxes.iter().map(|of| distance(&of.around(0), &of.around(1))).sum::<f64>() / boxes.len().max(1) as f64;
         let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();

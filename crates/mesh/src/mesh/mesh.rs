@@ -143,9 +143,25 @@ impl Mesh {
         self.blocks.iter().map(|b| b.cells().len()).sum()
     }
 
-    /// The dimension of the cells: 3 for solids, 2 for surfaces, 1 for curves.
+    /// The dimension of the body: 3 for solids, 2 for surfaces, 1 for curves. Its cells come first.
     pub fn cell_dimension(&self) -> usize {
         self.blocks.first().map_or(self.dimension, |b| b.element.dimension())
+    }
+
+    /// The blocks whose cells have the dimension of the body, with their indices. Others are attached to it: membranes on a solid, rods in it.
+    pub fn body_blocks(&self) -> impl Iterator<Item = (usize, &CellBlock)> {
+        let dimension = self.cell_dimension();
+        self.blocks.iter().enumerate().filter(move |(_, block)| block.element.dimension() == dimension)
+    }
+
+    /// Whether cells of fewer dimensions are attached to the body.
+    pub fn is_mixed(&self) -> bool {
+        self.body_blocks().count() < self.blocks.len()
+    }
+
+    /// Whether a cell has the dimension of the body.
+    pub fn is_of_body(&self, cell: CellIndex) -> bool {
+        self.blocks[cell.block].element.dimension() == self.cell_dimension()
     }
 
     /// The coordinates of one point, `[dimension]`, m.
@@ -223,9 +239,12 @@ impl Mesh {
         self.side_points(index).collect()
     }
 
+    /// The sides of the cells of the body.
     pub(super) fn side_indices(&self) -> impl Iterator<Item = SideIndex> {
         let sides = |cell: CellIndex| 0..self.blocks[cell.block].element.sides().len();
-        self.cell_indices().flat_map(move |cell| sides(cell).map(move |side| SideIndex { cell, side }))
+        self.cell_indices()
+            .filter(|cell| self.is_of_body(*cell))
+            .flat_map(move |cell| sides(cell).map(move |side| SideIndex { cell, side }))
     }
 
     /// Removes the points that belong to no cell.

@@ -4,6 +4,7 @@ use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
 use super::numbering::Numbering;
 use super::places::Places;
 use super::quality::{Below, Gate};
+use super::selection::ListedSides;
 use super::source::{Format, MeshSource, SourceBlock};
 use crate::element::{Element, FormatEntry, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
@@ -28,6 +29,21 @@ impl Mesh {
     /// # Errors
     /// Those of [`Mesh::resolve`], unless the gate skips such cells; or the gate refuses a cell, or no cell is left.
     pub fn resolve_within(source: &MeshSource, own: &[Arc<Element>], scale: f64, gate: Option<Gate>) -> Result<Mesh> {
+        Mesh::resolve_attached(source, own, scale, gate, &[])
+    }
+
+    /// Gives each cell of a file its element as [`Mesh::resolve_within`] does, also those of fewer dimensions than the body in the groups `attached`,
+    /// which become part of it: membranes on solids, rods in them. A group that has cells of the body stands for these alone.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::resolve_within`].
+    pub fn resolve_attached(
+        source: &MeshSource,
+        own: &[Arc<Element>],
+        scale: f64,
+        gate: Option<Gate>,
+        attached: &[String],
+    ) -> Result<Mesh> {
         let dimension = source.blocks.iter().map(|b| b.dimension).max().unwrap_or(0);
         if dimension == 0 {
             let error = Error::expected("cells", "lines, surface or solid cells", "none");
@@ -50,7 +66,18 @@ impl Mesh {
         let annotations = source.annotations.clone();
         let mut mesh = Mesh { numbering: numbering(source), annotations, ..Mesh::of_points(space, points) };
         let mut served: BTreeMap<u32, usize> = BTreeMap::new();
-        for block in source.blocks.iter().filter(|b| b.dimension == dimension) {
+        let is_of_body = |name: &String| {
+            source.blocks.iter().any(|block| block.dimension == dimension && block.groups.contains(name))
+        };
+        let attached: Vec<&String> = attached.iter().filter(|name| !is_of_body(name)).collect();
+        let is_attached = |block: &SourceBlock| {
+            (1..dimension).contains(&block.dimension) && block.groups.iter().any(|name| attached.contains(&name))
+        };
+        let mut part: Vec<&SourceBlock> =
+            source.blocks.iter().filter(|block| block.dimension == dimension || is_attached(block)).collect();
+        // The body comes first: it has the cells of the most dimensions.
+        part.sort_by_key(|block| std::cmp::Reverse(block.dimension));
+        for block in part {
             let index = match served.get(&block.cell_type) {
                 Some(&index) => index,
                 None => {
@@ -82,9 +109,11 @@ impl Mesh {
             }
         }
         for block in source.blocks.iter().filter(|b| b.dimension < dimension && b.nodes_per_cell > 0) {
+            let is_attached = is_attached(block);
             let cells = block.connectivity.chunks_exact(block.nodes_per_cell);
             let is_left_out = |nodes: &&[usize]| !(block.is_marker && nodes.iter().all(|&p| is_of_cell[p]));
             let left_out = match block.is_marker && block.groups.is_empty() {
+                _ if is_attached => 0,
                 true => cells.len(),
                 false => cells.filter(is_left_out).count(),
             };
@@ -100,6 +129,14 @@ impl Mesh {
             }
         }
         mesh.settle(gate.unwrap_or_default())?;
+        // Attached cells are sides of the body where they lie on it.
+        for name in attached {
+            let Some(group) = mesh.groups.get(name) else { continue };
+            let lost: HashSet<Vec<usize>> = ListedSides::of(&mesh, group).lost.into_iter().collect();
+            if let Some(group) = mesh.groups.get_mut(name).filter(|_| !lost.is_empty()) {
+                group.sides.retain(|side| !lost.contains(side));
+            }
+        }
         Ok(mesh)
     }
 
@@ -150,7 +187,8 @@ impl Mesh {
     /// refused or removed.
     fn settle_orientation(&mut self, skip: bool) -> Result<()> {
         let turned = self.orient(skip)?;
-        if turned.is_empty() || turned.len() == self.cell_count() {
+        let of_body: usize = self.body_blocks().map(|(_, block)| block.cells().len()).sum();
+        if turned.is_empty() || turned.len() == of_body {
             return Ok(());
         }
         let folded = self.folded();

@@ -32,7 +32,7 @@ impl Mesh {
                     let corners: Vec<usize> = (0..count).filter_map(|c| block.element.corner_node(c)).collect();
                     block.cells().map(|nodes| corners.iter().map(|&a| nodes[a]).collect()).collect()
                 };
-                self.blocks.iter().flat_map(of_block).collect()
+                self.body_blocks().flat_map(|(_, block)| of_block(block)).collect()
             }
             _ => Vec::new(),
         }

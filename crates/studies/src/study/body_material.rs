@@ -20,6 +20,26 @@ pub struct BodyConstants {
 }
 
 impl BodyConstants {
+    /// The material of the cells of a block: of those of the body as [`BodyConstants::material`] says; those that are attached to it, which
+    /// have fewer dimensions, are membranes in plane stress or rods.
+    ///
+    /// # Errors
+    /// Those of [`BodyConstants::material`]; or a membrane has no thickness, or a rod no cross-section.
+    pub fn of_block(&self, mesh: &Mesh, block: usize) -> Result<Material> {
+        let dimension = mesh.blocks[block].element.dimension();
+        if dimension == mesh.cell_dimension() {
+            return self.material(mesh);
+        }
+        let missing = |key: &str, expected: &str| Err(Error::expected(key, expected, "none"));
+        match (dimension, self.thickness, self.area) {
+            (2, None, _) => {
+                missing("thickness", "that of the membrane, such as \"0.5 mm\", for cells of a surface on a solid")
+            }
+            (1, _, None) => missing("area", "the cross-section of the rods, such as \"2 mm^2\", for lines in a body"),
+            _ => BodyConstants { plane: None, ..*self }.of_dimension(dimension),
+        }
+    }
+
     /// The material of the meshed body. A plane body without a thickness is one metre thick, as is usual; a surface in
     /// space is a membrane, and must have a thickness.
     ///

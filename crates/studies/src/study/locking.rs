@@ -34,7 +34,7 @@ impl Locking {
             let poisson = ratios.fold(0.0, f64::max);
             (poisson >= LOCKS).then_some(Locking { poisson, of_simplices: element.cell.is_simplex() })
         };
-        mesh.blocks.iter().enumerate().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
+        mesh.body_blocks().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
     }
 }
 
@@ -50,11 +50,15 @@ const MOST_CELLS: usize = 100_000;
 /// across. `false` of surfaces and curves in space, which do not bend, and of meshes of more than 100 000 cells, where it is not looked at.
 pub fn is_one_cell_across(mesh: &Mesh) -> bool {
     let is_linear = |block: &CellBlock| block.element.has_corners_alone();
-    let count = mesh.cell_count();
-    if mesh.cell_dimension() != mesh.dimension || count > MOST_CELLS || !mesh.blocks.iter().all(is_linear) {
+    let count: usize = mesh.body_blocks().map(|(_, block)| block.cells().len()).sum();
+    if mesh.cell_dimension() != mesh.dimension
+        || count > MOST_CELLS
+        || !mesh.body_blocks().all(|(_, block)| is_linear(block))
+    {
         return false;
     }
     let is_outer = mesh.outer_points();
-    let outer = mesh.cell_indices().filter(|cell| mesh.cell_nodes(*cell).iter().all(|&p| is_outer[p])).count();
+    let of_body = mesh.cell_indices().filter(|cell| mesh.is_of_body(*cell));
+    let outer = of_body.filter(|cell| mesh.cell_nodes(*cell).iter().all(|&p| is_outer[p])).count();
     2 * outer >= count
 }

@@ -36,8 +36,9 @@ pub(super) struct Sample {
 
 impl<'a> Stars<'a> {
     pub(super) fn of(mesh: &'a Mesh) -> Stars<'a> {
+        // What is attached to the body is another material.
         let mut starts = vec![0; mesh.point_count() + 1];
-        mesh.blocks.iter().flat_map(|block| &block.connectivity).for_each(|&point| starts[point + 1] += 1);
+        mesh.body_blocks().flat_map(|(_, block)| &block.connectivity).for_each(|&point| starts[point + 1] += 1);
         for i in 1..starts.len() {
             starts[i] += starts[i - 1];
         }
@@ -46,6 +47,9 @@ impl<'a> Stars<'a> {
         let (mut firsts, mut cell) = (Vec::new(), 0);
         for block in &mesh.blocks {
             firsts.push(cell);
+            if block.element.dimension() < mesh.cell_dimension() {
+                continue;
+            }
             for nodes in block.cells() {
                 for &point in nodes {
                     cells[next[point]] = cell as u32;

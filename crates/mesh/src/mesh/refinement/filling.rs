@@ -45,7 +45,10 @@ pub fn quadratic(element: &Element) -> Result<Arc<Element>> {
         let mut places = other.positions.chunks_exact(other.dimension());
         other.cell == cell && other.nodes() == linear + middles.len() && places.all(wanted)
     };
-    shipped(fits).ok_or_else(|| expected("cells of which an element with quadratic functions is shipped"))
+    let found =
+        shipped(fits).ok_or_else(|| expected("cells of which an element with quadratic functions is shipped"))?;
+    // Cells of a surface or curve stay in their space.
+    Ok(if found.space() < element.space() { Arc::new(Element::clone(&found).in_space(element.space())) } else { found })
 }
 
 fn shipped(fits: impl Fn(&Element) -> bool) -> Option<Arc<Element>> {

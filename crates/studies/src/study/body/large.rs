@@ -2,9 +2,9 @@
 
 use super::case::Case;
 use crate::analysis::metrics::product;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::EnergyMap;
-use crate::mesh::Mesh;
+use crate::mesh::{CellIndex, Mesh};
 use crate::model::Network;
 use crate::model::{Body, Elastic, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton, System};
@@ -48,10 +48,7 @@ impl LargeBody {
         cases: &[Case],
         progress: &mut Progress,
     ) -> Result<LargeBody> {
-        if mesh.cell_dimension() < mesh.dimension {
-            let problem = "is known for cells that fill their space, found a surface or lines in space";
-            return Err(Error::at("material.law", problem));
-        }
+        check_embedded(mesh, &laws)?;
         if !cases.is_empty() {
             check_body(mesh)?;
         }
@@ -126,6 +123,27 @@ impl LargeBody {
             });
         }
         Ok(loads)
+    }
+}
+
+/// That a law serves the cells of surfaces and curves in space.
+///
+/// # Errors
+/// One is bent at rest, or its law has fibres.
+fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
+    let unsupported = |expected: &str, found: String| {
+        Err(Error::expected("material.law", expected, found).of_kind(ErrorKind::Unsupported))
+    };
+    if let Some((cell, bend)) = (Body { mesh, laws }).bent() {
+        let name = &mesh.blocks[cell.block].element.name;
+        let found = format!("{name} cell {} that is bent by {bend:.1e} of its size", cell.cell + 1);
+        return unsupported("flat cells of surfaces in space; triangles of three nodes always are", found);
+    }
+    let is_embedded = |cell: &CellIndex| mesh.blocks[cell.block].element.dimension() < mesh.dimension;
+    let mut cells = mesh.cell_indices().filter(is_embedded).map(|cell| laws.at(cell.block, cell.cell).0);
+    match cells.find(|law| law.has_fibres()) {
+        Some(law) => unsupported("a law without fibres on surfaces and curves in space", format!("\"{}\"", law.name())),
+        None => Ok(()),
     }
 }
 

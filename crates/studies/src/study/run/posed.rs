@@ -110,8 +110,7 @@ impl<'a> Posed<'a> {
             let found = moduli_of_body(&self.mesh, &fit.network.stiffness(&self.mesh.points))?;
             fit.moduli = found.map(|moduli| moduli.of_solid(self.material.state()));
             if fit.moduli.is_none() {
-                let problem =
-                    "the whole network has no moduli: some strain meets no resistance, or no point is inside the body";
+                let problem = "the whole network has no moduli: some strain meets no resistance, no point is inside the body, or other cells are attached to it";
                 progress(Event::Note(&format!("{}: {problem}", fit.fit.name)));
             }
         }

@@ -89,12 +89,17 @@ impl Scene {
         for (i, fit) in entry.fit.iter().enumerate() {
             fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
         }
-        let mesh = entry.mesh;
+        let mut mesh = entry.mesh;
         mesh.check()?;
         if entry.fit.is_empty() {
             return Err(Error::expected("fit", "at least one [[fit]]", "none"));
         }
         entry.material.check()?;
+        let attached: Vec<String> = entry.material.all.iter().filter_map(|entry| entry.group.clone()).collect();
+        if let Some(finer) = entry.reference.as_mut().and_then(|reference| reference.mesh.as_mut()) {
+            finer.attached.clone_from(&attached);
+        }
+        mesh.attached = attached;
         let fits = read_fits(&entry.fit, path.parent().unwrap_or(Path::new("")))?;
         let fix = |(i, fix): (usize, FixEntry)| fix.check().map_err(|e| e.under(format!("fix[{i}]")));
         let supports = entry.fix.into_iter().enumerate().map(fix).collect::<Result<_>>()?;
@@ -358,7 +363,8 @@ impl Scene {
     /// A sentence about the defaults on which the results depend, if there are any.
     pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
         let without = |has: fn(&MaterialEntry) -> bool| self.material.all.iter().find(|entry| !has(entry));
-        let thickness = without(|entry| entry.thickness.is_some()).is_none().then_some(1.0);
+        // A region of rods in a plane body has a cross-section.
+        let thickness = without(|entry| entry.thickness.is_some() || entry.area.is_some()).is_none().then_some(1.0);
         let area = without(|entry| entry.area.is_some()).is_none().then_some(1.0);
         assumed(mesh, thickness, area).or_else(|| self.mesh.unit_assumption(mesh))
     }

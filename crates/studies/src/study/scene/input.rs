@@ -48,6 +48,9 @@ pub struct MeshInput {
     /// How often the edges of all cells are halved.
     #[serde(skip)]
     pub halvings: u32,
+    /// The groups that materials name: their cells are part of the body also where they have fewer dimensions than it.
+    #[serde(skip)]
+    pub attached: Vec<String>,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -315,7 +318,8 @@ impl MeshInput {
             let gate = self.quality.as_ref().map(QualityEntry::gate).transpose()?;
             let mut source = MeshSource::read(&path)?;
             source.space = self.space.or(source.space);
-            let mesh = Mesh::resolve_within(&source, &own, self.scale, gate).map_err(|e| e.in_file(&path))?;
+            let mesh = Mesh::resolve_attached(&source, &own, self.scale, gate, &self.attached);
+            let mesh = mesh.map_err(|e| e.in_file(&path))?;
             check_unit(&mesh, self.scale, 0.0).map_err(at("mesh"))?;
             return Ok(mesh);
         }

@@ -37,7 +37,7 @@ pub fn material_map(
         let under = |e: Error| e.placed(|e| e.under(entries.key(i)));
         let values = RegionValues::of(entry, &places, cells).map_err(under)?;
         for (own, &index) in cells.iter().enumerate() {
-            let material = values.material(entry, mesh, own).map_err(|e| under(places.named(e, index)))?;
+            let material = values.material(entry, mesh, own, index.block).map_err(|e| under(places.named(e, index)))?;
             materials[index.block][index.cell] = Some(material);
             if let Some(density) = &values.density {
                 let density = range::positive("density", density.at(own), "kg/m³");
@@ -64,7 +64,11 @@ fn region_of_cells(entries: &MaterialEntries, mesh: &Mesh) -> Result<Vec<Vec<usi
             rest = Some(i);
             continue;
         }
-        let chosen = part.selection(mesh.dimension).and_then(|s| s.cells(mesh)).map_err(under)?;
+        let mut chosen = part.selection(mesh.dimension).and_then(|s| s.cells(mesh)).map_err(under)?;
+        // What is attached to the body has the material that names its group.
+        if matches!(part, Part::Where(_)) {
+            chosen.retain(|cell| mesh.is_of_body(*cell));
+        }
         if chosen.is_empty() {
             let problem = match (&part, mesh.annotations.left_out.is_empty()) {
                 (Part::Group(name), false) if mesh.groups.contains_key(name) => {
@@ -130,8 +134,8 @@ impl RegionValues {
         })
     }
 
-    /// The material of a cell, by its index in the region.
-    fn material(&self, entry: &MaterialEntry, mesh: &Mesh, cell: usize) -> Result<LinearMaterial> {
+    /// The material of a cell of a block, by its index in the region.
+    fn material(&self, entry: &MaterialEntry, mesh: &Mesh, cell: usize, block: usize) -> Result<LinearMaterial> {
         // The state of an anisotropic material is that of any other.
         let [young, poisson] =
             self.isotropic.as_ref().map_or([1.0, 0.0], |[young, poisson]| [young.at(cell), poisson.at(cell)]);
@@ -142,9 +146,9 @@ impl RegionValues {
             thickness: self.thickness.as_ref().map(|thickness| thickness.at(cell)),
             area: entry.area,
         };
-        let material = constants.material(mesh)?;
+        let material = constants.of_block(mesh, block)?;
         let Some(laws) = &self.anisotropic else { return Ok(material.into()) };
-        if mesh.cell_dimension() != mesh.dimension || mesh.dimension == 1 {
+        if mesh.blocks[block].element.dimension() != mesh.dimension || mesh.dimension == 1 {
             let expected = "an isotropic material on surfaces and curves in space and on rods";
             return Err(Error::expected("young", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported));
         }

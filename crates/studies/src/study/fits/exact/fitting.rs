@@ -5,7 +5,7 @@ use super::recipe::{ExactRecipe, spring_words};
 use super::record::ExactRecord;
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{CellFits, ExactEnergy, ShearSprings, VolumeSprings, fit_exact};
+use crate::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{Energy, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Network, edge_springs, fibre_springs_of_regions, patch_springs};
@@ -50,17 +50,26 @@ impl FitKind for ExactRecipe {
             ShearSprings::Cells => None,
             ShearSprings::Edges => Some(edge_springs(mesh, material.clone(), &fit)?),
         };
-        let of_cells = if domains.is_none() { &mesh.blocks[..] } else { &[] };
-        for (index, block) in of_cells.iter().enumerate() {
+        // What is attached to the body has springs on its own cells, whatever those of the body are on.
+        let attached = ExactFit { shear: ShearSprings::Cells, volume: VolumeSprings::Points, ..fit };
+        for (index, block) in mesh.blocks.iter().enumerate() {
+            let own = match (block.element.dimension() < mesh.cell_dimension(), &domains) {
+                (true, _) => &attached,
+                (false, None) => &fit,
+                (false, Some(_)) => continue,
+            };
             let of_block = materials.block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
-            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, &fit, &mut watch)?);
+            cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, own, &mut watch)?);
             done += block.cells().len();
         }
         let mut seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
+        let mut network = match domains {
+            Some(domains) => domains.joined(Network::assemble(&attached_cells(mesh), &std::mem::take(&mut cells))),
+            None => Network::assemble(mesh, &cells),
+        };
         let springs = Fitted::springs_of(&cells);
-        let mut network = domains.unwrap_or_else(|| Network::assemble(mesh, &cells));
         let mut outcome = ExactOutcome {
             energy: fit.energy,
             shear: fit.shear,
@@ -98,6 +107,13 @@ impl FitKind for ExactRecipe {
     fn record(&self) -> KindRecord {
         KindRecord::Exact(ExactRecord::of(self))
     }
+}
+
+/// The cells that are attached to a body, with its points.
+fn attached_cells(mesh: &Mesh) -> Mesh {
+    let of_body = mesh.cell_dimension();
+    let attached = mesh.blocks.iter().filter(|block| block.element.dimension() < of_body).cloned().collect();
+    Mesh::of_cells(mesh.dimension, mesh.points.clone(), attached)
 }
 
 /// Whether a law is this energy and has no fibres.
