@@ -1,8 +1,8 @@
 //! Points at the same position.
 
+use super::coincident::first_near;
 use super::mesh::Mesh;
 use crate::springs::distance;
-use std::collections::HashMap;
 
 /// Positions of a mesh that its coordinates can distinguish.
 pub(super) struct Places {
@@ -31,33 +31,7 @@ impl Places {
         }
         // The bins are so wide that few points are near the border of theirs, and so narrow that few points share one.
         let width = (1000.0 * unit).min(0.5 * shortest_edge);
-        let bin = |x: &[f64; 3], k: usize, shift: f64| ((x[k] - least[k] + shift) / width).floor() as i64;
-        let mut bins: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
-        // The previous point in the same bin.
-        let mut before = vec![usize::MAX; points.len()];
-        let mut first: Vec<usize> = (0..points.len()).collect();
-        for (p, x) in points.iter().enumerate() {
-            let mut found = usize::MAX;
-            let range = |k: usize| bin(x, k, -unit)..=bin(x, k, unit);
-            for i in range(0) {
-                for j in range(1) {
-                    for k in range(2) {
-                        let mut other = bins.get(&[i, j, k]).copied().unwrap_or(usize::MAX);
-                        while other != usize::MAX {
-                            if distance(&points[other], x) <= unit {
-                                found = found.min(first[other]);
-                            }
-                            other = before[other];
-                        }
-                    }
-                }
-            }
-            if found != usize::MAX {
-                first[p] = found;
-            }
-            let own = bins.entry([bin(x, 0, 0.0), bin(x, 1, 0.0), bin(x, 2, 0.0)]).or_insert(usize::MAX);
-            before[p] = std::mem::replace(own, p);
-        }
+        let first = first_near(&points, unit, width);
         Some(Places { first, shortest_edge, rounding })
     }
 
