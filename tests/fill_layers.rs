@@ -3,7 +3,7 @@
 use crate::fills::brick;
 use crate::smooth_fills::ball;
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource, SourceBlock};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -19,7 +19,9 @@ fn fill(
     layers: FillLayers,
 ) -> springfit::error::Result<(Mesh, Filled)> {
     let element = Element::shipped(SHIPPED.iter().find(|s| s.name == "tet4").unwrap()).unwrap();
-    let mesh = FillMesh { element: Arc::new(element), cell, boundary, layers }.build(source, 1.0)?;
+    let mesh =
+        FillMesh { element: Arc::new(element), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
+            .build(source, 1.0)?;
     let filled = mesh.quality.filled.clone().unwrap();
     Ok((mesh, filled))
 }

@@ -1,7 +1,7 @@
 //! Closed surfaces that are filled with cells.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource, Selection};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
 use springfit::model::{Action, nodal_forces};
 use springfit::report::{Report, notes_beside_summary};
 use springfit::study::{Scene, run};
@@ -14,7 +14,8 @@ fn element(name: &str) -> Arc<Element> {
 
 fn fill(source: &MeshSource, name: &str, cell: f64) -> springfit::error::Result<Mesh> {
     let (boundary, layers) = (FillBoundary::Stepped, FillLayers::Refuse);
-    FillMesh { element: element(name), cell, boundary, layers }.build(source, 1.0)
+    FillMesh { element: element(name), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
+        .build(source, 1.0)
 }
 
 fn filled(mesh: &Mesh) -> &Filled {
@@ -148,7 +149,7 @@ fn open_and_turned_surfaces_are_refused_with_a_place() {
     let message = |text: &str| fill(&obj(text), "hex8", 0.25).unwrap_err().to_string();
     let open = unit(false).rsplit_once("f ").unwrap().0.to_string();
     let expected = "surface: expected a closed surface, found 4 edges of one triangle alone: holes, one from \
-                    [2.0, 1.0, 0.0] to [2.0, 0.0, 0.0] m";
+                    (2, 1, 0) m to (2, 0, 0) m; repair = true (--repair)";
     assert!(message(&open).starts_with(expected), "{}", message(&open));
     let turned = open + "f 6 8 4 2\n";
     assert!(message(&turned).contains("4 edges between triangles that are turned differently"), "{}", message(&turned));
@@ -247,7 +248,10 @@ fn tractions_on_steps_and_what_a_fill_found_are_notes() {
 fn volumes_far_off_and_volumes_of_layers_are_told() {
     let fill = |text: &str, cell: f64| {
         let (boundary, layers) = (FillBoundary::Stepped, FillLayers::Union);
-        let mesh = FillMesh { element: element("hex8"), cell, boundary, layers }.build(&obj(text), 1.0).unwrap();
+        let mesh =
+            FillMesh { element: element("hex8"), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
+                .build(&obj(text), 1.0)
+                .unwrap();
         filled(&mesh).clone()
     };
     let coarse = fill(&brick([0.0; 3], [1.0, 1.0, 1.25], false, 0), 1.0);

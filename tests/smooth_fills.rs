@@ -1,7 +1,7 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
 use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Filled, Mesh, MeshSource};
+use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
 use springfit::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 fn fill(source: &MeshSource, name: &str, cell: f64, boundary: FillBoundary) -> springfit::error::Result<Mesh> {
     let element = Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap();
-    FillMesh { element: Arc::new(element), cell, boundary, layers: FillLayers::Refuse }.build(source, 1.0)
+    let (spacing, layers) = (FillSpacing::Edge(cell), FillLayers::Refuse);
+    FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: false }.build(source, 1.0)
 }
 
 fn smooth(source: &MeshSource, cell: f64) -> Mesh {
@@ -54,7 +55,7 @@ pub(super) fn ball(times: usize, radius: impl Fn([f64; 3]) -> f64) -> MeshSource
     obj(&placed, &triangles)
 }
 
-fn torus(around: usize, across: usize) -> MeshSource {
+pub(super) fn torus(around: usize, across: usize) -> MeshSource {
     let angle = |i: usize, of: usize| 2.0 * PI * i as f64 / of as f64;
     let mut points = Vec::new();
     let mut triangles = Vec::new();

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
+use springfit::mesh::{Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::study::{FillEntry, check_unit, load_elements};
@@ -28,14 +28,20 @@ pub struct MeshOptions {
     /// The mesh is a closed surface: fill it with cells of this edge, in mesh units
     #[arg(long, allow_hyphen_values = true)]
     fill: Option<f64>,
-    /// The element of hexahedra or tetrahedra that fills a surface [default: cubes of eight nodes]
-    #[arg(long, requires = "fill")]
+    /// The mesh is a closed surface: fill it so that there are about this number of points, in place of --fill
+    #[arg(long)]
+    points: Option<usize>,
+    /// Mend a damaged surface, such as a scan, before it is filled: weld, turn outwards, keep the largest piece, close small holes
+    #[arg(long)]
+    repair: bool,
+    /// The element of hexahedra or tetrahedra that fills a surface, or into which voxels of an image are divided [default: cubes of eight nodes]
+    #[arg(long)]
     fill_element: Option<String>,
     /// The boundary of a filled surface: stepped, or smooth with tetrahedra that are cut off at it [default: stepped]
-    #[arg(long, requires = "fill")]
+    #[arg(long)]
     fill_boundary: Option<String>,
-    /// What happens if layers of the surface overlap: refuse, or union to fill what any of them encloses [default: refuse]
-    #[arg(long, requires = "fill")]
+    /// What happens if layers of the surface overlap: refuse, or union to fill what any of them encloses [default: refuse, with --repair union]
+    #[arg(long)]
     fill_layers: Option<String>,
     /// An element file to look in before the shipped ones; may be repeated
     #[arg(long)]
@@ -82,12 +88,14 @@ impl MeshOptions {
                 ("--element", !self.element.is_empty()),
             ];
             if let Some((option, _)) = others.into_iter().find(|(_, given)| *given) {
-                let problem = "belongs to the cells of a file, found it with --fill, whose cells are all alike";
+                let problem = "belongs to the cells of a file, found it with a fill, whose cells are all alike";
                 return Err(Error::at(option, problem));
             }
             let fault = |e: Error| {
                 let option = match e.key() {
                     Some("cell") => "--fill",
+                    Some("points") => "--points",
+                    Some("repair") => "--repair",
                     Some("boundary") => "--fill-boundary",
                     Some("layers") => "--fill-layers",
                     _ => "--fill-element",
@@ -95,7 +103,7 @@ impl MeshOptions {
                 e.placed(|e| e.at_key(option))
             };
             let mesh = fill.build(scale, Path::new("")).map_err(fault)?;
-            check_unit(&mesh, scale, scale * fill.cell).map_err(|e| e.at_key("--scale").in_file(file))?;
+            check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
             return Ok(mesh);
         }
         let mut source = MeshSource::read(file)?;
@@ -106,16 +114,35 @@ impl MeshOptions {
         let asked = self.below.is_some() || self.least.is_some();
         let gate = Gate::named(self.below.as_deref(), self.least).map_err(Error::of_option)?;
         let mesh = Mesh::resolve_within(&source, &own, scale, asked.then_some(gate)).map_err(|e| e.in_file(file))?;
-        check_unit(&mesh, scale, 0.0).map_err(|e| e.at_key("--scale").in_file(file))?;
+        check_unit(&mesh, scale).map_err(|e| e.at_key("--scale").in_file(file))?;
         Ok(mesh)
     }
 
     /// How the surface in the file is filled, if it is.
     pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
-        let element = self.fill_element.clone().unwrap_or_else(|| FillMesh::cube().into());
-        let boundary = self.fill_boundary.clone().unwrap_or_else(|| FillBoundary::default().name().into());
-        let layers = self.fill_layers.clone().unwrap_or_else(|| FillLayers::default().name().into());
-        self.fill.map(|cell| FillEntry { surface: surface.to_path_buf(), cell, element, boundary, layers })
+        let usual = FillEntry::new(surface);
+        let is_asked = self.filling_options().into_iter().any(|(_, given)| given);
+        is_asked.then(|| FillEntry {
+            cell: self.fill,
+            points: self.points,
+            element: self.fill_element.clone().unwrap_or(usual.element),
+            boundary: self.fill_boundary.clone().unwrap_or(usual.boundary),
+            layers: self.fill_layers.clone(),
+            repair: self.repair,
+            ..usual
+        })
+    }
+
+    /// The options of a fill, and whether each is given.
+    fn filling_options(&self) -> [(&'static str, bool); 6] {
+        [
+            ("--fill", self.fill.is_some()),
+            ("--points", self.points.is_some()),
+            ("--repair", self.repair),
+            ("--fill-element", self.fill_element.is_some()),
+            ("--fill-boundary", self.fill_boundary.is_some()),
+            ("--fill-layers", self.fill_layers.is_some()),
+        ]
     }
 
     /// That none is given with a scene, which has its own.
@@ -128,10 +155,9 @@ impl MeshOptions {
             ("--below", self.below.is_some()),
             ("--least", self.least.is_some()),
             ("--space", self.space.is_some()),
-            ("--fill", self.fill.is_some()),
             ("--element", !self.element.is_empty()),
         ];
-        match given.iter().find(|(_, given)| *given) {
+        match given.iter().chain(&self.filling_options()).find(|(_, given)| *given) {
             None => Ok(()),
             Some((option, _)) => {
                 Err(Error::at(*option, "belongs to a mesh file, found it with a scene, which has keys for it"))

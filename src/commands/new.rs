@@ -8,7 +8,7 @@ use springfit::material::Material;
 use springfit::mesh::{Mesh, listed_endings};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::{DraftMaterial, DraftSource, DraftUnit, draft};
+use springfit::study::{DraftMaterial, DraftSource, DraftUnit, FillEntry, draft};
 use springfit::text::{not_a_line, printable};
 use springfit::{check_file, write_whole};
 use std::path::{Component, Path, PathBuf};
@@ -42,6 +42,7 @@ Examples:
   springfit new organ.msh --scale mm > organ.toml     # a mesh in millimetres
   springfit new organ.msh --young 5kPa --poisson 0.45 --density 1060 -o organ.toml
   springfit new organ.stl --scale mm --fill 4 -o organ.toml   # a closed surface, filled with cubes of 4 mm
+  springfit new scan.stl --scale mm --points 1000 --repair -o scan.toml   # a damaged scan
   springfit run organ.toml";
 
 impl New {
@@ -64,20 +65,12 @@ impl New {
         if let Some(problem) = not_a_line(&file, false) {
             return Err(Error::new(format!("cannot be named in a scene: {problem}")).in_file(&self.mesh));
         }
-        let fill = self.options.filling(&self.mesh);
-        let numbers = fill.as_ref().map(|fill| fill.cell.to_string()).unwrap_or_default();
         let here = folder.unwrap_or(Path::new(""));
-        let own = fill.as_ref().map(|fill| own_file(&fill.element, here)).unwrap_or_default();
-        let source = match &fill {
-            Some(fill) => DraftSource::Fill {
-                surface: &file,
-                cell: &numbers,
-                element: &own,
-                boundary: &fill.boundary,
-                layers: &fill.layers,
-            },
-            None => DraftSource::File(&file),
-        };
+        let fill = self
+            .options
+            .filling(Path::new(&*file))
+            .map(|fill| FillEntry { element: own_file(&fill.element, here), ..fill });
+        let source = fill.as_ref().map_or(DraftSource::File(&file), DraftSource::Fill);
         let text = draft(&mesh, source, unit, &elements, &title, &self.material(&mesh)?);
         match &self.output {
             None => terminal.print(&text)?,

@@ -5,6 +5,7 @@ use super::frequencies::frequency_notes;
 use super::linear_theory::{bending_note, distrust, linear_notes};
 use super::materials::material_note;
 use super::motion::motion_notes;
+use super::quality::quality_lines;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
@@ -12,9 +13,9 @@ use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
-    let filled = outcome.mesh.quality.filled.as_ref().map_or(Vec::new(), Filled::lines);
+    let quality = quality_lines(&outcome.mesh.quality);
     let annotations = outcome.mesh.annotations.notes();
-    filled.into_iter().chain(annotations).chain(notes_beside_summary(outcome)).collect()
+    quality.into_iter().chain(annotations).chain(notes_beside_summary(outcome)).collect()
 }
 
 /// Says what a reader must know before trusting a row, one sentence per line, without the lines that `summary` has.

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 21] = [
+const RUNS: [&[&str]; 24] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -50,6 +50,9 @@ const RUNS: [&[&str]; 21] = [
     &["groups", "octahedron.off", "--fill=0.2"],
     &["new", "octahedron.off", "--fill=0.2"],
     &["fit", "octahedron.off", "--fill=0.2", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],
+    &["groups", "octahedron.off", "--points=90", "--repair"],
+    &["new", "octahedron.off", "--points=90"],
+    &["fit", "octahedron.off", "--points=90", "--young=10kPa", "--poisson=0.3", "--output=springs.json"],
 ];
 
 const EXTREMES: [&str; 12] =
@@ -118,7 +121,7 @@ fn every_number_of_the_command_line_may_be_extreme() {
         for option in options(run[0]).into_iter().filter(|option| is_numeric(run, option)) {
             let name = format!("{} {option}", run[0]);
             numeric.insert(name.clone());
-            if ["0.5", "2", "1e-9"].iter().any(|value| springfit(&with(run, &option, value)).0.status.success()) {
+            if ["0.5", "2", "1e-9", "90"].iter().any(|value| springfit(&with(run, &option, value)).0.status.success()) {
                 taken.insert(name);
             } else {
                 continue;

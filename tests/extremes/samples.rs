@@ -388,12 +388,30 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 13] = [
+/// The octahedron mended and filled with tetrahedra, by the number of points.
+pub const SCANNED: &str = r#"
+[mesh]
+fill = { surface = "octahedron.off", points = 90, element = "tet4", boundary = "smooth", repair = true }
+scale = 1.0
+[material]
+young = 10e3
+poisson = 0.3
+[[fit]]
+objective = "exact"
+[[fix]]
+where = "z < 0"
+[[load]]
+group = "body"
+body = [0, 0, 1.0]
+"#;
+
+pub const ALL: [(&str, &str); 14] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
     ("regions", REGIONS),
     ("filled", FILLED),
+    ("scanned", SCANNED),
     ("rods", RODS),
     ("large", LARGE),
     ("fibres", FIBRES),

@@ -54,6 +54,13 @@ const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/c
 const TIMES: [Unit; 4] = [("s", 0), ("ms", -3), ("us", -6), ("µs", -6)];
 
 impl Quantity {
+    /// The first of the units that has this size in the SI unit, such as `mm` for a length of 0.001 m.
+    pub fn unit_of(self, size: f64) -> Option<&'static str> {
+        // Sizes are read from texts, which may have passed through a product.
+        let is_it = |(_, power): &&Unit| (size / 10f64.powi(*power) - 1.0).abs() < 1e-9;
+        self.units().iter().find(is_it).map(|(name, _)| *name)
+    }
+
     fn units(self) -> &'static [Unit] {
         match self {
             Quantity::Length | Quantity::MeshUnit => &LENGTHS,

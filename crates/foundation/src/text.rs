@@ -73,6 +73,15 @@ pub fn not_a_line(text: &str, is_expression: bool) -> Option<String> {
     ))
 }
 
+/// The number with so many significant digits at most, such as `0.0123` or `1.5e-7`.
+pub fn rounded(value: f64, digits: usize) -> String {
+    let short = format!("{:.*e}", digits - 1, value).parse::<f64>().unwrap_or(value);
+    match short.abs() {
+        0.0 | 1e-4..1e6 => format!("{short}"),
+        _ => format!("{short:e}"),
+    }
+}
+
 /// A time for people: `0.20 s`, `45 s`, `12 min` or `3 h`.
 pub fn time_in_words(seconds: f64) -> String {
     match seconds {

@@ -124,7 +124,7 @@ impl BoxMesh {
 }
 
 /// The maps of reference cells that fill the unit cube; none for a cell that does not fill a box.
-fn parts(cell: Cell) -> Vec<Affine> {
+pub(super) fn parts(cell: Cell) -> Vec<Affine> {
     let d = cell.dimension();
     let unit = |k: usize, length: f64| (0..d).map(|i| if i == k { length } else { 0.0 }).collect::<Vec<_>>();
     // The simplices 0, e_p, e_p + e_q, … for each order p, q, … of the directions.

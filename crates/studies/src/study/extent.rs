@@ -1,6 +1,7 @@
 //! The size of a body.
 
 use crate::mesh::Mesh;
+use crate::text::rounded;
 
 /// The size of the box around the body along each axis, m.
 pub fn extent(mesh: &Mesh) -> Vec<f64> {
@@ -20,13 +21,4 @@ pub(in crate::study) fn extends(mesh: &Mesh) -> String {
         format!("from {} to {} m along {}", rounded(least, 4), rounded(most, 4), ["x", "y", "z"][k])
     };
     (0..mesh.dimension).map(along).collect::<Vec<_>>().join(", ")
-}
-
-/// The number with so many digits.
-pub(in crate::study) fn rounded(value: f64, digits: usize) -> String {
-    let short = format!("{:.*e}", digits - 1, value).parse::<f64>().unwrap_or(value);
-    match short.abs() {
-        0.0 | 1e-4..1e6 => format!("{short}"),
-        _ => format!("{short:e}"),
-    }
 }

@@ -3,6 +3,7 @@
 use super::columns::Columns;
 use super::filled::FaceCrossings;
 use super::surface::Surface;
+use super::triangles::NOT_OF_FILE;
 use crate::mesh::source::MeshSource;
 use robust::{Coord3D, orient3d};
 
@@ -39,6 +40,18 @@ pub(super) fn crossings(
     touching: bool,
 ) -> Option<FaceCrossings> {
     let (mut inside, mut border) = (Found::default(), Found::default());
+    each_crossing(surface, columns, |pair, at, is_inside| {
+        let order = near.map_or(0.0, |near| (0..3).map(|k| (at[k] - near[k]).powi(2)).sum());
+        if is_inside { &mut inside } else { &mut border }.add(order, pair, at);
+    });
+    let found = if inside.pairs == 0 && touching { border } else { inside };
+    let (_, pair, at) = found.one?;
+    let faces = pair.map(|triangle| name(source, surface.faces[triangle as usize]));
+    Some(FaceCrossings { pairs: found.pairs, faces, at })
+}
+
+/// Visits each pair of triangles that cross, the lower first, with the place and whether it is inside one of them rather than on its border.
+pub(super) fn each_crossing(surface: &Surface, columns: &Columns, mut visit: impl FnMut([u32; 2], [f64; 3], bool)) {
     let mut compared = 0;
     let mut boxes: Vec<(u32, [[f64; 3]; 2])> = Vec::new();
     'squares: for (square, triangles) in columns.squares() {
@@ -57,16 +70,10 @@ pub(super) fn crossings(
                     continue;
                 }
                 let Some((at, is_inside)) = crossing(surface, *i, *j) else { continue };
-                let pair = [*i.min(j), *i.max(j)];
-                let order = near.map_or(0.0, |near| (0..3).map(|k| (at[k] - near[k]).powi(2)).sum());
-                if is_inside { &mut inside } else { &mut border }.add(order, pair, at);
+                visit([*i.min(j), *i.max(j)], at, is_inside);
             }
         }
     }
-    let found = if inside.pairs == 0 && touching { border } else { inside };
-    let (_, pair, at) = found.one?;
-    let faces = pair.map(|triangle| name(source, surface.faces[triangle as usize]));
-    Some(FaceCrossings { pairs: found.pairs, faces, at })
 }
 
 /// The box of a triangle.
@@ -118,6 +125,9 @@ fn passing([p, q]: [[f64; 3]; 2], [a, b, c]: [[f64; 3]; 3]) -> Option<([f64; 3],
 
 /// A face by its place in the file, in words.
 fn name(source: &MeshSource, face: u32) -> String {
+    if face == NOT_OF_FILE {
+        return "a triangle that closes a hole".into();
+    }
     let mut place = face as usize;
     for block in source.blocks.iter().filter(|block| block.dimension > 1) {
         let count = block.connectivity.len() / block.nodes_per_cell;

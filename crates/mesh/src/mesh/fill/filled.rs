@@ -1,5 +1,8 @@
 //! What a fill is beside its surface, in figures and words.
 
+use super::place::{counted, length, place};
+use super::repair::Repair;
+
 /// A difference of volumes that must be known, percent.
 const FAR: f64 = 10.0;
 /// The area of steps, relative to that of their surface, which matters to a traction.
@@ -17,10 +20,10 @@ pub struct FaceCrossings {
 }
 
 impl FaceCrossings {
-    /// How many there are and one of them, in words.
-    pub fn words(&self) -> String {
+    /// How many there are and one of them, in words; `scale` is the unit of the file, m.
+    pub fn words(&self, scale: f64) -> String {
         let [one, other] = &self.faces;
-        format!("{} pairs of faces cross, such as {one} and {other} at {}", self.pairs, at(self.at))
+        format!("{} pairs of faces cross, such as {one} and {other} at {}", self.pairs, place(self.at, scale))
     }
 }
 
@@ -53,6 +56,16 @@ pub struct Filled {
     pub crossings: Option<FaceCrossings>,
     /// Edges with more than two triangles, and the middle of one.
     pub branched: Option<(usize, [f64; 3])>,
+    /// Metres per unit of the file, in which words name places.
+    pub scale: f64,
+    /// What was mended in the surface before, if that was asked for.
+    pub repair: Option<Repair>,
+    /// The edge of a cube, m.
+    pub edge: f64,
+    /// The number of points.
+    pub points: usize,
+    /// About how many points were asked for, if the edge was chosen for them.
+    pub asked: Option<usize>,
 }
 
 impl Filled {
@@ -113,34 +126,42 @@ impl Filled {
             "{} a surface: {compared}",
             if self.cells == 1 { "1 cell fills".into() } else { format!("{} cells fill", self.cells) }
         )];
+        if let Some(asked) = self.asked {
+            let (edge, points) = (length(self.edge, self.scale), self.points);
+            lines.push(format!("cubes have edges of {edge}, chosen for about {asked} points: there are {points}"));
+        }
+        lines.extend(self.repair.iter().flat_map(|repair| repair.lines(self.scale)));
         if let Some([least, largest]) = self.angles {
             lines.push(format!("dihedral angles are from {least:.1} to {largest:.1} degrees"));
         }
-        if self.turned {
+        if self.turned && self.repair.is_none() {
             lines.push("all normals of the surface were inwards and were turned".into());
         }
-        if self.flat > 0 {
+        if self.flat > 0 && self.repair.is_none() {
             let were = if self.flat == 1 { "was" } else { "were" };
             lines.push(format!("{} without an area {were} left out", counted(self.flat, "triangle")));
         }
-        if let Some((count, place)) = self.branched {
+        if let Some((count, at)) = self.branched {
             let (edges, have) = (counted(count, "edge"), if count == 1 { "has" } else { "have" });
-            lines.push(format!("{edges} of the surface {have} more than two triangles, one at {}", at(place)));
+            lines.push(format!(
+                "{edges} of the surface {have} more than two triangles, one at {}",
+                place(at, self.scale)
+            ));
         }
         if let Some(crossings) = &self.crossings {
             let is_filled = self.overlaps.is_none() && self.inverted.is_none();
             let effect = if is_filled { ": no place of the lattice is inside several layers" } else { "" };
-            lines.push(format!("{}{effect}", crossings.words()));
+            lines.push(format!("{}{effect}", crossings.words(self.scale)));
         }
-        if let Some((count, place)) = self.overlaps {
+        if let Some((count, at)) = self.overlaps {
             let (places, are) = (counted(count, "place"), if count == 1 { "is" } else { "are" });
             let words = format!("{places} of the lattice {are} inside several layers of the surface");
-            lines.push(format!("{words}, one at {}: each is filled once", at(place)));
+            lines.push(format!("{words}, one at {}: each is filled once", place(at, self.scale)));
         }
-        if let Some((count, place)) = self.inverted {
+        if let Some((count, at)) = self.inverted {
             let (places, are) = (counted(count, "place"), if count == 1 { "is" } else { "are" });
             let words = format!("{places} of the lattice {are} inside a part of the surface that is inside out");
-            lines.push(format!("{words}, and {are} not filled, one at {}", at(place)));
+            lines.push(format!("{words}, and {are} not filled, one at {}", place(at, self.scale)));
         }
         if self.loose > 0 {
             let were = if self.loose == 1 { "was" } else { "were" };
@@ -149,14 +170,4 @@ impl Filled {
         }
         lines
     }
-}
-
-/// A number of things, `1 cell` or `2 cells`.
-fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
-
-/// A place in words.
-pub(super) fn at([x, y, z]: [f64; 3]) -> String {
-    format!("({x:.4e}, {y:.4e}, {z:.4e}) m")
 }

@@ -8,8 +8,11 @@ use super::grid::Grid;
 use super::lattice::{Pattern, patterns};
 use super::layers::FillLayers;
 use super::parts::kept;
+use super::repair::repaired;
 use super::smooth::smooth;
+use super::spacing::FillSpacing;
 use super::surface::Surface;
+use super::triangles::Triangles;
 use crate::element::{Cell, Element, ElementFile, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::affine::Affine;
@@ -29,12 +32,14 @@ use std::sync::Arc;
 pub struct FillMesh {
     /// The element of all cells, a hexahedron or a tetrahedron.
     pub element: Arc<Element>,
-    /// The edge of a cube, m.
-    pub cell: f64,
+    /// The edge of a cube.
+    pub spacing: FillSpacing,
     /// The boundary; a smooth one needs tetrahedra.
     pub boundary: FillBoundary,
     /// What happens if layers of the surface overlap.
     pub layers: FillLayers,
+    /// Whether a damaged surface is mended first, see [`Repair`](super::Repair).
+    pub repair: bool,
 }
 
 /// The largest number of cubes around the surface, filled or not.
@@ -62,18 +67,62 @@ impl FillMesh {
     /// Fills the surface in `source`, with `scale` metres per unit.
     ///
     /// # Errors
-    /// The surface is open, its triangles are turned differently, or its layers overlap and are refused; the element has other cells; or there are no cells or too
-    /// many.
+    /// The surface is open, its triangles are turned differently, or its layers overlap and are refused, or it cannot be repaired; the element
+    /// has other cells; or there are no cells or too many.
     pub fn build(&self, source: &MeshSource, scale: f64) -> Result<Mesh> {
         let patterns = patterns(self.element.cell);
         if patterns.is_empty() {
             return Err(Error::expected("element", "an element of hexahedra or tetrahedra", &self.element.name));
         }
-        let edge = self.cell;
-        if !(edge > 0.0 && edge.is_finite()) {
-            return Err(Error::expected("cell", "a positive length", format!("{edge} m")));
+        if self.boundary == FillBoundary::Smooth && self.element.cell != Cell::Tetrahedron {
+            let expected = "an element of tetrahedra, which a smooth boundary needs";
+            return Err(Error::expected("element", expected, &self.element.name));
         }
-        let surface = Surface::of(source, scale)?;
+        self.spacing.check()?;
+        let triangles = Triangles::of(source, scale)?;
+        let (surface, repair) = match self.repair {
+            true => repaired(triangles, scale).map(|(surface, repair)| (surface, Some(repair)))?,
+            false => (Surface::given(triangles, scale)?, None),
+        };
+        let columns = Columns::of(&surface);
+        let edge = self.spacing.edge(surface.volume, patterns.len(), |edge| {
+            let (mesh, _) = self.lay(edge, &surface, &columns, &patterns)?;
+            Ok(mesh.point_count())
+        })?;
+        let (mut mesh, mut filled) = self.lay(edge, &surface, &columns, &patterns)?;
+        (filled.scale, filled.repair) = (scale, repair);
+        let faulty = filled.overlaps.or(filled.inverted).map(|(_, place)| place);
+        filled.crossings = crossings(source, &surface, &columns, faulty, faulty.is_some());
+        self.layers.check(&filled)?;
+        filled.cells = mesh.cell_count();
+        if filled.cells == 0 {
+            let needs = match self.boundary {
+                FillBoundary::Stepped => "cells whose centres are inside the surface",
+                FillBoundary::Smooth => "a lattice with a point inside the surface",
+            };
+            let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);
+            let (key, way_out) = match self.spacing {
+                FillSpacing::Edge(_) => ("cell", "a smaller cell"),
+                FillSpacing::Points(_) => ("points", "more points"),
+            };
+            return Err(Error::expected(key, format!("{needs}: {way_out}"), found));
+        }
+        let sides = group(&mut mesh)?;
+        filled.stepped_area = (self.boundary == FillBoundary::Stepped).then(|| sides as f64 * self.side_area(edge));
+        filled.asked = match self.spacing {
+            FillSpacing::Edge(_) => None,
+            FillSpacing::Points(points) => Some(points),
+        };
+        (filled.edge, filled.points) = (edge, mesh.point_count());
+        mesh.quality.filled = Some(filled);
+        Ok(mesh)
+    }
+
+    /// The cells of a lattice with this edge in the surface, without groups, and what is known of them.
+    ///
+    /// # Errors
+    /// There are too many.
+    fn lay(&self, edge: f64, surface: &Surface, columns: &Columns, patterns: &[Pattern]) -> Result<(Mesh, Filled)> {
         let mut filled = Filled {
             surface_volume: surface.volume,
             surface_area: surface.area,
@@ -82,61 +131,23 @@ impl FillMesh {
             branched: surface.branched,
             ..Filled::default()
         };
-        self.forecast(&surface, patterns.len())?;
-        let grid = Grid::around(&surface, edge);
-        let columns = Columns::of(&surface);
-        let (mut mesh, needs) = match (self.boundary, self.element.cell) {
-            (FillBoundary::Stepped, _) => {
-                let cells = inside(&columns, &grid, &patterns, &mut filled)?;
-                (self.stepped(&grid, &patterns, &cells, &mut filled), "cells whose centres are inside the surface")
+        forecast(edge, surface, patterns.len())?;
+        let grid = Grid::around(surface, edge);
+        let mesh = match self.boundary {
+            FillBoundary::Stepped => {
+                let cells = inside(columns, &grid, patterns, &mut filled)?;
+                self.stepped(&grid, patterns, &cells, &mut filled)
             }
-            (FillBoundary::Smooth, Cell::Tetrahedron) => {
-                let mesh = smooth(&self.element, &grid, &columns, &patterns, &mut filled)?;
-                (mesh, "a lattice with a point inside the surface")
-            }
-            (FillBoundary::Smooth, _) => {
-                let expected = "an element of tetrahedra, which a smooth boundary needs";
-                return Err(Error::expected("element", expected, &self.element.name));
-            }
+            FillBoundary::Smooth => smooth(&self.element, &grid, columns, patterns, &mut filled)?,
         };
-        let faulty = filled.overlaps.or(filled.inverted).map(|(_, place)| place);
-        filled.crossings = crossings(source, &surface, &columns, faulty, faulty.is_some());
-        self.layers.check(&filled)?;
-        filled.cells = mesh.cell_count();
-        if filled.cells == 0 {
-            let found = format!("none of {edge:e} m in a volume of {:.3e} m³", surface.volume);
-            return Err(Error::expected("cell", format!("{needs}: a smaller cell"), found));
-        }
-        let sides = group(&mut mesh)?;
-        filled.stepped_area = (self.boundary == FillBoundary::Stepped).then(|| sides as f64 * self.side_area());
-        mesh.quality.filled = Some(filled);
-        Ok(mesh)
-    }
-
-    /// That the number of cells, which the volume gives, and of cubes around the surface are in their bounds.
-    fn forecast(&self, surface: &Surface, of_cube: usize) -> Result<()> {
-        let cells = surface.volume / self.cell.powi(3) * of_cube as f64;
-        let cubes = (0..3).map(|k| (surface.high[k] - surface.low[k]) / self.cell + 3.0).product::<f64>();
-        if cells > 1.2 * MOST_CELLS as f64 || cubes > MOST_CUBES {
-            return Err(self.too_many((cells / MOST_CELLS as f64).max(cubes / MOST_CUBES).cbrt(), cells));
-        }
-        Ok(())
+        Ok((mesh, filled))
     }
 
     /// The area of a side of a cell of the lattice, m². Those of the tetrahedra are equal: two edges of a half diagonal of a
     /// cube at an edge of a cube.
-    fn side_area(&self) -> f64 {
+    fn side_area(&self, edge: f64) -> f64 {
         let of_square = if self.element.cell == Cell::Tetrahedron { f64::sqrt(0.125) } else { 1.0 };
-        of_square * self.cell.powi(2)
-    }
-
-    /// The error for too many cells, of which the edge has to grow by `factor`.
-    fn too_many(&self, factor: f64, cells: f64) -> Error {
-        let fits = self.cell * factor * 1.02;
-        let digit = 10f64.powf(fits.log10().floor() - 1.0);
-        let fits = (fits / digit).ceil() * digit;
-        let expected = format!("at most {MOST_CELLS} cells, which edges of {fits:.1e} m give");
-        Error::expected("cell", expected, format!("about {cells:.0}")).of_kind(ErrorKind::Limit)
+        of_square * edge.powi(2)
     }
 
     /// The mesh of the cells, without those that hang on others by an edge or a corner alone.
@@ -187,10 +198,24 @@ impl FillMesh {
             }
         }
         mesh.blocks.push(CellBlock { element: self.element.clone(), connectivity });
-        let of_cell = self.cell.powi(3) / if self.element.cell == Cell::Tetrahedron { 12.0 } else { 1.0 };
+        let of_cell = grid.edge.powi(3) / if self.element.cell == Cell::Tetrahedron { 12.0 } else { 1.0 };
         filled.volume = mesh.cell_count() as f64 * of_cell;
         mesh
     }
+}
+
+/// That the number of cells, which the volume gives, and of cubes around the surface are in their bounds.
+fn forecast(edge: f64, surface: &Surface, of_cube: usize) -> Result<()> {
+    let cells = surface.volume / edge.powi(3) * of_cube as f64;
+    let cubes = (0..3).map(|k| (surface.high[k] - surface.low[k]) / edge + 3.0).product::<f64>();
+    if cells <= 1.2 * MOST_CELLS as f64 && cubes <= MOST_CUBES {
+        return Ok(());
+    }
+    let fits = edge * (cells / MOST_CELLS as f64).max(cubes / MOST_CUBES).cbrt() * 1.02;
+    let digit = 10f64.powf(fits.log10().floor() - 1.0);
+    let fits = (fits / digit).ceil() * digit;
+    let expected = format!("at most {MOST_CELLS} cells, which edges of {fits:.1e} m give");
+    Err(Error::expected("cell", expected, format!("about {cells:.0}")).of_kind(ErrorKind::Limit))
 }
 
 /// Turns all cells alike, and adds the groups; returns the number of outer sides.

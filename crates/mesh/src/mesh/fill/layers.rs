@@ -1,6 +1,7 @@
 //! What happens if a surface has several layers around a place.
 
-use super::filled::{Filled, at};
+use super::filled::Filled;
+use super::place::place;
 use crate::error::{Error, Result};
 
 /// What happens if a surface winds around a place more than once, or the other way round.
@@ -19,18 +20,19 @@ impl FillLayers {
     /// # Errors
     /// A place of the lattice is inside several layers or inside a part that is inside out, and that is refused.
     pub(super) fn check(self, filled: &Filled) -> Result<()> {
-        let places =
-            |(count, place): (usize, [f64; 3])| format!("{count} places of the lattice, one at {},", at(place));
+        let places = |(count, at): (usize, [f64; 3])| {
+            format!("{count} places of the lattice, one at {},", place(at, filled.scale))
+        };
         let (expected, found, way_out) = match (self, &filled.crossings, filled.overlaps, filled.inverted) {
             (FillLayers::Union, ..) | (_, _, None, None) => return Ok(()),
             (FillLayers::Refuse, Some(crossings), Some(faulty), _) => (
                 "a surface that does not cross itself",
-                format!("{}; {} are inside several layers", crossings.words(), places(faulty)),
+                format!("{}; {} are inside several layers", crossings.words(filled.scale), places(faulty)),
                 "a modelling program unites the layers, or layers = \"union\" (--fill-layers union) fills what any of them encloses",
             ),
             (FillLayers::Refuse, Some(crossings), None, Some(faulty)) => (
                 "a surface that does not cross itself",
-                format!("{}; {} are inside a part that is inside out", crossings.words(), places(faulty)),
+                format!("{}; {} are inside a part that is inside out", crossings.words(filled.scale), places(faulty)),
                 "a modelling program mends it, or layers = \"union\" (--fill-layers union) leaves such parts out",
             ),
             (FillLayers::Refuse, None, Some(faulty), _) => (

@@ -1,8 +1,8 @@
 //! The supports and loads of a first scene.
 
-use super::super::extent::{extent, rounded};
+use super::super::extent::extent;
 use crate::mesh::{Group, ListedSides, Mesh};
-use crate::text::{not_a_line, toml as quoted};
+use crate::text::{not_a_line, rounded, toml as quoted};
 
 /// Names of groups that are probably meant to be held.
 const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "left", "min"];

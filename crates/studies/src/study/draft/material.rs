@@ -1,9 +1,9 @@
 //! The material of a first scene: what is given, what a deck states, or a default.
 
-use super::super::extent::{extent, rounded};
+use super::super::extent::extent;
 use crate::mesh::{Mesh, Section};
 use crate::quantity::Quantity;
-use crate::text::{not_a_line, toml as quoted};
+use crate::text::{not_a_line, rounded, toml as quoted};
 
 /// Poisson's ratio of a draft without one.
 pub(super) const POISSON: f64 = 0.3;

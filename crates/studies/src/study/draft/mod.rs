@@ -1,9 +1,10 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
-use super::extent::{extends, extent, rounded};
+use super::extent::{extends, extent};
+use super::scene::FillEntry;
 use crate::fit::check_flat;
-use crate::mesh::{CellBlock, FillBoundary, FillLayers, Filled, Group, ListedSides, Mesh};
-use crate::text::{comment, toml as quoted};
+use crate::mesh::{CellBlock, Filled, Group, ListedSides, Mesh};
+use crate::text::{comment, rounded, toml as quoted};
 use conditions::conditions;
 use material::{POISSON, material_lines, stated_poisson, young};
 use std::fmt::Write;
@@ -34,19 +35,8 @@ pub struct DraftUnit<'a> {
 pub enum DraftSource<'a> {
     /// A file.
     File(&'a str),
-    /// A filled surface.
-    Fill {
-        /// The file of the surface.
-        surface: &'a str,
-        /// The edge of a cube, mesh units, as it is typed.
-        cell: &'a str,
-        /// The element of the cells.
-        element: &'a str,
-        /// `stepped` or `smooth`.
-        boundary: &'a str,
-        /// `refuse` or `union`.
-        layers: &'a str,
-    },
+    /// A filled surface, or divided voxels.
+    Fill(&'a FillEntry),
 }
 
 /// The text of a scene for the mesh in `source`, which has cells of the files `elements`. What a deck states of materials is taken from it, in newtons and the unit of the mesh.
@@ -83,17 +73,13 @@ pub fn draft(
     line("[mesh]");
     match source {
         DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
-        DraftSource::Fill { surface, cell, element, boundary, layers } => {
-            let (surface, element) = (quoted(surface), quoted(element));
-            let unusual = |key: &str, value: &str, usual: &str| match value == usual {
-                true => String::new(),
-                false => format!(", {key} = {}", quoted(value)),
+        DraftSource::Fill(entry) => {
+            let words = match (entry.cell, entry.points) {
+                (Some(_), _) => " # the edge of a cube in mesh units",
+                (None, Some(_)) => " # about so many points",
+                (None, None) => "",
             };
-            let boundary = unusual("boundary", boundary, FillBoundary::default().name());
-            let layers = unusual("layers", layers, FillLayers::default().name());
-            line(&format!(
-                "fill  = {{ surface = {surface}, cell = {cell}, element = {element}{boundary}{layers} }} # the edge of a cube in mesh units"
-            ));
+            line(&format!("fill  = {}{words}", entry.toml()));
         }
     }
     let written = if unit.parse::<f64>().is_ok() { unit.to_string() } else { quoted(unit) };

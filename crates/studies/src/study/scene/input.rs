@@ -1,10 +1,11 @@
 //! The mesh of a scene: a file, or a generated one.
 
 use super::elements::{load_element, load_elements};
+use super::fill::FillEntry;
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
-use crate::mesh::{BoxMesh, DiscMesh, Embedding, FillBoundary, FillLayers, FillMesh, Gate, Mesh, MeshSource};
+use crate::mesh::{BoxMesh, DiscMesh, Embedding, Gate, Mesh, MeshSource};
 use crate::range;
 use crate::study::extent::extent;
 use schemars::JsonSchema;
@@ -29,7 +30,7 @@ pub struct MeshInput {
     pub generated: Option<BoxEntry>,
     /// The mesh is a disc or dome of triangles that is generated.
     pub disc: Option<DiscEntry>,
-    /// The mesh fills a closed surface with cells.
+    /// The mesh fills a closed surface with cells, or divides voxels.
     pub fill: Option<FillEntry>,
     /// One unit of the mesh has this length in m, above 0.
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
@@ -104,61 +105,6 @@ pub struct DiscEntry {
     pub points: Option<usize>,
     /// The rim has this number of points; the key needs `points`.
     pub rim: Option<usize>,
-}
-
-/// A closed surface in a file, filled with the cells of a lattice.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FillEntry {
-    /// The surface is read from this file, relative to the scene, such as `.stl`, `.obj`, `.ply` or `.off`. It is a closed surface of
-    /// triangles or quadrangles with its normals outwards.
-    #[schemars(extend("x-type" = "path"))]
-    pub surface: PathBuf,
-    /// A cube of the lattice has edges of this length, in mesh units, above 0.
-    pub cell: f64,
-    /// The cells have this element of hexahedra, which are the cubes, or of tetrahedra, twelve for each cube. It is the name of a shipped
-    /// one, or a path relative to the scene that ends in `.toml`.
-    #[serde(default = "cubes")]
-    pub element: String,
-    /// The body has whole cells of the lattice whose centres are inside (`stepped`), or tetrahedra that are cut off at the surface
-    /// (`smooth`).
-    #[serde(default = "stepped")]
-    #[schemars(extend("enum" = FillBoundary::NAMES))]
-    pub boundary: String,
-    /// A surface that crosses itself is refused (`refuse`), or what any of its layers encloses is filled (`union`).
-    #[serde(default = "refused")]
-    #[schemars(extend("enum" = FillLayers::NAMES))]
-    pub layers: String,
-}
-
-fn stepped() -> String {
-    FillBoundary::default().name().into()
-}
-
-fn refused() -> String {
-    FillLayers::default().name().into()
-}
-
-fn cubes() -> String {
-    FillMesh::cube().into()
-}
-
-impl FillEntry {
-    /// Fills the surface, with `scale` metres per mesh unit; paths are relative to `folder`.
-    ///
-    /// # Errors
-    /// The file, the element or the surface is wrong, or there are no cells or too many.
-    pub fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
-        range::positive("cell", self.cell, "mesh units")?;
-        let element = load_element(&self.element, folder)?;
-        let path = folder.join(&self.surface);
-        let source = MeshSource::read(&path)?;
-        let boundary = FillBoundary::named(&self.boundary).map_err(|e| e.at_key("boundary"))?;
-        let layers = FillLayers::named(&self.layers).map_err(|e| e.at_key("layers"))?;
-        FillMesh { element, cell: scale * self.cell, boundary, layers }
-            .build(&source, scale)
-            .map_err(|e| if matches!(e.key(), Some("surface" | "points")) { e.in_file(&path) } else { e })
-    }
 }
 
 /// The largest number of rings; a disc with six more points in each ring then has about two million points.
@@ -242,11 +188,12 @@ impl MeshInput {
 }
 
 /// That a body of a file is no longer than bodies are, if its unit is taken to be the metre. A filled surface is shorter than its cells
-/// by up to `edge`, that of a cell in m; 0 of other meshes.
+/// by up to the edge of one.
 ///
 /// # Errors
 /// It is; the key is `scale`.
-pub fn check_unit(mesh: &Mesh, scale: f64, edge: f64) -> Result<()> {
+pub fn check_unit(mesh: &Mesh, scale: f64) -> Result<()> {
+    let edge = mesh.quality.filled.as_ref().map_or(0.0, |filled| filled.edge);
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     if scale == 1.0 && longest - edge > TOO_LONG {
         let expected =
@@ -320,7 +267,7 @@ impl MeshInput {
             source.space = self.space.or(source.space);
             let mesh = Mesh::resolve_attached(&source, &own, self.scale, gate, &self.attached);
             let mesh = mesh.map_err(|e| e.in_file(&path))?;
-            check_unit(&mesh, self.scale, 0.0).map_err(at("mesh"))?;
+            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
             return Ok(mesh);
         }
         if let Some(disc) = &self.disc {
@@ -328,7 +275,7 @@ impl MeshInput {
         }
         if let Some(fill) = &self.fill {
             let mesh = fill.build(self.scale, folder).map_err(at("mesh.fill"))?;
-            check_unit(&mesh, self.scale, self.scale * fill.cell).map_err(at("mesh"))?;
+            check_unit(&mesh, self.scale).map_err(at("mesh"))?;
             return Ok(mesh);
         }
         let entry = self.generated.as_ref().expect("a scene has a file, a box, a disc or a surface");
