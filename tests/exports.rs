@@ -3,7 +3,7 @@
 use springfit::error::ErrorKind;
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
 use springfit::model::Elastic;
-use springfit::report::{NetworkFile, NetworkRecord};
+use springfit::report::{Division, NetworkFile, NetworkRecord, Parts};
 use springfit::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
 use std::fs;
@@ -520,4 +520,115 @@ fn a_network_that_is_not_stable_is_told() {
         }
         assert!(target_named("vtu").unwrap().at_rest(&network, None).unwrap().is_empty(), "a picture does not move");
     }
+}
+
+const VOXELS: &str = "
+[mesh]
+box = { element = \"hex8\", size = [2, 1, 1], cells = [4, 2, 2] }
+[material]
+young = 1e5
+poisson = 0.4
+density = 1000
+[[fit]]
+name = \"bulk\"
+objective = \"modal\"
+springs = [\"edge\", \"face diagonal\", \"body diagonal\", \"bulk\"]
+nonnegative = true
+[[fit]]
+name = \"cells\"
+objective = \"exact\"
+volume = \"cells\"
+[[fix]]
+group = \"xmin\"
+[[load]]
+name = \"pull\"
+group = \"xmax\"
+traction = [100, 0, 0]
+";
+
+/// In place of a spring on the volume of a hexahedron ten on those of tetrahedra have its energy where all grow alike, and no less wherever the points
+/// are; of any distorted hexahedron.
+#[test]
+fn springs_on_hexahedra_are_divided_into_those_of_tetrahedra() {
+    let mut random = crate::shapes::Random(2);
+    let all = networks(VOXELS);
+    // Springs at the quadrature points of a hexahedron are no volumes of tetrahedra.
+    let cells = Division::of(&all["cells"]).unwrap().unwrap();
+    assert!(Parts::of(&cells.network).is_err());
+    for (name, mut network) in all.into_iter().filter(|(name, _)| name == "bulk") {
+        // Bent faces; springs that pull at rest as well.
+        network.points.iter_mut().flatten().for_each(|x| *x += 0.04 * random.next());
+        let division = Division::of(&network).unwrap().expect("it has volume springs");
+        assert_eq!(division.hexahedra.len(), 16, "{name}");
+        let parts = Parts::of(&division.network).unwrap();
+        assert_eq!(parts.contents.len(), 160, "{name}");
+        let lengths = network.springs.len() - 16;
+        assert_eq!(parts.lengths.len(), lengths, "{name}");
+        let rest: Vec<f64> = network.points.concat();
+        let model = Parts { lengths: Vec::new(), ..parts }.network(3);
+        let whole = |x: &[f64]| -> f64 {
+            let of = |&place: &usize| {
+                let spring = &network.springs[place];
+                let own: Vec<f64> = spring.points.iter().flat_map(|&p| x[3 * p..3 * p + 3].to_vec()).collect();
+                0.5 * spring.constant * (division.measure.value(&own, 3) - spring.rest).powi(2)
+            };
+            division.hexahedra.iter().map(of).sum()
+        };
+        for growth in [0.9, 1.0, 1.2] {
+            let x: Vec<f64> = rest.iter().map(|x| growth * x).collect();
+            let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
+            assert!((own - other).abs() < 1e-12 * other.abs().max(1e-6), "{name} {growth}: {own} {other}");
+        }
+        for _ in 0..10 {
+            let x: Vec<f64> = rest.iter().map(|x| x + 0.2 * random.next()).collect();
+            let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
+            assert!(own > other * (1.0 - 1e-12), "{name}: {own} {other}");
+        }
+    }
+}
+
+/// Programs that hold volumes of tetrahedra take the networks of voxels, and the export says how far the divided one is from it.
+#[test]
+fn networks_of_voxels_reach_an_engine() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("v.toml"), VOXELS).unwrap();
+    let export = |to: &str, fit: &str| {
+        let arguments = ["export", "v.toml", "--to", to, "--fit", fit, "--out", to];
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(&folder).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+        (output.status.code(), said)
+    };
+    for (to, fit) in [("newton", "bulk"), ("blender", "bulk"), ("jolt", "bulk"), ("npz", "bulk")] {
+        let (code, said) = export(to, fit);
+        assert_eq!(code, Some(0), "{to}: {said}");
+        assert!(said.contains("the volume springs of 16 hexahedra are written as 160 of tetrahedra"), "{said}");
+        assert!(
+            said.contains("displacements differ by ") && said.contains("under gravity and the load \"pull\""),
+            "{said}"
+        );
+        let share: f64 = said.split("differ by ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+        assert!(share > 0.1 && share < 15.0, "{share}");
+    }
+    let script = fs::read_to_string(folder.path().join("newton/run.py")).unwrap();
+    assert!(script.starts_with("# Beware: the volume springs of 16 hexahedra"), "{}", &script[..80]);
+    for (to, fit) in [("lammps", "bulk"), ("newton", "cells")] {
+        let (code, said) = export(to, fit);
+        assert_eq!(code, Some(2), "{to}: {said}");
+        assert!(
+            said.contains("expected linear springs on lengths and on the contents of triangles or tetrahedra"),
+            "{said}"
+        );
+    }
+}
+
+/// A hexahedron that is folded is no sum of tetrahedra.
+#[test]
+fn folded_hexahedra_are_not_divided() {
+    let mut network = networks(VOXELS).remove("bulk").unwrap();
+    let corner = network.springs.iter().rev().find(|spring| spring.points.len() == 8).unwrap().points[6];
+    let far = network.points[corner].clone();
+    network.points[corner] = far.iter().map(|x| x - 0.9).collect();
+    let error = Division::of(&network).unwrap_err().to_string();
+    assert!(error.contains("springs[") && error.contains("a cell that is folded at"), "{error}");
 }

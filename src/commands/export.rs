@@ -52,8 +52,17 @@ impl Export {
         let mut inputs = vec![self.network.clone()];
         let network = if is_network { self.read()? } else { self.fitted(terminal, &mut inputs)? };
         let of_network = |e: Error| if e.key() == Some("--gravity") { e } else { e.in_file(&self.network) };
+        if let Some(asked) = &gravity {
+            target.check_gravity(&network, asked).map_err(of_network)?;
+        }
+        let divided = target.divided(&network, gravity.as_deref()).map_err(of_network)?;
+        let (network, changed) = match divided {
+            Some((divided, changed)) => (divided, Some(changed)),
+            None => (network, None),
+        };
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
-        let warnings = target.at_rest(&network, gravity.as_deref()).map_err(of_network)?;
+        let mut warnings: Vec<String> = changed.into_iter().collect();
+        warnings.extend(target.at_rest(&network, gravity.as_deref()).map_err(of_network)?);
         let files = with_warnings(files, &warnings);
         let written = write_files(&files, &folder, &inputs)?;
         terminal.print(&summary(&network))?;

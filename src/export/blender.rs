@@ -17,6 +17,7 @@ pub const TARGET: Target = Target {
     command: "python run.py",
     leaves_out: content_dampers,
     has_loads: true,
+    divides: true,
     stands: Stands::Network,
     write,
 };

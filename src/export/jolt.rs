@@ -18,6 +18,7 @@ pub const TARGET: Target = Target {
     command: "npm install jolt-physics@1.1.0 && node run.mjs",
     leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
     has_loads: false,
+    divides: true,
     stands: Stands::Network,
     write,
 };

@@ -16,6 +16,7 @@ pub const TARGET: Target = Target {
     command: "lmp -in in.network",
     leaves_out: dampers,
     has_loads: false,
+    divides: false,
     stands: Stands::Network,
     write,
 };

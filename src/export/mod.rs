@@ -5,6 +5,7 @@
 //! Page of the book: *Networks in other programs*.
 
 mod blender;
+mod divided;
 mod extent;
 mod job;
 mod jolt;

@@ -17,6 +17,7 @@ pub const TARGET: Target = Target {
     command: "python run.py",
     leaves_out: dampers,
     has_loads: true,
+    divides: false,
     stands: Stands::SquaredLengths,
     write,
 };

@@ -16,6 +16,7 @@ pub const TARGET: Target = Target {
     command: "python run.py",
     leaves_out: |network| [content_dampers(network), mass_damping(network)].concat(),
     has_loads: true,
+    divides: true,
     stands: Stands::Network,
     write,
 };

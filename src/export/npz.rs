@@ -14,6 +14,7 @@ pub const TARGET: Target = Target {
     command: "",
     leaves_out: content_dampers,
     has_loads: true,
+    divides: true,
     stands: Stands::Network,
     write,
 };

@@ -129,16 +129,16 @@ impl Target {
 }
 
 /// What acts on the body at rest.
-struct Case {
-    words: String,
+pub(super) struct Case {
+    pub words: String,
     /// `[points × dimension]`, N.
-    forces: Vec<f64>,
+    pub forces: Vec<f64>,
     /// Gravity alone, which the program always has.
     is_weight: bool,
 }
 
 /// Gravity, unless it is zero, and each load of forces beside it.
-fn cases(d: usize, weight: Vec<f64>, loads: &[NodalLoadRecord]) -> Vec<Case> {
+pub(super) fn cases(d: usize, weight: Vec<f64>, loads: &[NodalLoadRecord]) -> Vec<Case> {
     let pulls = weight.iter().any(|f| *f != 0.0);
     let moves =
         |load: &&NodalLoadRecord| load.held.iter().any(|held| held.displacement.iter().flatten().any(|u| *u != 0.0));
@@ -156,7 +156,7 @@ fn cases(d: usize, weight: Vec<f64>, loads: &[NodalLoadRecord]) -> Vec<Case> {
 }
 
 /// The number of equilibria that are solved in some seconds.
-fn affordable(points: &[f64], dimension: usize, parts: &Parts) -> usize {
+pub(super) fn affordable(points: &[f64], dimension: usize, parts: &Parts) -> usize {
     if points.len() > MOST_POINTS * dimension {
         return 0;
     }
@@ -235,7 +235,7 @@ impl Body<'_> {
     }
 }
 
-fn support(network: &NetworkRecord) -> Support {
+pub(super) fn support(network: &NetworkRecord) -> Support {
     let d = network.dimension;
     let mut prescribed = vec![None; network.points.len() * d];
     for held in &network.held {

@@ -17,6 +17,7 @@ pub const TARGET: Target = Target {
     command: "",
     leaves_out: mass_damping,
     has_loads: false,
+    divides: false,
     stands: Stands::Network,
     write,
 };

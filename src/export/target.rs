@@ -90,6 +90,8 @@ pub struct Target {
     pub(super) leaves_out: fn(&NetworkRecord) -> Vec<String>,
     /// Whether the loads of the scene are in its files.
     pub has_loads: bool,
+    /// Whether springs on the volumes of hexahedra are divided for it into those of tetrahedra, which it holds wherever they are.
+    pub(super) divides: bool,
     /// Up to which deformation it moves the network.
     pub(super) stands: Stands,
     pub(super) write: Writer,
@@ -102,12 +104,21 @@ impl Target {
     /// # Errors
     /// The gravity has another dimension; a number is not finite in single precision; or the program does not hold the network: the error says what it holds and which fit has it.
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
-        if let Some(asked) = gravity.filter(|asked| asked.len() != network.dimension) {
+        gravity.map_or(Ok(()), |asked| self.check_gravity(network, asked))?;
+        check_numbers(network, gravity)?;
+        (self.write)(network, gravity)
+    }
+
+    /// That a gravity which is asked for has as many numbers as the network has dimensions.
+    ///
+    /// # Errors
+    /// It has not.
+    pub fn check_gravity(&self, network: &NetworkRecord, asked: &[f64]) -> Result<()> {
+        if asked.len() != network.dimension {
             let expected = format!("{} numbers in m/s²", network.dimension);
             return Err(Error::expected("--gravity", expected, asked.len()));
         }
-        check_numbers(network, gravity)?;
-        (self.write)(network, gravity)
+        Ok(())
     }
 
     /// The damping that is left out, in lines of words. No program has Rayleigh's damping by the stiffness at rest.

@@ -15,6 +15,7 @@ pub const TARGET: Target = Target {
     command: "",
     leaves_out: nothing,
     has_loads: false,
+    divides: false,
     stands: Stands::Still,
     write,
 };

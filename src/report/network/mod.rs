@@ -6,7 +6,7 @@ mod json;
 mod points;
 
 pub use crate::network::{
-    ArrayFile, CellBlockRecord, ContentPart, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
+    ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
     LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Merged, NETWORK_VERSION, NetworkDampingRecord,
     NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts, ProvenanceRecord, Shard,
     ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord, merge_shards, network_csv,

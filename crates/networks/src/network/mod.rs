@@ -2,6 +2,7 @@
 
 mod balance;
 mod csv;
+mod division;
 mod json;
 mod lines;
 mod lists;
@@ -15,6 +16,7 @@ mod record;
 mod shard;
 
 pub use csv::{network_csv, write_points};
+pub use division::Division;
 pub use json::write_json;
 pub use lists::{CellList, ListedRecord, Lists, SpringList};
 pub use npz::{ArrayFile, network_npz, write_npz};
