@@ -157,6 +157,10 @@ fn the_exact_network_has_all_parts() {
     }
     let errors = outcome.fits[0].errors.get().unwrap();
     assert!(errors.frobenius.unwrap().max < 1e-12);
+    // Each part has its weight.
+    let weight: f64 = outcome.loads[2].forces.iter().skip(2).step_by(3).sum();
+    let mass = 1000.0 + 1200.0 * 2e-3 + 1500.0 * 3e-6 * 3f64.sqrt();
+    assert!((weight / (-9.81 * mass) - 1.0).abs() < 1e-12, "{weight}");
     assert!(outcome.fits.iter().all(|fit| fit.stability.is_some()));
     let frequencies = &outcome.frequencies;
     assert_eq!(frequencies.len(), 4);
@@ -267,6 +271,38 @@ fn a_curved_capsule_converges() {
     // Each is softer than the one before it, whose displacements it can have, and the last two differ least.
     assert!(halved > 1.0 && quadratic > halved && best > quadratic, "{halved} {quadratic} {best}");
     assert!(best - quadratic < 0.3 * quadratic, "{quadratic} {best}");
+}
+
+/// Bars along the edges of a plane body in plane strain, of triangles and of quadrilaterals: the energy in closed form, and the exact network.
+#[test]
+fn bars_are_part_of_a_plane_body() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["tri3", "quad4"] {
+        let mesh = grid(name, &[2.0, 1.0], &[4, 2]);
+        let at = |x: f64, y: f64| {
+            (0..mesh.point_count())
+                .find(|&p| (mesh.point(p)[0] - x).abs() + (mesh.point(p)[1] - y).abs() < 1e-9)
+                .unwrap()
+        };
+        let bars: Vec<Vec<usize>> =
+            (0..4).map(|i| vec![at(0.5 * i as f64, 0.5), at(0.5 * (i + 1) as f64, 0.5)]).collect();
+        let body: Vec<Vec<usize>> = mesh.blocks[0].cells().map(<[usize]>::to_vec).collect();
+        let text = gmsh_text(2, &mesh.points, &[("body", 2, body), ("bars", 1, bars)]);
+        let scene = scene(
+            folder.path(),
+            &text,
+            "fit = [{ objective = \"exact\" }]\n[[material]]\nyoung = 1e4\npoisson = 0.3\nplane = \"strain\"\nthickness = 0.5\n\
+             [[material]]\ngroup = \"bars\"\nyoung = 1e7\npoisson = 0.2\nplane = \"strain\"\narea = 1e-3\n[[fix]]\nwhere = \"x < 1e-9\"\n\
+             [[load]]\nname = \"pull\"\nwhere = \"x > 1.999\"\ntraction = [100, 20]\n",
+        );
+        let strain = Matrix3::new(0.7, 0.2, 0.0, 0.2, -0.4, 0.0, 0.0, 0.0, 0.0);
+        let expected = of_solid(1e4, 0.3, 2.0 * 0.5, &strain) + 1e7 * 1e-3 * 2.0 / 2.0 * 0.7 * 0.7;
+        let found = energy(&scene, &strain);
+        assert!((found / expected - 1.0).abs() < 1e-12, "{name}: {found} {expected}");
+        let outcome = outcome(&scene);
+        assert!(outcome.mesh.is_mixed() && outcome.assumed.is_none(), "{:?}", outcome.assumed);
+        assert!(outcome.fits[0].loads[0].error.unwrap().max < 1e-8, "{name}");
+    }
 }
 
 /// Three sheets that meet at a T, each of another material: the energy in closed form, and the exact network.

@@ -33,14 +33,14 @@ impl Target {
         divided.largest_step = largest_step(&own, &points, network, &support);
         let changed = changes(network, gravity, [&whole, &own], &points, &support, &parts)?;
         let count = hexahedra.len();
-        let (has, cells) = if count == 1 { ("is", "1 hexahedron") } else { ("are", &*format!("{count} hexahedra")) };
+        let cells = if count == 1 { "1 hexahedron".to_string() } else { format!("{count} hexahedra") };
         let known = match &changed[..] {
             [] => "by how much is not known: the body is not held, does not resist, or is too large to be solved here"
                 .to_string(),
             changed => format!("displacements differ {} (root mean square, small deformation)", changed.join(", ")),
         };
         let sentence = format!(
-            "the volume springs of {cells} {has} written as {} of tetrahedra, which resist changes of their shapes as well: {known}",
+            "the volume springs of {cells} are written as {} of tetrahedra, which resist changes of their shapes as well: {known}",
             10 * count
         );
         Ok(Some((divided, sentence)))
