@@ -42,6 +42,9 @@ displacement = ["free", "free", 0.01]
 measured = { file = "measured.csv", scale = 1.0, sigma = 0.0001 }
 [[load]]
 sum = ["load 1", "load 3"]
+[[load]]
+group = "xmax"
+pressure = 1.0
 [solver]
 method = "multigrid"
 tolerance = 1e-9
@@ -208,6 +211,30 @@ group = "zmin"
 [[load]]
 group = "zmax"
 traction = [0, 0, 100.0]
+"#;
+
+/// A plane frame whose middle is filled.
+pub const CAVITY: &str = r#"
+[mesh]
+file = "frame.vtk"
+[material]
+young = 10e3
+poisson = 0.3
+law = "stable-neo-hookean"
+thickness = 1.0
+[[fit]]
+objective = "exact"
+[newton]
+steps = 2
+iterations = 8
+[[fix]]
+where = "x < 1e-9 && y < 1e-9"
+[[fix]]
+where = "x > 2.9 && y < 1e-9"
+axes = ["y"]
+[[load]]
+where = "x > 0.9 && x < 2.1 && y > 0.9 && y < 2.1"
+volume = 1.1
 "#;
 
 /// Fits to the whole object.
@@ -405,7 +432,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 14] = [
+pub const ALL: [(&str, &str); 15] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -415,6 +442,7 @@ pub const ALL: [(&str, &str); 14] = [
     ("rods", RODS),
     ("large", LARGE),
     ("fibres", FIBRES),
+    ("cavity", CAVITY),
     ("whole", WHOLE),
     ("coarse", COARSE),
     ("motion", MOTION),
@@ -423,7 +451,7 @@ pub const ALL: [(&str, &str); 14] = [
 ];
 
 /// Files that the scenes name.
-pub const FILES: [(&str, &str); 5] = [
+pub const FILES: [(&str, &str); 6] = [
     (
         "octahedron.off",
         "OFF\n6 8 12\n0.53 0 0\n-0.51 0 0\n0 0.47 0\n0 -0.55 0\n0 0 0.57\n0 0 -0.45\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n\
@@ -434,6 +462,10 @@ pub const FILES: [(&str, &str); 5] = [
         "rods.msh",
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 2 0.5 0.5\n$EndNodes\n$Elements\n2\n\
          1 1 2 0 1 1 2\n2 1 2 0 1 2 3\n$EndElements\n",
+    ),
+    (
+        "frame.vtk",
+        "# vtk DataFile Version 3.0\nframe\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n1 1 0\n2 1 0\n3 1 0\n0 2 0\n1 2 0\n2 2 0\n3 2 0\n0 3 0\n1 3 0\n2 3 0\n3 3 0\nCELLS 8 40\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 4 5 9 8\n4 6 7 11 10\n4 8 9 13 12\n4 9 10 14 13\n4 10 11 15 14\nCELL_TYPES 8\n9\n9\n9\n9\n9\n9\n9\n9\n",
     ),
     ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
     ("fibres.csv", "x,y,z,a_x,a_y,a_z\n1.5,0.5,0.5,1,0,0\n1.5,0.5,0.6,1,1,0\n"),
