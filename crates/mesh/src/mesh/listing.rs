@@ -189,6 +189,23 @@ impl Resolved {
         met.into_values().flatten().collect()
     }
 
+    /// Says which elements of the body are something else here: `counts` has how many there are of each type, and their dimension, and `stand_in` says
+    /// in words what those of a type are.
+    pub fn tell_stand_ins(
+        &self,
+        counts: &BTreeMap<String, (usize, usize)>,
+        stand_in: impl Fn(&str) -> Option<&'static str>,
+        annotations: &mut Annotations,
+    ) {
+        let top = (0..self.list.len()).map(|cell| self.list.cell_type(cell).dimension()).max().unwrap_or(0);
+        for (name, (count, dimension)) in counts {
+            if let Some(what) = stand_in(name).filter(|_| *dimension == top) {
+                let elements = if *count == 1 { "element is" } else { "elements are" };
+                annotations.remark(format!("{count} {name} {elements} {what} here"));
+            }
+        }
+    }
+
     /// The blocks: cells of one type in the same groups, then the points and sides of each group. `annotations` is what else the file says.
     pub fn into_source(mut self, annotations: Annotations) -> MeshSource {
         let Groups { names, mut cells, mut nodes, mut sides, .. } = std::mem::take(&mut self.groups);

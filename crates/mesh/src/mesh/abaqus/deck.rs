@@ -296,13 +296,7 @@ impl Deck {
         let members = Members { elements: &elements, nodes: &nodes, left_out: &left_out, shells: &shells };
         add_surfaces(&mut resolved, &surfaces, &surface_names, &numbers, &members)?;
         let mut annotations = self.annotations;
-        let top = (0..resolved.list.len()).map(|cell| resolved.list.cell_type(cell).dimension()).max().unwrap_or(0);
-        for (name, (count, dimension)) in self.stand_ins {
-            if let Some(what) = types::stand_in(&name).filter(|_| dimension == top) {
-                let elements = if count == 1 { "element is" } else { "elements are" };
-                annotations.remark(format!("{count} {name} {elements} {what} here"));
-            }
-        }
+        resolved.tell_stand_ins(&self.stand_ins, types::stand_in, &mut annotations);
         self.sections.annotate(&mut annotations, |set| {
             let of_set = element_sets.find(set).and_then(|set| elements[set].first());
             of_set.is_some_and(|&cell| resolved.list.cell_type(cell).dimension() == 1)

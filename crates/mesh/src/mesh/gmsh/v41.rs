@@ -16,6 +16,31 @@ pub(super) type Key = (u32, i32, i32);
 /// Reads the entities; a point has so many `place` numbers, and other entities have boxes of six.
 pub(super) fn entities(reader: &mut Reader, place: usize) -> Result<Entities> {
     reader.start_data()?;
+    listed(reader, place, |_| Ok(()))
+}
+
+/// Reads the entities of a mesh in partitions, which have tags of their own and the physical tags of their parents.
+pub(super) fn partitioned_entities(reader: &mut Reader) -> Result<Entities> {
+    reader.start_data()?;
+    reader.number::<u64>()?;
+    for _ in 0..reader.number::<u64>()? {
+        // A ghost entity and its partition.
+        reader.number::<i32>()?;
+        reader.number::<i32>()?;
+    }
+    listed(reader, 3, |reader| {
+        // The dimension and the tag of the parent, and the partitions.
+        reader.number::<i32>()?;
+        reader.number::<i32>()?;
+        for _ in 0..reader.number::<u64>()? {
+            reader.number::<i32>()?;
+        }
+        Ok(())
+    })
+}
+
+/// Reads the numbers of entities by dimension, and each entity; `between` reads what stands between its tag and its place.
+fn listed(reader: &mut Reader, place: usize, between: impl Fn(&mut Reader) -> Result<()>) -> Result<Entities> {
     let mut counts = [0_u64; 4];
     for count in &mut counts {
         *count = reader.number()?;
@@ -26,6 +51,7 @@ pub(super) fn entities(reader: &mut Reader, place: usize) -> Result<Entities> {
     for (dimension, count) in (0_i32..).zip(counts) {
         for _ in 0..count {
             let tag = reader.number::<i32>()?;
+            between(reader)?;
             for _ in 0..if dimension == 0 { place } else { 6 } {
                 reader.number::<f64>()?;
             }
@@ -54,40 +80,6 @@ fn groups(reader: &mut Reader, dimension: i32, tag: i32, entities: &mut Entities
         entities.insert((dimension, tag), physical);
     }
     Ok(())
-}
-
-/// Reads the entities of a mesh in partitions, which have tags of their own and the physical tags of their parents.
-pub(super) fn partitioned_entities(reader: &mut Reader) -> Result<Entities> {
-    reader.start_data()?;
-    reader.number::<u64>()?;
-    for _ in 0..reader.number::<u64>()? {
-        // A ghost entity and its partition.
-        reader.number::<i32>()?;
-        reader.number::<i32>()?;
-    }
-    let mut counts = [0_u64; 4];
-    for count in &mut counts {
-        *count = reader.number()?;
-    }
-    let total = counts.iter().fold(0, |sum: u64, &count| sum.saturating_add(count));
-    reader.announce("entities", total);
-    let mut entities = Entities::new();
-    for (dimension, count) in (0_i32..).zip(counts) {
-        for _ in 0..count {
-            let tag = reader.number::<i32>()?;
-            // The dimension and the tag of the parent.
-            reader.number::<i32>()?;
-            reader.number::<i32>()?;
-            for _ in 0..reader.number::<u64>()? {
-                reader.number::<i32>()?;
-            }
-            for _ in 0..if dimension == 0 { 3 } else { 6 } {
-                reader.number::<f64>()?;
-            }
-            groups(reader, dimension, tag, &mut entities)?;
-        }
-    }
-    Ok(entities)
 }
 
 pub(super) fn nodes(reader: &mut Reader) -> Result<Nodes> {

@@ -222,13 +222,7 @@ impl Bulk {
             }
         }
         let mut annotations = self.annotations;
-        let top = (0..resolved.list.len()).map(|cell| resolved.list.cell_type(cell).dimension()).max().unwrap_or(0);
-        for (name, (count, dimension)) in self.stand_ins {
-            if let Some(what) = stand_in(&name).filter(|_| dimension == top) {
-                let elements = if count == 1 { "element is" } else { "elements are" };
-                annotations.remark(format!("{count} {name} {elements} {what} here"));
-            }
-        }
+        resolved.tell_stand_ins(&self.stand_ins, stand_in, &mut annotations);
         self.materials.annotate(&mut annotations, |property| of_property.contains_key(&property));
         Ok(resolved.into_source(annotations))
     }
