@@ -382,6 +382,36 @@ fn large_deformation_has_all_parts() {
     }
 }
 
+/// The first scene of a deck with a skin says what the deck states of it, and the scene with it as a material has it in its body.
+#[test]
+fn a_new_scene_names_what_is_beside_the_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n*ELEMENT, TYPE=C3D8, ELSET=BODY\n1, 1,2,3,4,5,6,7,8\n\
+                *ELEMENT, TYPE=M3D4, ELSET=SKIN\n2, 5,6,7,8\n*MATERIAL, NAME=A\n*ELASTIC\n2e3, 0.3\n*MATERIAL, NAME=B\n*ELASTIC\n5e5, 0.4\n\
+                *SOLID SECTION, ELSET=BODY, MATERIAL=A\n*MEMBRANE SECTION, ELSET=SKIN, MATERIAL=B\n0.002\n";
+    fs::write(folder.path().join("d.inp"), deck).unwrap();
+    let springfit = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"));
+        let output = command.args(arguments).current_dir(&folder).output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr),
+        )
+    };
+    let (code, said) = springfit(&["new", "d.inp", "--output", "d.toml"]);
+    assert_eq!(code, Some(0), "{said}");
+    let scene = fs::read_to_string(folder.path().join("d.toml")).unwrap();
+    let line = "# Not in the body until a [[material]] names it: group = \"SKIN\", young = 500000, poisson = 0.4, thickness = 0.002\n";
+    assert!(scene.contains(line), "{scene}");
+    let keys = line.trim_start_matches("# Not in the body until a [[material]] names it: ").replace(", ", "\n");
+    let scene = scene.replace("[material]\n", &format!("[[material]]\n{keys}[[material]]\n"));
+    fs::write(folder.path().join("d.toml"), scene).unwrap();
+    let (code, said) = springfit(&["run", "d.toml"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("1 hex8, 1 quad4"), "{said}");
+    assert!(said.contains("the group \"SKIN\" is part of the body as membranes, without bending stiffness"), "{said}");
+}
+
 /// What is missing or not known is one line that says so.
 #[test]
 fn wrong_parts_are_refused() {

@@ -130,7 +130,13 @@ impl Mesh {
         }
         mesh.settle(gate.unwrap_or_default())?;
         // Attached cells are sides of the body where they lie on it.
-        for name in attached {
+        for &name in &attached {
+            let of_name = source.blocks.iter().filter(|block| is_attached(block) && block.groups.contains(name));
+            if let Some(most) = of_name.map(|block| block.dimension).max() {
+                let what = if most == 2 { "membranes" } else { "rods" };
+                mesh.annotations
+                    .remark(format!("the group \"{name}\" is part of the body as {what}, without bending stiffness"));
+            }
             let Some(group) = mesh.groups.get(name) else { continue };
             let lost: HashSet<Vec<usize>> = ListedSides::of(&mesh, group).lost.into_iter().collect();
             if let Some(group) = mesh.groups.get_mut(name).filter(|_| !lost.is_empty()) {

@@ -72,6 +72,34 @@ pub(super) fn material_lines(mesh: &Mesh, given: &DraftMaterial, scale: f64) -> 
     }
     let words = "# Regions: one [[material]] for each, with group = \"…\" or where = \"z < 0.01\", and one without for the rest.\n";
     lines.push(words.into());
+    lines.extend(beside(mesh, scale));
+    lines
+}
+
+/// What a deck states of cells of fewer dimensions than the body, which a material makes part of it: a line of comment for each.
+fn beside(mesh: &Mesh, scale: f64) -> Vec<String> {
+    let is_beside = |section: &&Section| {
+        let group = mesh.groups.get(&section.group);
+        group.is_some_and(|group| group.cells.is_empty()) && not_a_line(&section.group, false).is_none()
+    };
+    let stated = mesh.annotations.sections.iter().filter(|section| stands(section)).filter(is_beside);
+    let line = |section: &Section| {
+        let number = |key: &str, value: Option<f64>, factor: f64| {
+            value.filter(|x| *x > 0.0).map(|x| format!(", {key} = {}", rounded(x * factor, 6))).unwrap_or_default()
+        };
+        format!(
+            "# Not in the body until a [[material]] names it: group = {}{}{}{}{}",
+            quoted(&section.group),
+            number("young", section.young, scale.powi(-2)),
+            number("poisson", section.poisson, 1.0),
+            number("thickness", section.thickness, scale),
+            number("area", section.area, scale * scale),
+        )
+    };
+    let mut lines: Vec<String> = stated.take(MOST_REGIONS).map(line).collect();
+    if !lines.is_empty() {
+        lines.push(String::new());
+    }
     lines
 }
 
