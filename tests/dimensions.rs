@@ -382,6 +382,43 @@ fn large_deformation_has_all_parts() {
     }
 }
 
+/// Sides of a generated box are membranes or rods where a material names their group, with each shipped element that fills one: the energy is that of
+/// body and side in closed form.
+#[test]
+fn sides_of_a_box_carry_membranes() {
+    let mut tested = 0;
+    for element in crate::shapes::elements().iter().filter(|element| element.dimension() > 1) {
+        let d = element.dimension();
+        let (size, cells) = (vec!["1"; d].join(", "), vec!["2"; d].join(", "));
+        let skin = if d == 3 { "thickness = 0.002" } else { "area = 0.002" };
+        let text = format!(
+            "mesh = {{ box = {{ element = \"{}\", size = [{size}], cells = [{cells}] }} }}\nfit = [{{ objective = \"frobenius\" }}]\n\
+             [[material]]\nyoung = 1e4\npoisson = 0.3\n[[material]]\ngroup = \"ymax\"\nyoung = 1e6\npoisson = 0.2\n{skin}\n",
+            element.name
+        );
+        let scene = Scene::parse(&text, Path::new("s.toml")).unwrap();
+        let Ok(mesh) = scene.build_mesh() else { continue };
+        assert!(mesh.is_mixed(), "{}", element.name);
+        let strain = strain();
+        let found = energy(&scene, &strain);
+        let expected = match d {
+            3 => {
+                let corners = [[0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]].map(Vector3::from);
+                of_solid(1e4, 0.3, 1.0, &strain) + 2.0 * of_membrane(1e6, 0.2, 0.002, corners, &strain)
+            }
+            _ => {
+                let [xx, yy, xy] = [strain[(0, 0)], strain[(1, 1)], strain[(0, 1)]];
+                let plane =
+                    1e4 / (1.0 - 0.09) / 2.0 * (0.3 * (xx + yy).powi(2) + 0.7 * (xx * xx + yy * yy + 2.0 * xy * xy));
+                plane + 1e6 * 0.002 / 2.0 * xx * xx
+            }
+        };
+        assert!((found / expected - 1.0).abs() < 1e-11, "{}: {found} {expected}", element.name);
+        tested += 1;
+    }
+    assert!(tested >= 12, "{tested}");
+}
+
 /// The first scene of a deck with a skin says what the deck states of it, and the scene with it as a material has it in its body.
 #[test]
 fn a_new_scene_names_what_is_beside_the_body() {

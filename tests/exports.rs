@@ -570,7 +570,8 @@ fn springs_on_hexahedra_are_divided_into_those_of_tetrahedra() {
             let of = |&place: &usize| {
                 let spring = &network.springs[place];
                 let own: Vec<f64> = spring.points.iter().flat_map(|&p| x[3 * p..3 * p + 3].to_vec()).collect();
-                0.5 * spring.constant * (division.measure.value(&own, 3) - spring.rest).powi(2)
+                0.5 * spring.constant
+                    * (division.measures[spring.measure].as_ref().unwrap().value(&own, 3) - spring.rest).powi(2)
             };
             division.hexahedra.iter().map(of).sum()
         };

@@ -464,7 +464,8 @@ fn wrong_pressures_are_refused() {
     let law = "material = { young = 1e4, poisson = 0.3, law = \"neo-hookean\" }\n";
     for (material, load, wanted) in [
         (linear, "where = \"x > 0.4 && x < 0.6 && z > 0.4 && z < 0.6\", pressure = 1", "has no sides"),
-        (linear, "group = \"zmax\", pressure = \"1 kN\"", "load[0].pressure"),
+        (linear, "group = \"zmax\", pressure = \"1 kN\"", "(units: Pa, kPa, MPa"),
+        (linear, "group = \"zmax\", pressure = \"0.5 kpa\"", "(units: Pa, kPa, MPa"),
         (linear, "group = \"zmax\", pressure = \"high\"", "expected a pressure such as 1000"),
         (linear, "group = \"zmax\", pressure = [1, 0, 0]", "expected a pressure such as 1000"),
         (linear, "group = \"zmax\", pressure = \"1/(x - 0.5)\"", "is not finite"),
@@ -488,6 +489,72 @@ fn wrong_pressures_are_refused() {
     let text = format!("{ring}load = [{{ group = \"ymax\", pressure = \"z\" }}]\n");
     let error = Scene::parse(&text, Path::new("s.toml")).and_then(|scene| run(&scene, &mut |_| ())).unwrap_err();
     assert!(error.to_string().contains("load[0].pressure: expected an expression of x and y"), "{error}");
+}
+
+/// On a side between two cells a pressure has no direction, and an inclusion is no cavity, whatever the order of the cells.
+#[test]
+fn sides_inside_a_body_are_refused() {
+    let mesh = grid("hex8", &[3.0, 3.0, 3.0], &[3, 3, 3]);
+    let inner = at("x > 0.9 && x < 2.1 && y > 0.9 && y < 2.1 && z > 0.9 && z < 2.1").points(&mesh).unwrap();
+    let mut turned = mesh.clone();
+    let cells: Vec<Vec<usize>> = turned.blocks[0].cells().map(<[usize]>::to_vec).collect();
+    turned.blocks[0].connectivity = cells.into_iter().rev().flatten().collect();
+    for mut mesh in [mesh, turned] {
+        let middle = mesh.cell_indices().find(|cell| mesh.cell_nodes(*cell).iter().all(|p| inner.contains(p))).unwrap();
+        let element = mesh.blocks[0].element.clone();
+        let sides = element.sides().iter().map(|side| {
+            let mut side: Vec<usize> = side.nodes.iter().map(|&a| mesh.cell_nodes(middle)[a]).collect();
+            side.sort_unstable();
+            side
+        });
+        let group = springfit::mesh::Group { points: inner.clone(), sides: sides.collect(), ..Default::default() };
+        mesh.groups.insert("inner".into(), group);
+        let part = Selection::Group("inner".into());
+        let pressure = Component::Constant(1.0);
+        let error = PressedFaces::new(&mesh, &part, &pressure, &CellMap::Uniform(1.0)).unwrap_err().to_string();
+        assert!(error.contains("6 of 6 inside it, with cells on both sides"), "{error}");
+        let error = Cavity::new(&mesh, &part, 2.0, &CellMap::Uniform(1.0)).unwrap_err().to_string();
+        assert!(error.contains("with cells on both sides"), "{error}");
+    }
+}
+
+/// A cavity that is filled to the volume that it has at rest needs no pressure.
+#[test]
+fn a_cavity_at_its_own_volume_stays() {
+    let mesh = sphere("hex8", 1.0, 1.3, [2, 1]);
+    let material = Material::new(1e4, 0.3, State::Solid).unwrap();
+    let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
+    let body = Body { mesh: &mesh, laws: &laws };
+    let sides = at("x^2 + y^2 + z^2 < 1.15^2");
+    let start = Cavity::new(&mesh, &sides, 1.0, &CellMap::Uniform(1.0)).unwrap().volume_at(&mesh.points);
+    for growth in [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 - 1e-9, 1.0 + 1e-6] {
+        let cavity = Cavity::new(&mesh, &sides, growth * start, &CellMap::Uniform(1.0)).unwrap();
+        let found = Newton::default().fill(&body, &mesh.points, &held_by_symmetry(&mesh, 1.0), &cavity).unwrap();
+        assert_eq!(found.ending, Ending::Converged, "{growth}: {:?}", found.residuals);
+        assert!(found.pressures[0].abs() < 1e5 * (growth - 1.0).abs() + 1e-6, "{growth}: {:?}", found.pressures);
+    }
+}
+
+/// Parts of a closed surface are turned as the whole is.
+#[test]
+fn parts_of_a_surface_add_up_to_it() {
+    let solid = sphere("hex8", 0.5, 1.0, [2, 1]);
+    let mut random = Random(12);
+    let element = Arc::new(Element::load("quad4").unwrap().in_space(3));
+    let mut connectivity = Vec::new();
+    let is_outside = |side: &Vec<usize>| side.iter().all(|&p| solid.point(p).iter().map(|x| x * x).sum::<f64>() > 0.9);
+    for mut side in solid.surface_faces().into_iter().filter(is_outside) {
+        if random.next() > 0.3 {
+            side.reverse();
+        }
+        connectivity.extend(side);
+    }
+    let mesh = Mesh::of_cells(3, solid.points.clone(), vec![CellBlock { element, connectivity }]);
+    let whole = pressed(&mesh, &Selection::Everything, 1.0).forces(&mesh.points);
+    let parts = [at("z > 0.0"), at("z < 0.0")].map(|part| pressed(&mesh, &part, 1.0).forces(&mesh.points));
+    for dof in 0..whole.len() {
+        assert!((parts[0][dof] + parts[1][dof] - whole[dof]).abs() < 1e-14);
+    }
 }
 
 /// A sum of a pressure and a force follows in part; without a law a pressure keeps the directions that it has at rest.

@@ -52,16 +52,16 @@ fn undivided(network: &NetworkRecord, division: &Division) -> Option<Network> {
     let is_kept = |place: &usize| division.hexahedra.binary_search(place).is_err();
     let springs = (0..network.springs.len()).filter(is_kept).map(|place| network.springs[place].clone()).collect();
     let mut whole = Parts::of(&NetworkRecord { springs, ..network.clone() }).ok()?.network(3);
-    whole.others.extend(division.hexahedra.iter().map(|&place| {
+    whole.others.extend(division.hexahedra.iter().filter_map(|&place| {
         let spring = &network.springs[place];
-        MeasureSpring {
+        Some(MeasureSpring {
             kind: SpringKind::Volume,
             points: spring.points.iter().copied().collect(),
             constant: spring.constant,
             rest: spring.rest,
-            measure: division.measure.clone(),
+            measure: division.measures[spring.measure].clone()?,
             law: None,
-        }
+        })
     }));
     Some(whole)
 }

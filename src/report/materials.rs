@@ -12,6 +12,10 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
     if fit.kind.whole().is_some_and(|whole| whole.is_measured) {
         return None;
     }
+    // Of springs that belong to no cell nothing is known where membranes or rods are beside them.
+    if outcome.mesh.is_mixed() && !m.distance.is_finite() {
+        return None;
+    }
     // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
     let is_near = |(young, asked): (f64, f64)| (young / asked - 1.0).abs() <= FAR;
     let is_modulus = m.young.zip(m.asked_young).is_some_and(is_near);

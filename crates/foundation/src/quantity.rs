@@ -46,8 +46,19 @@ const VOLUMES: [Unit; 12] = [
     ("L", -3),
 ];
 /// Units of pressure.
-const PRESSURES: [Unit; 8] =
-    [("Pa", 0), ("kPa", 3), ("MPa", 6), ("GPa", 9), ("N/m^2", 0), ("N/m²", 0), ("N/mm^2", 6), ("N/mm²", 6)];
+const PRESSURES: [Unit; 11] = [
+    ("Pa", 0),
+    ("kPa", 3),
+    ("MPa", 6),
+    ("GPa", 9),
+    ("hPa", 2),
+    ("mbar", 2),
+    ("bar", 5),
+    ("N/m^2", 0),
+    ("N/m²", 0),
+    ("N/mm^2", 6),
+    ("N/mm²", 6),
+];
 /// Units of density.
 const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/cm³", 3)];
 /// Units of time.

@@ -6,9 +6,10 @@ use super::component::Component;
 use crate::element::{Integrand, Tabulation};
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::mesh::{Mesh, Selection};
+use crate::mesh::{CellIndex, Mesh, Selection};
 use crate::springs::cross;
 use faer::sparse::Triplet;
+use std::collections::HashMap;
 
 /// Faces on which a pressure acts against their normals, wherever they move: sides of a solid or of a plane body, with the normals that point out of
 /// it, or cells of a surface in space, see [`Mesh::turned`].
@@ -37,7 +38,7 @@ impl PressedFaces {
     /// The faces of a part of a mesh under a pressure in Pa; `thickness` is that of the cells of a plane body, m.
     ///
     /// # Errors
-    /// The part has no sides (of a surface in space no cells), the body is a curve, a surface has one side only, or the pressure is not finite
+    /// The part has no sides (of a surface in space no cells), or sides with cells on both sides of them, the body is a curve, a surface has one side only, or the pressure is not finite
     /// at a point.
     pub fn new(mesh: &Mesh, part: &Selection, pressure: &Component, thickness: &CellMap<f64>) -> Result<PressedFaces> {
         let mut pressed = PressedFaces { dimension: mesh.dimension, tables: Vec::new(), faces: Vec::new() };
@@ -66,6 +67,15 @@ impl PressedFaces {
         if sides.is_empty() {
             return Err(Error::at("load", "acts on nothing: the selected part has no sides"));
         }
+        if let Some((place, count)) = mesh.inner_sides(&sides) {
+            let found =
+                format!("{count} of {} inside it, with cells on both sides, the first at {place:?} m", sides.len());
+            return Err(Error::expected(
+                "load",
+                "sides of the outside of the body, on which a pressure has a direction",
+                found,
+            ));
+        }
         let mut firsts = Vec::new();
         for block in &mesh.blocks {
             firsts.push(self.tables.len());
@@ -91,7 +101,12 @@ impl PressedFaces {
         }
         // Of other blocks no table is used.
         self.tables = mesh.blocks.iter().map(|block| block.element.integration_table(integrand)).collect();
-        for (cell, is_turned) in cells.iter().zip(mesh.turned(&cells)?) {
+        // How cells are turned is a matter of the whole surface, of which these may be a part.
+        let is_sheet = |cell: &CellIndex| mesh.blocks[cell.block].element.dimension() == 2;
+        let all: Vec<CellIndex> = mesh.cell_indices().filter(is_sheet).collect();
+        let turned: HashMap<CellIndex, bool> = all.iter().copied().zip(mesh.turned(&all)?).collect();
+        for cell in &cells {
+            let is_turned = turned[cell];
             let sign = if is_turned { -1.0 } else { 1.0 };
             self.add(mesh, cell.block, mesh.cell_nodes(*cell).to_vec(), (pressure, sign));
         }

@@ -1,7 +1,11 @@
 //! Supports, and whether they hold every body.
 
 use crate::mesh::Mesh;
+use crate::springs::{cross, norm};
 use nalgebra::DMatrix;
+
+/// The distance of points from a line, relative to the extent of the body, that is a rounding error of coordinates far from the origin.
+const STRAIGHT: f64 = 1e-9;
 
 /// Prescribed displacements of the points.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +47,14 @@ pub struct Unheld {
     pub motions: usize,
 }
 
+/// Whether all points are on one line through their centre, to rounding.
+fn is_straight(mesh: &Mesh, points: &[usize], centre: &[f64], extent: f64) -> bool {
+    let from = |p: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(p)[k] - centre[k]) };
+    let Some(far) = points.iter().map(|&p| from(p)).max_by(|a, b| norm(a).total_cmp(&norm(b))) else { return false };
+    let along = far.map(|x| x / norm(&far));
+    points.iter().all(|&p| norm(&cross(along, from(p))) <= STRAIGHT * extent)
+}
+
 /// The bodies that can move without deforming, found by the rank of their rigid motions at the held degrees of freedom.
 pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     let d = mesh.dimension;
@@ -73,8 +85,10 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
         }
         // A zero singular value may be as large as the rounding of coordinates far from the origin.
         let rank = modes.rank(1e-9 * (held.len().max(1) as f64).sqrt());
-        if rank < motions {
-            unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - rank });
+        // To turn a straight rod in space about itself moves no point.
+        let idle = usize::from(rank < motions && d == 3 && is_straight(mesh, &body, &centre, extent));
+        if rank + idle < motions {
+            unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - idle - rank });
         }
     }
     unheld

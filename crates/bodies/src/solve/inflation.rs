@@ -95,8 +95,11 @@ impl Inflation<'_> {
         for _ in 0..self.newton.iterations {
             history.push(lack.size.max(lack.volume.abs() / target));
             if lack.volume.abs() <= FILLED * target {
-                let hidden = self.rest.free(&lack.forces) <= now.rounding && now.rounding <= ROUGHEST * lack.acting;
-                let balance = match (lack.size <= self.newton.tolerance, hidden) {
+                let is_small = self.rest.free(&lack.forces) <= now.rounding;
+                let hidden = is_small && now.rounding <= ROUGHEST * lack.acting;
+                // At the volume at rest nothing acts but rounding errors.
+                let at_rest = is_small && lack.acting <= now.rounding / ROUGHEST;
+                let balance = match (lack.size <= self.newton.tolerance || at_rest, hidden) {
                     (true, _) => ForceBalance::Exact,
                     (false, true) => ForceBalance::Rounded,
                     (false, false) => ForceBalance::None,

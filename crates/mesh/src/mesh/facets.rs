@@ -2,6 +2,7 @@
 
 use super::disjoint::DisjointSets;
 use super::mesh::{CellIndex, Mesh, SideIndex};
+use super::selection::outer_sides;
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{cross, dot};
 use std::collections::{BTreeMap, HashMap};
@@ -30,6 +31,17 @@ impl Mesh {
         let first = open.next()?;
         let along = |k: usize| first.iter().map(|&p| self.point(p)[k]).sum::<f64>() / first.len() as f64;
         Some(((0..self.dimension).map(along).collect(), 1 + open.count()))
+    }
+
+    /// The middle of the first of these sides that has cells on both sides of it, `[dimension]`, m, and the number of such sides; `None` if all are on the
+    /// outside of the body.
+    pub fn inner_sides(&self, sides: &[SideIndex]) -> Option<(Vec<f64>, usize)> {
+        let place = |side: &SideIndex| (side.cell.block, side.cell.cell, side.side);
+        let outer = outer_sides(self, &vec![true; self.point_count()]);
+        let mut inner = sides.iter().filter(|side| outer.binary_search_by_key(&place(side), place).is_err());
+        let points = self.side_nodes(inner.next()?);
+        let along = |k: usize| points.iter().map(|&p| self.point(p)[k]).sum::<f64>() / points.len() as f64;
+        Some(((0..self.dimension).map(along).collect(), 1 + inner.count()))
     }
 
     /// The points at the corners of a side, in an order by which its normal points out of the cell; `None` if the element has no nodes at its

@@ -8,6 +8,7 @@ mod affine;
 mod alike;
 mod annotations;
 mod arrays;
+mod attached;
 mod boxes;
 mod carrier;
 mod coincident;

@@ -1,5 +1,6 @@
 //! Gives the cells of a file their elements.
 
+use super::attached::attached_words;
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
 use super::numbering::Numbering;
 use super::places::Places;
@@ -134,8 +135,7 @@ impl Mesh {
             let of_name = source.blocks.iter().filter(|block| is_attached(block) && block.groups.contains(name));
             if let Some(most) = of_name.map(|block| block.dimension).max() {
                 let what = if most == 2 { "membranes" } else { "rods" };
-                mesh.annotations
-                    .remark(format!("the group \"{name}\" is part of the body as {what}, without bending stiffness"));
+                mesh.annotations.remark(attached_words(name, what));
             }
             let Some(group) = mesh.groups.get(name) else { continue };
             let lost: HashSet<Vec<usize>> = ListedSides::of(&mesh, group).lost.into_iter().collect();

@@ -1,14 +1,14 @@
 //! Springs on the volumes of hexahedra in terms of tetrahedra, for programs that hold these alone.
 
 use super::record::{MeasureKind, MeasureRecord, NetworkRecord, ShareRecord, SpringRecord, TermRecord};
-use crate::element::Element;
+use crate::element::{Cell, Element, SHIPPED};
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{Measure, cross, dot};
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The two ways to divide a hexahedron into a tetrahedron in its middle and four at its corners, which cross its faces along the one
-/// diagonal and along the other. Corners are in the order of `hex8`; volumes are positive in this order.
+/// diagonal and along the other. Corners are in the order of the reference cell; volumes are positive in this order.
 const TETRAHEDRA: [[usize; 4]; 10] = [
     [0, 2, 7, 5],
     [1, 2, 0, 5],
@@ -21,8 +21,6 @@ const TETRAHEDRA: [[usize; 4]; 10] = [
     [5, 4, 6, 1],
     [7, 6, 4, 3],
 ];
-/// The name of the element whose corners have this order.
-const ELEMENT: &str = "hex8";
 /// The mean volume of both divisions is that of the hexahedron, also where its faces are bent, to rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -37,8 +35,8 @@ pub struct Division {
     pub network: NetworkRecord,
     /// The hexahedra, by their places in the springs of the whole one.
     pub hexahedra: Vec<usize>,
-    /// What they measure.
-    pub measure: Measure,
+    /// What they measure, by the places of the measures; `None` of other measures.
+    pub measures: Vec<Option<Measure>>,
 }
 
 impl Division {
@@ -47,24 +45,29 @@ impl Division {
     /// # Errors
     /// A hexahedron is so distorted that one of its tetrahedra has no volume; the key is the place of the spring.
     pub fn of(network: &NetworkRecord) -> Result<Option<Division>> {
-        let is_hexahedral: Vec<bool> = network.measures.iter().map(is_of_hexahedron).collect();
-        let is_meant = |spring: &SpringRecord| is_hexahedral[spring.measure] && spring.law.is_none();
+        let elements: Vec<Option<Arc<Element>>> = network.measures.iter().map(hexahedron).collect();
+        let is_meant = |spring: &SpringRecord| elements[spring.measure].is_some() && spring.law.is_none();
         let hexahedra: Vec<usize> = (0..network.springs.len()).filter(|&s| is_meant(&network.springs[s])).collect();
         if hexahedra.is_empty() || network.dimension != 3 {
             return Ok(None);
         }
-        let measure = Measure::Content(Arc::new(Element::load(ELEMENT)?));
+        let measures: Vec<Option<Measure>> =
+            elements.iter().map(|element| element.clone().map(Measure::Content)).collect();
         let mut divided = network.clone();
         divided.measures.push(of_tetrahedron());
         let of_parts = divided.measures.len() - 1;
         divided.springs = Vec::with_capacity(network.springs.len() + 9 * hexahedra.len());
         for (place, spring) in network.springs.iter().enumerate() {
-            if !is_meant(spring) {
+            let known = elements[spring.measure].as_ref().zip(measures[spring.measure].as_ref());
+            let Some((element, measure)) = known.filter(|_| is_meant(spring)) else {
                 divided.springs.push(spring.clone());
                 continue;
-            }
+            };
+            // A hexahedron of corners alone has a node at each of them.
+            let tetrahedra =
+                TETRAHEDRA.map(|corners| corners.map(|corner| element.corner_node(corner).unwrap_or(corner)));
             let x: Vec<f64> = spring.points.iter().flat_map(|&p| network.points[p].iter().copied()).collect();
-            let volumes = TETRAHEDRA.map(|corners| volume(&x, corners));
+            let volumes = tetrahedra.map(|corners| volume(&x, corners));
             let (whole, half) = (measure.value(&x, 3), volumes.iter().sum::<f64>() / 2.0);
             if !(volumes.iter().all(|volume| *volume > 0.0) && (half / whole - 1.0).abs() < ROUNDING) {
                 let expected = "hexahedra that consist of tetrahedra, into which their springs on volumes are divided";
@@ -73,7 +76,7 @@ impl Division {
                     Error::expected(format!("springs[{place}]"), expected, found).of_kind(ErrorKind::Unsupported)
                 );
             }
-            let parts = TETRAHEDRA.iter().zip(volumes).map(|(corners, volume)| SpringRecord {
+            let parts = tetrahedra.iter().zip(volumes).map(|(corners, volume)| SpringRecord {
                 kind: Cow::Borrowed("volume"),
                 points: Cow::Owned(corners.map(|a| spring.points[a]).to_vec()),
                 constant: spring.constant * whole / (2.0 * volume),
@@ -84,19 +87,21 @@ impl Division {
             });
             divided.springs.extend(parts);
         }
-        Ok(Some(Division { network: divided, hexahedra, measure }))
+        Ok(Some(Division { network: divided, hexahedra, measures }))
     }
 }
 
-/// Whether a measure is the volume of a single hexahedron with eight corners.
-fn is_of_hexahedron(measure: &MeasureRecord) -> bool {
+/// The element of a measure that is the volume of a single hexahedron, whose nodes are its corners; `None` of other measures.
+fn hexahedron(measure: &MeasureRecord) -> Option<Arc<Element>> {
     let is_whole = |cell: &ShareRecord| cell.share == 1.0 && cell.nodes.iter().copied().eq(0..8);
-    let is_solid = |term: &TermRecord| term.gradients.len() == 8 && term.gradients.iter().all(|g| g.len() == 3);
-    let is_of_element = measure.kind == MeasureKind::Content && measure.element.as_deref() == Some(ELEMENT);
-    is_of_element
-        && matches!(&measure.cells[..], [cell] if is_whole(cell))
-        && measure.terms.len() == 8
-        && measure.terms.iter().all(is_solid)
+    let is_single = measure.kind == MeasureKind::Content && matches!(&measure.cells[..], [cell] if is_whole(cell));
+    let name = measure.element.as_deref().filter(|_| is_single)?;
+    // Elements of users' own files are not known here.
+    let file = SHIPPED.iter().find(|file| file.name == name)?;
+    let element = Element::shipped(file).ok()?;
+    let is_hexahedron = element.cell == Cell::Hexahedron && element.has_corners_alone();
+    // The volume of a single quadrature point is not that of the cell.
+    (is_hexahedron && measure.terms.len() == element.tabulation.points()).then(|| Arc::new(element))
 }
 
 /// The volume of the tetrahedron of its points.

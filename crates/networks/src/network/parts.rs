@@ -86,7 +86,9 @@ impl Parts {
             let refused = |found: String| {
                 let expected = "linear springs on lengths and on the contents of triangles or tetrahedra";
                 let error = Error::expected(format!("springs[{i}]"), expected, found);
-                error.followed_by(format!("; {}", advice(spring, measure))).of_kind(ErrorKind::Unsupported)
+                error
+                    .followed_by(format!("; {}", advice(spring, measure, network.dimension)))
+                    .of_kind(ErrorKind::Unsupported)
             };
             if let Some(law) = &spring.law {
                 return Err(refused(format!("the law {law}")));
@@ -131,8 +133,13 @@ fn simplex_table(d: usize) -> Tabulation {
 }
 
 /// The fit that has springs of the right kind.
-fn advice(spring: &SpringRecord, measure: &MeasureRecord) -> &'static str {
+fn advice(spring: &SpringRecord, measure: &MeasureRecord, dimension: usize) -> &'static str {
+    let is_embedded = measure.terms.iter().flat_map(|term| &term.gradients).any(|g| g.len() < dimension);
     match (measure.cells.len(), &spring.law) {
+        _ if is_embedded => {
+            "springs on the areas of membranes and on the lengths of rods in space are held by no program: objective = \"offdiag\" with nonnegative = true has \
+             springs on lengths alone"
+        }
         (_, Some(_)) => "objective = \"exact\" with energy = \"stable-neo-hookean\" has linear springs alone",
         (2.., None) => "volume = \"points\" has springs on single cells",
         (_, None) => {

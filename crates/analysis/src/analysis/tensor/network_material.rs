@@ -114,11 +114,13 @@ pub fn network_material(
     let material = &material.into();
     let start = Instant::now();
     let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
-    let points = mesh.point_count();
+    // Points that only attached cells have are in no sample.
+    let seeds: Vec<usize> = (0..mesh.point_count()).filter(|&p| stars.around(p).next().is_some()).collect();
+    let points = seeds.len();
     let count = most_samples(mesh);
     let flat: Vec<(Sample, Plane)> = (0..count)
         .into_par_iter()
-        .map(|i| flat_sample(&stars, (2 * i + 1) * points / (2 * count), dimension))
+        .map(|i| flat_sample(&stars, seeds[(2 * i + 1) * points / (2 * count)], dimension))
         .collect();
     let order = axis_order(&flat.iter().map(|(_, plane)| plane).collect::<Vec<_>>());
     let measure = |(sample, plane): &(Sample, Plane)| {
@@ -171,6 +173,21 @@ pub fn network_material(
             (mean(&asked), found.map(scaled), wanted.map(scaled))
         }
     };
+    if mesh.is_mixed() && matches!(owners, SpringOwners::Body) {
+        // Springs that belong to no cell cannot be told from those of membranes and rods beside them.
+        return NetworkMaterial {
+            young: None,
+            poisson: None,
+            asked_young: wanted.map(|(young, _)| young),
+            asked_poisson: wanted.and_then(|(_, poisson)| poisson),
+            distance: f64::NAN,
+            mean_distance: f64::NAN,
+            largest_distance: f64::NAN,
+            samples: count,
+            seconds: start.elapsed().as_secs_f64(),
+            stiffness: stiffness * f64::NAN,
+        };
+    }
     NetworkMaterial {
         young: found.map(|(young, _)| young),
         poisson: found.and_then(|(_, poisson)| poisson),

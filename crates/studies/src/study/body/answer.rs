@@ -57,6 +57,11 @@ pub(super) fn check_residual(residual: f64, largest: f64, case: &Case) -> Result
 pub(super) fn not_definite(mesh: &Mesh) -> Error {
     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
     let bending = "; surfaces and curves resist no bending, so hold their points across them";
-    let embedded = mesh.cell_dimension() < mesh.dimension;
-    Error::at("mesh", format!("{why}{}", if embedded { bending } else { "" })).of_kind(ErrorKind::Infeasible)
+    let mixed = "; the membranes and rods of the body resist no bending, so their points that no solid cell has are held across them";
+    let hint = match (mesh.cell_dimension() < mesh.dimension, mesh.is_mixed()) {
+        (true, _) => bending,
+        (false, true) => mixed,
+        (false, false) => "",
+    };
+    Error::at("mesh", format!("{why}{hint}")).of_kind(ErrorKind::Infeasible)
 }

@@ -255,8 +255,15 @@ impl MeshInput {
         Ok(fine)
     }
 
-    /// The mesh, a box with its cells halved this number of times.
+    /// The mesh, a box with its cells halved this number of times, with membranes and rods where a material names sides.
     fn build_coarse(&self, scene: &Path, halvings: u32) -> Result<Mesh> {
+        let mut mesh = self.build_body(scene, halvings)?;
+        mesh.attach_sides(&self.attached).map_err(|e| e.in_file(scene))?;
+        Ok(mesh)
+    }
+
+    /// The mesh, a box with its cells halved this number of times, without what is on its sides.
+    fn build_body(&self, scene: &Path, halvings: u32) -> Result<Mesh> {
         let folder = scene.parent().unwrap_or(Path::new(""));
         let at = |key: &'static str| move |e: Error| e.placed(|e| e.under(key).in_file(scene));
         if let Some(file) = &self.file {

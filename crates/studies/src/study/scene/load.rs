@@ -5,6 +5,7 @@ use super::value::{self, PRESCRIBED, PRESSURE, PrescribedComponent, Varying, Var
 use crate::error::{Error, Result};
 use crate::model::{Action, Component};
 use crate::named::unknown;
+use crate::quantity::Quantity;
 use crate::range;
 use crate::study::own_name::expect_own_name;
 use crate::symbolic::Scope;
@@ -88,7 +89,7 @@ pub struct LoadEntry {
     pub traction: Option<Vec<Varying>>,
     /// A pressure acts on the sides of the part against the normal that points out of the body: a number in Pa, a text with a unit such as
     /// `"1 kPa"`, or an expression of x, y, z in m. Of a surface in space it acts on the cells, against the outward normal of a closed surface and
-    /// else against the one of most cells. With a law it follows the sides where they move and turn.
+    /// else against the one of most cells. With a law it follows the sides where they move and turn; in plane stress their thickness is that at rest.
     pub pressure: Option<VaryingPressure>,
     /// The sides of the part, which close a cavity, are filled until they enclose this volume: a number in m³ or a text with a unit such as
     /// `"30 ml"`; of a plane body the area times the thickness. The pressure is found. The material has a law.
@@ -226,10 +227,14 @@ impl LoadEntry {
         }
         if let Some(VaryingPressure(v)) = self.pressure {
             sized("pressure", &[&v], "Pa")?;
-            let is_word = matches!(&v, Varying::Text(text) if text.chars().all(|c| !c.is_ascii_digit()));
+            // A number before letters is meant with a unit, and a text without a number is no expression that someone meant.
+            let is_quantity =
+                |text: &str| text.trim_start_matches(|c: char| !c.is_alphabetic()).chars().all(char::is_alphabetic);
             let pressure = component(v.clone()).map_err(|e| match v {
-                // A text without a number is no expression that someone meant.
-                Varying::Text(text) if is_word => Error::expected("pressure", PRESSURE, format!("\"{text}\"")),
+                Varying::Text(text) if is_quantity(&text) => match Quantity::Pressure.parse(&text) {
+                    Err(units) if text.chars().any(|c| c.is_ascii_digit()) => units.under("pressure"),
+                    _ => Error::expected("pressure", PRESSURE, format!("\"{text}\"")),
+                },
                 Varying::Text(_) | Varying::Number(_) => e.under("pressure"),
             })?;
             actions.push(Action::Pressure(pressure));

@@ -77,6 +77,11 @@ fn region_of_cells(entries: &MaterialEntries, mesh: &Mesh) -> Result<Vec<Vec<usi
                         "has no cells: group \"{name}\" has none of the body, which is without what has fewer dimensions: {left_out}"
                     )
                 }
+                (Part::Group(name), _) if mesh.groups.get(name).is_some_and(|group| group.is_of_points()) => {
+                    format!(
+                        "has no cells: the group \"{name}\" has points alone, of which no membranes or rods can be made"
+                    )
+                }
                 _ => "has no cells: the selected part of the mesh has none".into(),
             };
             return Err(under(part.without_members(&problem, mesh)));

@@ -109,7 +109,7 @@ impl Repair {
             ));
         }
         lines.extend(self.fragments.words("apart from the body", scale));
-        lines.extend(self.inner.words("inside the body that is no cavity", scale));
+        lines.extend(self.inner.words("inside the body and no cavity", scale));
         if self.cavities > 0 {
             let are = if self.cavities == 1 { "is a cavity" } else { "are cavities" };
             lines
