@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A network whose springs on the volumes of hexahedra are on those of tetrahedra.
 ///
-/// The volume of a hexahedron is half that of its ten [tetrahedra](TETRAHEDRA), `V = ½ Σ_t V_t`. In place of `½ K (V − V̄)²` they have
+/// The volume of a hexahedron is half that of its ten tetrahedra, `V = ½ Σ_t V_t`. In place of `½ K (V − V̄)²` they have
 /// `Σ_t ½ K_t (V_t − V̄_t)²` with `K_t = K V₀/(2 V_t0)` and `V̄_t/V_t0 = V̄/V₀`: the same energy if all grow alike, and more otherwise, by the inequality of Cauchy and
 /// Schwarz. The network is stiffer where the cells change their shapes.
 #[derive(Debug)]
