@@ -99,7 +99,7 @@ impl PressedFaces {
                 "acts on nothing: the selected part has no cells, on which a pressure acts of a surface in space",
             ));
         }
-        // Of other blocks no table is used.
+        // Blocks of other cells have tables that are not used.
         self.tables = mesh.blocks.iter().map(|block| block.element.integration_table(integrand)).collect();
         // How cells are turned is a matter of the whole surface, of which these may be a part.
         let is_sheet = |cell: &CellIndex| mesh.blocks[cell.block].element.dimension() == 2;

@@ -4,6 +4,8 @@ use super::mesh::{CellBlock, CellIndex, Mesh, SideIndex};
 use super::selection::ListedSides;
 use crate::element::{Cell, Element, SHIPPED, Side};
 use crate::error::{Error, ErrorKind, Result};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 impl Mesh {
@@ -13,6 +15,7 @@ impl Mesh {
     /// # Errors
     /// No shipped element has the functions of a side (kind `Unsupported`).
     pub fn attach_sides(&mut self, names: &[String]) -> Result<()> {
+        let mut known_sides: HashMap<(usize, usize), (Arc<Element>, Vec<usize>)> = HashMap::new();
         for name in names {
             let Some(group) = self.groups.get(name).filter(|group| group.cells.is_empty()) else { continue };
             let sides = ListedSides::of(self, group).sides;
@@ -21,10 +24,16 @@ impl Mesh {
             }
             let mut cells = Vec::with_capacity(sides.len());
             for side in &sides {
-                let (element, nodes) = self.of_side(side)?;
+                // To read elements takes longer than all else here.
+                let (element, places) = match known_sides.entry((side.cell.block, side.side)) {
+                    Entry::Occupied(known) => known.into_mut(),
+                    Entry::Vacant(place) => place.insert(self.of_side(side)?),
+                };
+                let points = self.cell_nodes(side.cell);
+                let nodes: Vec<usize> = places.iter().map(|&node| points[node]).collect();
                 let known = self.blocks.iter().position(|block| block.element.name == element.name);
                 let block = known.unwrap_or_else(|| {
-                    let element = Arc::new(Element::clone(&element).in_space(self.dimension));
+                    let element = Arc::new(Element::clone(element).in_space(self.dimension));
                     self.blocks.push(CellBlock { element, connectivity: Vec::new() });
                     self.blocks.len() - 1
                 });
@@ -40,17 +49,16 @@ impl Mesh {
         Ok(())
     }
 
-    /// The element of a side, and its points in the order of that element.
+    /// The element of a side, and the nodes of the cell that are its own, in their order.
     fn of_side(&self, side: &SideIndex) -> Result<(Arc<Element>, Vec<usize>)> {
         let body = &self.blocks[side.cell.block].element;
         let own = &body.cell.sides()[side.side];
         let count = body.sides()[side.side].nodes.len();
-        let points = self.cell_nodes(side.cell);
         let shipped = SHIPPED.iter().filter_map(|file| Element::shipped(file).ok());
         let mut fitting = shipped.filter(|element| element.cell == own.cell && element.nodes() == count);
         let placed = fitting.find_map(|element| {
             let nodes = on_side(&element, own, body)?;
-            Some((Arc::new(element), nodes.into_iter().map(|node| points[node]).collect()))
+            Some((Arc::new(element), nodes))
         });
         placed.ok_or_else(|| {
             let expected = "cells with sides of a shipped element, for membranes and rods on them";

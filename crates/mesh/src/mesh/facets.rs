@@ -29,8 +29,7 @@ impl Mesh {
         }
         let mut open = passed.into_iter().filter(|(_, times)| *times != 0).map(|(points, _)| points);
         let first = open.next()?;
-        let along = |k: usize| first.iter().map(|&p| self.point(p)[k]).sum::<f64>() / first.len() as f64;
-        Some(((0..self.dimension).map(along).collect(), 1 + open.count()))
+        Some((self.mean_place(&first), 1 + open.count()))
     }
 
     /// The middle of the first of these sides that has cells on both sides of it, `[dimension]`, m, and the number of such sides; `None` if all are on the
@@ -40,8 +39,7 @@ impl Mesh {
         let outer = outer_sides(self, &vec![true; self.point_count()]);
         let mut inner = sides.iter().filter(|side| outer.binary_search_by_key(&place(side), place).is_err());
         let points = self.side_nodes(inner.next()?);
-        let along = |k: usize| points.iter().map(|&p| self.point(p)[k]).sum::<f64>() / points.len() as f64;
-        Some(((0..self.dimension).map(along).collect(), 1 + inner.count()))
+        Some((self.mean_place(&points), 1 + inner.count()))
     }
 
     /// The points at the corners of a side, in an order by which its normal points out of the cell; `None` if the element has no nodes at its

@@ -213,8 +213,12 @@ impl Mesh {
 
     /// The middle of a cell, the mean of its nodes, `[dimension]`, m.
     pub fn middle(&self, cell: CellIndex) -> Vec<f64> {
-        let nodes = self.cell_nodes(cell);
-        let along = |k: usize| nodes.iter().map(|&p| self.point(p)[k]).sum::<f64>() / nodes.len() as f64;
+        self.mean_place(self.cell_nodes(cell))
+    }
+
+    /// The mean of some points, `[dimension]`, m.
+    pub(super) fn mean_place(&self, points: &[usize]) -> Vec<f64> {
+        let along = |k: usize| points.iter().map(|&p| self.point(p)[k]).sum::<f64>() / points.len() as f64;
         (0..self.dimension).map(along).collect()
     }
 

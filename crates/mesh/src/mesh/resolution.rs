@@ -37,7 +37,7 @@ impl Mesh {
     /// which become part of it: membranes on solids, rods in them. A group that has cells of the body stands for these alone.
     ///
     /// # Errors
-    /// Those of [`Mesh::resolve_within`].
+    /// It fails as [`Mesh::resolve_within`] does.
     pub fn resolve_attached(
         source: &MeshSource,
         own: &[Arc<Element>],

@@ -40,7 +40,7 @@ impl FillSpacing {
     /// The edge of a cube, m, in a surface with this volume, m³; `count` is the number of points with an edge.
     ///
     /// # Errors
-    /// Those of `count`, about the key `points`.
+    /// The count fails; the error has the key `points`.
     pub(super) fn edge(self, volume: f64, of_cube: usize, count: impl Fn(f64) -> Result<usize>) -> Result<f64> {
         let wanted = match self {
             FillSpacing::Edge(edge) => return Ok(edge),

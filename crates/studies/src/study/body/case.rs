@@ -16,7 +16,7 @@ pub struct Case {
     pub forces: Vec<f64>,
     /// The faces of the pressures among them, which follow these at large deformation.
     pub pressed: Option<PressedFaces>,
-    /// The cavity that is filled to a given volume; its pressure is found, and is none of the forces above.
+    /// The load fills this cavity to a given volume. The pressure in it is found; `forces` do not have it.
     pub cavity: Option<Cavity>,
     /// Whether the load prescribes displacements or a volume; its work is then that of the forces that hold them.
     pub is_prescribed: bool,

@@ -7,9 +7,9 @@ use std::collections::HashMap;
 
 /// The triangles of sheets that were left out.
 pub(super) struct Sheets {
-    /// Those with an area.
+    /// Triangles with an area have this number.
     pub triangles: usize,
-    /// Those without, such as the splinters of a cut.
+    /// Triangles without an area, such as the splinters of a cut, have this number.
     pub flat: usize,
 }
 
