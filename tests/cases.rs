@@ -3,7 +3,6 @@
 use springfit::element::Element;
 use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
 use springfit::material::Material;
-use springfit::report::Comparison;
 use springfit::solve::Standing;
 use springfit::study::{Event, FitOutcome, NamedFit, Scene, compare_element, run};
 use std::path::Path;
@@ -177,9 +176,9 @@ fn a_fit_from_no_file_is_named_in_errors() {
 }
 
 /// The certified optimum is at least as good in the 2-norm as what any other objective or solver finds with length springs, on the
-/// mean of the shapes; and the table, the CSV file and the plot name every method.
+/// mean of the shapes.
 #[test]
-fn comparisons_show_every_method() {
+fn no_method_beats_the_certified_optimum() {
     let element = Element::load("tri3").unwrap();
     let material = Material::for_body(2, 1e4, 0.3, None, None).unwrap();
     let outcomes = compare_element(&element, material, 5, 50, &mut |_| {}).unwrap();
@@ -191,11 +190,4 @@ fn comparisons_show_every_method() {
     for outcome in outcomes.iter().filter(|o| fitted(&o.name)) {
         assert!(outcome.spectral.mean >= certified.spectral.mean * (1.0 - 1e-8), "{outcome:?}");
     }
-    let comparison = Comparison::of_element("three".into(), &outcomes, 1e4);
-    let plot = comparison.plot().unwrap();
-    for outcome in &outcomes {
-        assert!(comparison.table.csv().contains(&outcome.name) && comparison.text().contains(&outcome.name));
-        assert!(plot.contains(&outcome.name), "{} is not in the plot", outcome.name);
-    }
-    assert!(plot.starts_with("<svg") && plot.trim_end().ends_with("</svg>"));
 }

@@ -263,7 +263,7 @@ fn json_is_one_document() {
     assert!(text(&written.stderr).contains("written: o/report.json"), "{}", text(&written.stderr));
     assert!(document(&["compare", "s.toml", "--json"])["fits"].as_array().unwrap().len() > 5);
     assert!(
-        document(&["compare", "tri3", "--shapes=2", "--iterations=5", "--json"])[0]["frobenius"]["mean"].is_number()
+        document(&["compare", "tri3", "--shapes=2", "--iterations=5", "--json"])["cases"][0]["methods"][0]["values"]["frobenius"]["mean"].is_number()
     );
     assert_eq!(document(&["converge", "s.toml", "--levels=2", "--json"])["levels"].as_array().unwrap().len(), 2);
     assert!(document(&["stability", "s.toml", "--json"])["rows"][0]["verdict"].is_string());

@@ -320,20 +320,23 @@ fn what_would_mix_or_lose_studies_is_refused() {
     assert!(refused(folder, "sweep s.toml --out o").contains("--resume"));
     fs::write(folder.join("s.toml"), read(folder, "s.toml").replace("young = 1000", "young = 1001")).unwrap();
     assert!(
-        refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of this scene")
+        refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of this file")
     );
     assert!(refused(folder, "sweep s.toml --out o --resume --set material.young=1002").contains("studies.jsonl:1"));
     // Shards are of one scene, whether they go on or not.
     assert!(
-        refused(folder, "sweep s.toml --out o --shard 3/3").contains("studies.jsonl:1: expected a study of this scene")
+        refused(folder, "sweep s.toml --out o --shard 3/3").contains("studies.jsonl:1: expected a study of this file")
     );
     assert_eq!(read(folder, "o/studies.jsonl"), lines);
     fs::write(folder.join("o/studies.jsonl"), "no study\n").unwrap();
     assert!(
-        refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl: expected a file of a sweep, or none")
+        refused(folder, "sweep s.toml --out o --resume")
+            .contains("studies.jsonl: expected a file of a sweep or of a comparison, or none")
     );
     fs::write(folder.join("o/studies.jsonl"), "{\"settings\":{}}\n").unwrap();
-    assert!(refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of a sweep"));
+    assert!(
+        refused(folder, "sweep s.toml --out o --resume").contains("studies.jsonl:1: expected a study of this kind")
+    );
     for (arguments, words) in [
         ("sweep s.toml --shard 0/2", "--shard"),
         ("sweep s.toml --shard 3/2", "--shard"),

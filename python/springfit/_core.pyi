@@ -20,11 +20,13 @@ __all__ = [
     "Studies",
     "Sweep",
     "__version__",
+    "compare_cases",
     "compare_element",
     "compare_scene",
     "converge",
     "finite_elements",
     "fit",
+    "is_comparison",
     "masses",
     "parsed_element",
     "restored_mesh",
@@ -224,6 +226,8 @@ class CellConstants:
 _Given: TypeAlias = tuple[Path | dict[str, Any], Path, dict[str, Any]]
 
 def compare_scene(given: _Given, progress: _Progress | None = None) -> str: ...
+def compare_cases(comparison: Any, folder: str | PathLike[str], progress: _Progress | None = None) -> str: ...
+def is_comparison(text: str) -> bool: ...
 def compare_element(
     element: Element, poisson: float, plane: str | None, shapes: int, iterations: int, progress: _Progress | None = None
 ) -> str: ...

@@ -47,10 +47,11 @@ def compare(
     iterations: int | None = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
 ) -> "Report | pandas.DataFrame":
-    """Objectives and solvers side by side, as ``springfit compare``.
+    """Fits side by side, as ``springfit compare``.
 
     Args:
-        what: A scene, whose body is fitted by many methods; or an ``Element``, of which random shapes are.
+        what: A scene, whose body is fitted by many methods; an ``Element``, of which random shapes are; or a comparison: the path of a file
+            with a table ``[compare]``, or its keys as a dictionary.
         set: Keys of the scene that have another value.
         folder: Where the files that a dictionary names are.
         poisson, plane, shapes, iterations: With an element alone: Poisson's ratio (0.3 if None), the state in the plane, how many shapes
@@ -58,11 +59,20 @@ def compare(
         progress: True shows a bar; or a function of (stage, done, total).
 
     Returns:
-        Of a scene a :class:`Report`; of an element a ``pandas.DataFrame`` with one row for each method.
+        Of a scene a :class:`Report`; of an element a ``pandas.DataFrame`` with one row for each method, whose times are processor times of
+        one thread for each element that is fitted, s. Of a comparison a ``pandas.DataFrame`` in long form, with a row for each value: the
+        columns of its case and of its fit, ``item``, ``quantity`` and ``value``.
 
     Raises:
         SpringfitError: The scene, a key or a number is wrong, or an argument is not of what is compared.
     """
+    if _is_comparison(what):
+        _refuse("a scene or an element", "a comparison", set=set, poisson=poisson, plane=plane, shapes=shapes, iterations=iterations)
+        import pandas
+
+        with listener(progress) as told:
+            columns = json.loads(_core.compare_cases(*given(what, folder), told))
+        return pandas.DataFrame(dict(columns))
     if isinstance(what, Element):
         _refuse("a scene", "an element", set=set, folder=folder)
     else:
@@ -76,6 +86,17 @@ def compare(
             counts = (count("shapes", 64 if shapes is None else shapes), count("iterations", 1000 if iterations is None else iterations))
             return pandas.json_normalize(json.loads(_core.compare_element(what, nu, state, *counts, told)))
         return Report(json.loads(_core.compare_scene((*given(what, folder), settings_of(set)), told)), {})
+
+
+def _is_comparison(what: Any) -> bool:
+    if isinstance(what, Mapping):
+        return "compare" in what
+    if isinstance(what, (str, os.PathLike)):
+        try:
+            return _core.is_comparison(Path(what).read_text())
+        except (OSError, UnicodeDecodeError):
+            return False
+    return False
 
 
 def converge(

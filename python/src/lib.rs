@@ -43,6 +43,8 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::compare_cases, module)?)?;
+    module.add_function(wrap_pyfunction!(studies::is_comparison, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_element, module)?)?;
     module.add_function(wrap_pyfunction!(studies::converge, module)?)?;
     module.add_function(wrap_pyfunction!(studies::stability, module)?)?;

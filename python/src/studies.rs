@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
 use springfit::material::{Material, Plane};
-use springfit::report::Report;
-use springfit::study::{self, Event, Scene};
+use springfit::report::{Report, comparison_values};
+use springfit::study::{self, Comparing, Event, Scene};
 use std::path::PathBuf;
 
 /// The path or the keys of a scene, the folder of its files, and its keys with other values.
@@ -69,6 +69,32 @@ pub fn compare_element(
     progress::run(py, progress, move |told| {
         written(serde_json::to_string(&study::compare_element(&element, material, shapes, iterations, told)?))
     })
+}
+
+/// All values of a comparison, as columns in JSON.
+#[pyfunction]
+#[pyo3(signature = (comparison, folder, progress=None))]
+pub fn compare_cases(
+    py: Python,
+    comparison: &Bound<PyAny>,
+    folder: PathBuf,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let (text, path) = text_of(py, comparison, &folder)?;
+    let comparing = Comparing::parse(&text, &path).map_err(|error| raised(py, keyless(error)))?;
+    progress::run(py, progress, move |told: &mut dyn FnMut(Event)| {
+        let records: Vec<_> = comparing.cases().iter().map(|case| comparing.record(case, told)).collect();
+        match records.iter().find_map(|record| record.error.clone()) {
+            Some(error) => Err(Error::new(error)),
+            None => written(serde_json::to_string(&comparison_values(&records))),
+        }
+    })
+}
+
+/// Whether a text is that of a comparison.
+#[pyfunction]
+pub fn is_comparison(text: &str) -> bool {
+    study::is_comparison(text)
 }
 
 /// The errors of a scene on finer and finer meshes; `truth` is a scene whose finite elements are the reference.

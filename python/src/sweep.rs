@@ -7,7 +7,7 @@ use crate::value::table;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::Result;
-use springfit::report::{StudyLines, StudyRecord, StudyTable};
+use springfit::report::{Line, StudyLines, StudyRecord, StudyTable};
 use springfit::study::{self, Setting, Study};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -22,7 +22,7 @@ pub struct Sweep {
 
 /// A file of one line for each study.
 #[pyclass(frozen, module = "springfit._core")]
-pub struct Studies(Mutex<StudyLines>);
+pub struct Studies(Mutex<StudyLines<StudyRecord>>);
 
 #[pymethods]
 impl Sweep {
@@ -73,7 +73,7 @@ impl Studies {
     /// Opens the file at `path`; what it has of the sweep is known.
     #[new]
     fn new(py: Python, path: PathBuf, sweep: &Sweep) -> PyResult<Studies> {
-        let lines = apart(py, || StudyLines::open_file(path, &[], true, &sweep.sweep));
+        let lines = apart(py, || StudyLines::open_file(path, &[], true, &StudyRecord::sums(&sweep.sweep)));
         Ok(Studies(Mutex::new(lines.map_err(|error| raised(py, error))?)))
     }
 

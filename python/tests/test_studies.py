@@ -107,6 +107,37 @@ def test_studies_of_elements_are_data_frames():
     assert not (cases["verdict"] == "lost").any()
 
 
+def test_comparisons_are_long_tables(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    keys = {
+        "compare": {
+            "elements": ["tri3", "quad4"],
+            "shapes": {"count": 4, "seed": [1, 2]},
+            "fit": [{"objective": ["frobenius", "spectral"], "nonnegative": True}],
+        }
+    }
+    table = sf.compare(keys)
+    values = table[table.quantity == "spectral"]
+    assert len(values) == 2 * 2 * 2 * 4 and values.value.between(0, 2).all()
+    medians = values.groupby(["element", "fit"]).value.median().unstack()
+    assert (medians["spectral k>=0"] <= medians["frobenius k>=0"]).all()
+    seconds = table[table.quantity == "seconds fit"]
+    assert (seconds.value > 0).all() and (seconds.groupby(["case", "fit"]).size() >= 5).all()
+    path = tmp_path / "norms.toml"
+    path.write_text(
+        '[compare]\nelements = ["tri3", "quad4"]\nshapes = { count = 4, seed = [1, 2] }\n'
+        '[[compare.fit]]\nobjective = ["frobenius", "spectral"]\nnonnegative = true\n'
+    )
+    again = sf.compare(path)
+    same = again[again.quantity == "spectral"].value.reset_index(drop=True)
+    pandas.testing.assert_series_equal(same, values.value.reset_index(drop=True))
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.compare({"compare": {"elements": []}})
+    assert "elements" in str(error.value)
+    with pytest.raises(sf.SpringfitError):
+        sf.compare(keys, poisson=0.3)
+
+
 @pytest.mark.parametrize(
     "call, key",
     [

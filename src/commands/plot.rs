@@ -3,16 +3,16 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::report::{Columns, Figure, Markup, PictureFormat, RunFolder, Table};
+use springfit::report::{Columns, Cost, Figure, Markup, PictureFormat, RunFolder, Table};
 use springfit::{check_apart, check_file, write_whole};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Figures and tables of a run for a paper, from its folder
+/// Figures and tables for a paper, from the folder of a run, a comparison, a sweep or a convergence study
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Plot {
-    /// The folder of a run, with its report.json
+    /// The folder of a run with its report.json, or that of a comparison, a sweep or a convergence study
     run: PathBuf,
     /// Draw this figure
     #[arg(long, value_enum, conflicts_with = "table", required_unless_present = "table")]
@@ -20,12 +20,15 @@ pub struct Plot {
     /// Typeset the tables of the run
     #[arg(long, value_enum)]
     table: Option<Markup>,
-    /// One load or fit of the figure, or one table: fits, errors, materials, times, whole, frequencies, motion
+    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: fits, errors, materials, times, costs, whole, frequencies, motion
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
     /// The load of the figure deformation, whose fit is --of [default: the first]
     #[arg(long, value_name = "NAME", conflicts_with = "table")]
     load: Option<String>,
+    /// What the figure work-precision has across; all but fit need a run that measured costs [default: fit]
+    #[arg(long, value_enum, conflicts_with = "table")]
+    cost: Option<Cost>,
     /// Columns of the page that the figure is as wide as: 85 or 178 mm
     #[arg(long, value_enum, default_value_t)]
     columns: Columns,
@@ -37,10 +40,14 @@ pub struct Plot {
 const EXAMPLES: &str = "\
 Examples:
   springfit plot out/cube_tet --figure work-precision -o precision.svg
+  springfit plot out/cube_tet --figure work-precision --cost solve -o solve.svg   # of a run that measured costs
   springfit plot out/cube_tet --figure constants --of exact --columns two -o constants.svg
   springfit plot out/cube_tet --figure deformation --of exact --load shear -o shear.svg   # of a run with [output] vtu = true
   springfit plot out/cube_tet --figure moduli -o moduli.svg
   springfit plot out/converge-cube_tet --figure convergence -o convergence.svg
+  springfit plot out/compare-norms --figure ecdf --of tet4 -o ecdf.svg
+  springfit plot out/compare-norms --figure work-precision -o precision.svg
+  springfit plot out/sweep-cube_tet --figure sweep --of material.poisson -o sweep.svg
   springfit plot out/cube_tet --table latex --of errors -o errors.tex   # with \\usepackage{booktabs}
   springfit plot out/cube_tet --table markdown";
 
@@ -60,7 +67,7 @@ impl Plot {
         }
         let text = match (self.figure, self.table) {
             (Some(figure), _) => {
-                let picture = figure.picture(&run, self.of.as_deref(), self.load.as_deref())?;
+                let picture = figure.picture(&run, self.of.as_deref(), self.load.as_deref(), self.cost)?;
                 figure.left_out(&run, self.of.as_deref())?.iter().for_each(|note| terminal.note(note));
                 picture.svg(self.columns)?
             }

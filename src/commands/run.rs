@@ -29,6 +29,9 @@ pub struct Run {
     /// Write the report as a page as well, OUT/report.html: tables, figures and a view of the body in one file that needs no network
     #[arg(long, help_heading = "Output")]
     report: bool,
+    /// Measure what fits and models cost, as `time = true` in [output] does: processor time of one thread, in passes that take turns
+    #[arg(long)]
+    time: bool,
     /// Folder of report.json, of the networks and of the files that [output] asks for [default: out/NAME of the scene]
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
@@ -41,6 +44,7 @@ Examples:
   springfit run scene.toml
   springfit run scene.toml --report                      # and a page to look at: out/scene/report.html
   springfit run scene.toml --explain                     # sizes, stages, estimates; nothing is run
+  springfit run scene.toml --time                        # what each fit, network and the finite elements cost
   springfit run scene.toml --set material.poisson=0.45 --out out/soft
   springfit run scene.toml --json | jq '.fits[].name'    # the keys of report.json: springfit schema report";
 
@@ -49,6 +53,9 @@ impl Run {
         let mut scene = self.settings.scene(&self.scene)?;
         if self.report {
             scene.output_mut().report = Some(true);
+        }
+        if self.time {
+            scene.output_mut().time = true;
         }
         if self.explain {
             let forecast = Forecast::of(&scene)?;

@@ -6,7 +6,7 @@ use springfit::error::Result;
 use springfit::{element, material, report, study};
 use std::process::ExitCode;
 
-/// Write the JSON Schema of scenes, elements, materials, networks or reports, for editors
+/// Write the JSON Schema of scenes, comparisons, elements, materials, networks or reports, for editors
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Schema {
@@ -22,6 +22,8 @@ pub struct Schema {
 enum Kind {
     /// Scenes, in TOML
     Scene,
+    /// Files with a table [compare], in TOML
+    Compare,
     /// Element files, in TOML
     Element,
     /// Material files, in TOML
@@ -44,6 +46,7 @@ impl Schema {
         // The third says whether the program writes such files.
         let (schema, name, is_written) = match self.of {
             Kind::Scene => (study::scene_schema(), "scene", false),
+            Kind::Compare => (study::compare_schema(), "comparison", false),
             Kind::Element => (element::schema(), "element", false),
             Kind::Material => (material::schema(), "material", false),
             Kind::Network => (report::network_schema(), "network", true),

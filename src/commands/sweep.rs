@@ -68,10 +68,10 @@ impl Sweep {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep-{stem}")));
         let name = shard.file_name("table", "csv");
         report::check_study_table(&folder.join(&name), std::slice::from_ref(&self.scene))?;
-        let mut lines = StudyLines::open(&folder, shard, self.resume, &sweep)?;
+        let mut lines = StudyLines::open(&folder, shard, self.resume, &StudyRecord::sums(&sweep))?;
         let own: HashSet<&str> =
             (0..marks.len()).filter(|place| shard.has(*place)).map(|place| marks[place].as_str()).collect();
-        let table = |lines: &StudyLines| {
+        let table = |lines: &StudyLines<StudyRecord>| {
             let of_shard = |mark: &str| lines.record(mark).filter(|_| own.contains(mark));
             StudyTable::of(sweep.keys(), sweep.studies(), of_shard)
         };

@@ -5,7 +5,9 @@ use crate::fit::Spread;
 use crate::fit::published::Unmet;
 use crate::number::finite;
 use crate::positive::PositiveOutcome;
-use crate::study::{FitOutcome, KindRecord, NetworkMaterial, SampledOutcome, TensionOutcome, WholeOutcome};
+use crate::study::{
+    FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, SampledOutcome, TensionOutcome, WholeOutcome,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -24,12 +26,22 @@ pub struct FitRecord {
     pub status: String,
     /// The network has this number of springs.
     pub springs: usize,
-    /// The constants took this time in s, without assembly.
+    /// The constants of all elements took this processor time in s without assembly, in the pass that made them.
     pub seconds: f64,
-    /// The constants of each element took this time in s.
+    /// The constants of each element that was fitted took this processor time in s: the median of repeated passes with `time = true` in
+    /// `[output]`, otherwise that of the pass that made them. Elements that have the constants of another do not count.
     pub seconds_per_element: f64,
-    /// The sum of the springs of the cells into the network took this time in s.
+    /// The sum of the springs of the cells into the network took this processor time in s, in the same pass.
     pub seconds_assembly: f64,
+    /// This number of elements was fitted; the others have the constants of one of them.
+    #[serde(default)]
+    pub fitted_elements: usize,
+    /// `times` has what the fit costs on one thread, repeated; it is null without `time = true` in `[output]`.
+    #[serde(default)]
+    pub times: Option<FitTimes>,
+    /// `model_times` has what the network costs on one thread, repeated; it is null without `time = true` in `[output]`.
+    #[serde(default)]
+    pub model_times: Option<ModelTimes>,
     /// The elements have these errors `‖R − K‖/‖R‖` in the Frobenius norm; they are null for whole-object fits.
     pub relative_frobenius: Spread,
     /// The elements have these errors `‖R − K‖/‖R‖` in the induced 2-norm; they are null for whole-object fits.
@@ -89,8 +101,11 @@ impl FitRecord {
             status: outcome.status().into(),
             springs: outcome.network.len(),
             seconds: outcome.seconds,
-            seconds_per_element: outcome.seconds / elements.max(1) as f64,
+            seconds_per_element: outcome.seconds_per_element(elements),
             seconds_assembly: outcome.seconds_assembly,
+            fitted_elements: elements.saturating_sub(outcome.reused),
+            times: outcome.times.clone(),
+            model_times: outcome.model_times.clone(),
             relative_frobenius: outcome.frobenius().unwrap_or(Spread::UNKNOWN),
             relative_spectral: outcome.spectral().unwrap_or(Spread::UNKNOWN),
             negative_springs: outcome.network.negative(),

@@ -9,7 +9,7 @@ use super::notes::notes;
 use super::region_record::RegionRecord;
 use crate::mesh::Mesh;
 use crate::number::finite;
-use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, Outcome, Reading, extent};
+use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, ModelTimes, Outcome, Reading, extent};
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +69,9 @@ pub struct Report {
     pub starts: Vec<Agreement>,
     /// Each entry has the lowest natural frequencies of a model.
     pub frequencies: Vec<FrequencyOutcome>,
+    /// `model_times` has what the finite elements of the mesh cost on one thread, repeated; it is null without `time = true` in `[output]`.
+    #[serde(default)]
+    pub model_times: Option<ModelTimes>,
     /// `motion_options` says how motions were computed; it is null without `[motion]`.
     pub motion_options: Option<MotionOptionsRecord>,
     /// Each entry is the motion of a model.
@@ -159,6 +162,7 @@ impl Report {
             gauge: outcome.loads.iter().filter_map(gauge).collect(),
             starts: agreements(outcome),
             frequencies: outcome.frequencies.clone(),
+            model_times: outcome.model_times.clone(),
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),
             fits: outcome.fits.iter().map(fit).collect(),

@@ -49,9 +49,9 @@ pub struct LoadRecord {
     /// The network is softer than the finite elements by this error of the compliance, percent. With the work w of the load it is `w/w_FEM
     /// − 1`; where displacements are prescribed, with the work of the forces that hold them, `w_FEM/w − 1`.
     pub e_energy: Option<f64>,
-    /// The finite elements took this time in s to assemble, factorise and solve, as if this were the only load.
+    /// The finite elements took this processor time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_fem: f64,
-    /// The network took this time in s to assemble, factorise and solve, as if this were the only load.
+    /// The network took this processor time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_lem: f64,
     /// `solver_fem` says how the equations of the finite elements were solved; it is null at large deformation.
     pub solver_fem: Option<Solved>,

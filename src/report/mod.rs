@@ -3,6 +3,7 @@
 mod agreement;
 mod catalogue;
 mod check;
+mod compare;
 mod comparison;
 mod convergence;
 mod deformed;
@@ -29,6 +30,7 @@ mod outputs;
 pub mod page;
 mod paper;
 mod pictures;
+mod plots;
 mod quality;
 mod referee;
 mod region_record;
@@ -45,12 +47,15 @@ mod table;
 
 pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, materials_table};
 pub use check::{check_table, check_text};
+pub use compare::{
+    CASES, COMPARE_FILES, Summary, compare_tables, compare_text, comparison_values, summarized, write_comparison,
+};
 pub use comparison::{COMPARISON_FILES, Comparison};
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_tables, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
 pub use figure::{
-    Axis, Chart, Columns, Deformation, Figure, Moduli, ModulusCurve, Picture, PictureFormat, RunFolder, Series, Shape,
+    Axis, Chart, Columns, Cost, Deformation, Moduli, ModulusCurve, PictureFormat, RunFolder, Series, Shape,
 };
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
@@ -67,6 +72,7 @@ pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_table, write_paper};
 pub use pictures::{displacement_grid, network_grid};
+pub use plots::{Figure, Picture};
 pub use quality::mesh_notes;
 pub use referee::{
     EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
@@ -76,7 +82,7 @@ pub use region_record::RegionRecord;
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_tables, write_stretches};
-pub use study_lines::StudyLines;
+pub use study_lines::{Line, StudyLines};
 pub use study_record::StudyRecord;
 pub use study_table::{StudyTable, check_study_table, planned_table, studies_table, studies_text};
 pub use summary::{summary, tables};

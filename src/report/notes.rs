@@ -123,7 +123,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
             "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each. Each of the others has the shape of one of them and takes its \
              constants (* in the table)",
             if fitted == 1 { "was" } else { "were" },
-            1e6 * fit.seconds / fitted as f64
+            1e6 * fit.seconds_per_element(cells)
         ));
     }
     if fit.unreached > 0 {

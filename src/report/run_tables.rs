@@ -8,7 +8,7 @@ use super::motion::motions;
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::{First, Third};
 use super::table::{Cell, Column, Table};
-use crate::study::{BODY, Reading, SampledOutcome};
+use crate::study::{BODY, FitTimes, ModelTimes, Reading, SampledOutcome, Times};
 
 impl Table {
     /// All tables for which the report has results.
@@ -18,6 +18,7 @@ impl Table {
             errors(report),
             materials(report),
             times(report),
+            costs(report),
             whole(report),
             frequencies(&report.frequencies),
             motions(report.motion_options.as_ref(), &report.motion),
@@ -34,6 +35,7 @@ fn loads(report: &Report) -> &[LoadRecord] {
 fn fits(report: &Report) -> Table {
     let matrices = "|R-K|/|R| Frobenius";
     let standing = standing(report);
+    let passes = if report.fits.iter().all(|fit| fit.times.is_some()) { "fit median" } else { "fit once" };
     let mut columns = vec![
         Column::words("fit"),
         // What all have is said below the table, and without loads no network is asked to stand.
@@ -44,7 +46,7 @@ fn fits(report: &Report) -> Table {
         Column::numbers("max").group(matrices).priority(First),
         Column::numbers("mean").group("2-norm").priority(First),
         Column::numbers("max").group("2-norm").priority(First),
-        Column::numbers("fit").unit("µs/element").priority(First),
+        Column::numbers(passes).unit("µs/element").priority(First),
         Column::numbers("all").unit("ms").priority(Third),
     ];
     let is_sampled = report.fits.iter().any(|fit| fit.sampled.is_some());
@@ -220,9 +222,47 @@ fn times(report: &Report) -> Table {
         ]
     };
     let rows: Vec<_> = report.fits.iter().flat_map(|fit| fit.loads.iter().map(move |load| row(fit, load))).collect();
-    let title = "Times to assemble and solve, each load as if it were alone";
+    let title = "Processor times to assemble and solve, each load as if it were alone";
     let notes = means(report).into_iter().chain(iterations(report));
     Table::new("times", title, columns.collect(), rows).with_notes(notes)
+}
+
+/// What fits and models cost, where the scene asks for it.
+fn costs(report: &Report) -> Table {
+    let pair =
+        |group: &str, unit: &str| ["least", "median"].map(|title| Column::numbers(title).unit(unit).group(group));
+    let alone = |title: &str, unit: &str| Column::numbers(title).unit(unit);
+    let mut columns = vec![Column::words("fit"), Column::numbers("elements fitted")];
+    columns.extend(pair("constants", "µs/element"));
+    columns.extend(pair("solution", "ms"));
+    columns.extend(pair("explicit step", "µs"));
+    columns.extend(pair("implicit step", "ms"));
+    let third = [("assembly", "ms"), ("matrix errors", "ms"), ("moduli", "ms"), ("longest explicit step", "µs")];
+    columns.extend(third.map(|(title, unit)| alone(title, unit).priority(Third)));
+    let both = |times: Option<&Times>, factor: f64| {
+        [times.map(|times| times.least), times.map(|times| times.median)]
+            .map(|seconds| Cell::number(seconds.map(|seconds| factor * seconds), Significant(3)))
+    };
+    let median = |times: Option<&Times>, factor: f64| both(times, factor)[1].clone();
+    let row = |name: &str, elements: Cell, fit: Option<&FitTimes>, model: &ModelTimes| {
+        let mut row = vec![Cell::from(name), elements];
+        row.extend(both(fit.map(|fit| &fit.element), 1e6));
+        row.extend(both(model.solve.as_ref(), 1e3));
+        row.extend(both(model.explicit_step.as_ref(), 1e6));
+        row.extend(both(model.implicit_step.as_ref(), 1e3));
+        row.push(median(fit.map(|fit| &fit.assembly), 1e3));
+        row.push(median(fit.and_then(|fit| fit.errors.as_ref()), 1e3));
+        row.push(median(fit.map(|fit| &fit.moduli), 1e3));
+        row.push(Cell::number(model.longest_step.map(|step| 1e6 * step), Significant(4)));
+        row
+    };
+    let of_fit = |fit: &FitRecord| {
+        Some(row(&fit.name, fit.fitted_elements.into(), fit.times.as_ref(), fit.model_times.as_ref()?))
+    };
+    let mut rows: Vec<Vec<Cell>> = report.fits.iter().filter_map(of_fit).collect();
+    rows.extend(report.model_times.as_ref().map(|model| row(BODY, Cell::number(None, Fixed(0)), None, model)));
+    let title = "Costs: processor time of one thread, in passes that take turns";
+    Table::new("costs", title, columns, rows)
 }
 
 /// All loads of all fits.
@@ -239,7 +279,7 @@ fn means(report: &Report) -> Option<String> {
     };
     let [finite, springs] = [mean(|load| load.seconds_fem), mean(|load| load.seconds_lem)];
     (count > 0).then(|| {
-        format!("One load, assembled and solved: {finite} with finite elements, {springs} with springs (means).")
+        format!("One load, assembled and solved: {finite} with finite elements, {springs} with springs (means of processor times).")
     })
 }
 

@@ -79,7 +79,8 @@ fn of_fits(study: &Stretches, name: &str, title: String, values: fn(&StretchedFi
     let mut columns = vec![Column::words("fit"), Column::numbers("time").unit("µs/element")];
     columns.extend(STRETCHES.map(|s| Column::numbers(format!("{} %", 100.0 * s))));
     let row = |fit: &StretchedFit| {
-        let mut row = vec![fit.name.clone(), format!("{:.1}", 1e6 * fit.seconds)];
+        let time = fit.times.as_ref().map_or("-".into(), |times| format!("{:.1}", 1e6 * times.median));
+        let mut row = vec![fit.name.clone(), time];
         row.extend(values(fit).iter().map(|e| e.map_or("-".into(), |e| format!("{e:.3}"))));
         row
     };

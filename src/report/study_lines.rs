@@ -1,11 +1,13 @@
-//! Files of one line for each study, which grow while a sweep runs and which it goes on from.
+//! Files of one line for each study, which grow while a sweep or a comparison runs and which it goes on from.
 
-use super::study_record::StudyRecord;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{create_folder, files_in, read_text};
 use crate::network::Shard;
-use crate::study::Sweep;
-use std::collections::HashMap;
+use crate::study::{CaseRecord, Comparing};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -21,25 +23,80 @@ fn is_of_sweep(text: &[u8]) -> bool {
     })
 }
 
-/// The names of the files begin so.
+/// The names of the files of a sweep begin so.
 const STEM: &str = "studies";
 
-/// The records of the studies that are done, in the folder of a sweep.
-pub struct StudyLines {
-    file: File,
-    path: PathBuf,
-    /// By [`StudyRecord::mark`].
-    records: HashMap<String, StudyRecord>,
+/// A record on a line: `settings` come first.
+pub trait Line: Serialize + DeserializeOwned {
+    /// The values that tell the study from others.
+    fn settings(&self) -> &BTreeMap<String, Value>;
+
+    /// A sum of all that the study depends on.
+    fn inputs(&self) -> &str;
+
+    /// What tells the study from others, in a word.
+    fn mark(&self) -> String {
+        mark_of(self.settings())
+    }
+
+    /// The record on one line, with its end.
+    fn line(&self) -> String {
+        serde_json::to_string(self).expect("keys are text") + "\n"
+    }
 }
 
-impl StudyLines {
+/// What tells a study with these values from others.
+pub fn mark_of(settings: &BTreeMap<String, Value>) -> String {
+    serde_json::to_string(settings).expect("keys are text")
+}
+
+impl Line for CaseRecord {
+    fn settings(&self) -> &BTreeMap<String, Value> {
+        &self.settings
+    }
+
+    fn inputs(&self) -> &str {
+        &self.inputs
+    }
+}
+
+/// The studies that a file may have, by their marks, and the sum of all that each depends on.
+pub type Expected<'a> = &'a dyn Fn(&str) -> Option<String>;
+
+/// The records of the studies that are done, in the folder of a sweep or of a comparison.
+pub struct StudyLines<R> {
+    file: File,
+    path: PathBuf,
+    /// By [`Line::mark`].
+    records: HashMap<String, R>,
+}
+
+impl StudyLines<CaseRecord> {
+    /// Opens the file of a comparison. With `resume` the cases are known that it has; without, it must have none.
+    ///
+    /// # Errors
+    /// Those of [`StudyLines::open_file`].
+    pub fn of_comparison(
+        path: PathBuf,
+        resume: bool,
+        comparing: &Comparing,
+        folder: &Path,
+    ) -> Result<StudyLines<CaseRecord>> {
+        create_folder(folder)?;
+        let sums: HashMap<String, String> =
+            comparing.cases().iter().map(|case| (mark_of(&case.settings), comparing.sum(case))).collect();
+        StudyLines::open_file(path, &[], resume, &|mark| sums.get(mark).cloned())
+    }
+}
+
+impl<R: Line> StudyLines<R> {
     /// Opens the file of a shard in `folder`, which is made. With `resume` the studies are known that any file there has; without,
     /// the file must have none, and those of other shards must be of the same scene.
     ///
     /// # Errors
     /// The file cannot be written, or another process writes it; it has studies already; or one of them is of another scene, or of this
     /// one before a change.
-    pub fn open(folder: &Path, shard: Shard, resume: bool, sweep: &Sweep) -> Result<StudyLines> {
+    pub fn open(folder: &Path, shard: Shard, resume: bool, expected: Expected) -> Result<StudyLines<R>> {
         create_folder(folder)?;
         let path = folder.join(shard.file_name(STEM, "jsonl"));
         let mut others = files_in(folder, "jsonl")?;
@@ -48,7 +105,7 @@ impl StudyLines {
                 |path: &PathBuf| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STEM));
             others.retain(is_of_shard);
         }
-        let mut lines = StudyLines::open_file(path, &others, resume, sweep)?;
+        let mut lines = StudyLines::open_file(path, &others, resume, expected)?;
         if !resume {
             lines.records.clear();
         }
@@ -59,20 +116,19 @@ impl StudyLines {
     ///
     /// # Errors
     /// Those of [`StudyLines::open`].
-    pub fn open_file(path: PathBuf, others: &[PathBuf], resume: bool, sweep: &Sweep) -> Result<StudyLines> {
+    pub fn open_file(path: PathBuf, others: &[PathBuf], resume: bool, expected: Expected) -> Result<StudyLines<R>> {
         let failed = |what: &str, e| Error::io(what, e).in_file(&path);
         let opened = File::options().read(true).append(true).create(true).open(&path);
         let mut file = opened.map_err(|e| failed("cannot be written", e))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(Error::new("another process is writing to it: is the same sweep running?")
+            return Err(Error::new("another process is writing to it: is the same study running?")
                 .of_kind(ErrorKind::Io)
                 .in_file(&path));
         }
         let mut text = Vec::new();
         file.read_to_end(&mut text).map_err(|e| failed("cannot be read", e))?;
         if !is_of_sweep(&text) {
-            let words =
-                "expected a file of a sweep, or none, found one of others: move it away, or choose another folder";
+            let words = "expected a file of a sweep or of a comparison, or none, found one of others: move it away, or choose another folder";
             return Err(Error::new(words).in_file(&path));
         }
         let found = text.iter().filter(|byte| **byte == b'\n').count();
@@ -83,17 +139,15 @@ impl StudyLines {
             return Err(Error::new(words).in_file(&path));
         }
         let mut lines = StudyLines { file, path, records: HashMap::new() };
-        let expected: HashMap<String, usize> =
-            sweep.studies().iter().enumerate().map(|(i, study)| (StudyRecord::mark(&study.values()), i)).collect();
         let own = lines.path.clone();
         for other in others.iter().filter(|other| **other != own) {
             let text = read_text(other)?;
-            lines.take(&text, other, sweep, &expected)?;
+            lines.take(&text, other, expected)?;
         }
         // What a kill has left of a line is cut off.
         let whole = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
         let kept = String::from_utf8_lossy(&text[..whole]).into_owned();
-        lines.take(&kept, &own, sweep, &expected)?;
+        lines.take(&kept, &own, expected)?;
         if whole < text.len() {
             let cut = lines.file.set_len(whole as u64).and_then(|()| lines.file.seek(SeekFrom::End(0)));
             cut.map_err(|e| Error::io("cannot be written", e).in_file(&lines.path))?;
@@ -102,17 +156,17 @@ impl StudyLines {
     }
 
     /// Takes over the complete lines of a file.
-    fn take(&mut self, text: &str, path: &Path, sweep: &Sweep, expected: &HashMap<String, usize>) -> Result<()> {
+    fn take(&mut self, text: &str, path: &Path, expected: Expected) -> Result<()> {
         let complete = text.rfind('\n').map_or("", |end| &text[..end]);
         for (number, line) in complete.lines().enumerate() {
             let fault = |words: String| Error::new(words).on_line(number + 1).in_file(path);
-            let record: StudyRecord = serde_json::from_str(line)
-                .map_err(|e| fault(format!("expected a study of a sweep, found something else: {e}")))?;
-            let mark = StudyRecord::mark(&record.settings);
-            // Studies that the sweep no longer has stay in the file.
-            let Some(&place) = expected.get(&mark) else { continue };
-            if record.inputs != format!("{:016x}", sweep.sum(&sweep.studies()[place])) {
-                let words = "expected a study of this scene and its files, found one of others, or of these before a change or by \
+            let record: R = serde_json::from_str(line)
+                .map_err(|e| fault(format!("expected a study of this kind, found something else: {e}")))?;
+            let mark = record.mark();
+            // Studies that are no longer asked for stay in the file.
+            let Some(sum) = expected(&mark) else { continue };
+            if record.inputs() != sum {
+                let words = "expected a study of this file and those that it names, found one of others, or of these before a change or by \
                              another version: choose another folder";
                 return Err(fault(words.into()));
             }
@@ -122,18 +176,23 @@ impl StudyLines {
     }
 
     /// The record of the study of these values.
-    pub fn record(&self, mark: &str) -> Option<&StudyRecord> {
+    pub fn record(&self, mark: &str) -> Option<&R> {
         self.records.get(mark)
+    }
+
+    /// The record of the study of these values.
+    pub fn of(&self, settings: &BTreeMap<String, Value>) -> Option<&R> {
+        self.record(&mark_of(settings))
     }
 
     /// Adds a line.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn push(&mut self, record: StudyRecord) -> Result<()> {
+    pub fn push(&mut self, record: R) -> Result<()> {
         let written = self.file.write_all(record.line().as_bytes()).and_then(|()| self.file.flush());
         written.map_err(|e| Error::io("cannot be written", e).in_file(&self.path))?;
-        self.records.insert(StudyRecord::mark(&record.settings), record);
+        self.records.insert(record.mark(), record);
         Ok(())
     }
 

@@ -1,11 +1,12 @@
 //! The record of one study of a sweep: a line of `studies.jsonl`.
 
 use super::json::Report;
+use super::study_lines::{Line, mark_of};
 use crate::error::Result;
 use crate::study::{Outcome, Study, Sweep};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// What came out of one study of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,13 +33,25 @@ impl StudyRecord {
         }
     }
 
-    /// The record on one line, with its end.
-    pub fn line(&self) -> String {
-        serde_json::to_string(self).expect("keys are text") + "\n"
-    }
-
     /// What tells a study from others of its sweep.
     pub fn mark(settings: &BTreeMap<String, Value>) -> String {
-        serde_json::to_string(settings).expect("keys are text")
+        mark_of(settings)
+    }
+
+    /// The sums of all studies of a sweep, by their marks.
+    pub fn sums(sweep: &Sweep) -> impl Fn(&str) -> Option<String> + use<'_> {
+        let places: HashMap<String, usize> =
+            sweep.studies().iter().enumerate().map(|(i, study)| (mark_of(&study.values()), i)).collect();
+        move |mark| places.get(mark).map(|&place| format!("{:016x}", sweep.sum(&sweep.studies()[place])))
+    }
+}
+
+impl Line for StudyRecord {
+    fn settings(&self) -> &BTreeMap<String, Value> {
+        &self.settings
+    }
+
+    fn inputs(&self) -> &str {
+        &self.inputs
     }
 }

@@ -62,7 +62,7 @@ fn fits() {
                 "scene.toml: fit[0].springs",
                 "\"edge\", \"bulk\", found \"diagonal\"",
             ),
-            (modal, "\"modal\"\nsprings = \"edge\"", "scene.toml:8: fit[0].springs", "expected a list"),
+            (modal, "\"modal\"\nsprings = 3", "scene.toml:8: fit[0].springs", "expected a list"),
             (
                 "[[fix]]",
                 "[[fit]]\nobjective = \"modal\"\n[[fix]]",

@@ -51,6 +51,27 @@ fn the_figures_for_a_paper_are_those_of_a_fresh_run() {
     figure("deformation", "run", &["--of", "offdiag k>=0", "--load", "shear", "--columns", "two"]);
     figure("moduli", "run", &["--columns", "two"]);
     figure("convergence", "converge", &[]);
+    springfit(&["compare", &root().join("benches/norms.toml").display().to_string(), "--out", "compare"]);
+    let compared = |name: &str, figure: &str, more: &[&str]| {
+        let file = format!("compare-{name}.svg");
+        springfit(&[&["plot", "compare", "--figure", figure, "-o", &file][..], more].concat());
+        let (known, made) = (root().join("docs/src/figures").join(&file), folder.path().join(&file));
+        if std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some() {
+            std::fs::copy(made, known).unwrap();
+            return;
+        }
+        // Numbers at the axis of times differ from machine to machine.
+        let named = |path| {
+            words(&std::fs::read_to_string(path).unwrap())
+                .lines()
+                .filter(|l| l.parse::<f64>().is_err())
+                .collect::<Vec<_>>()
+                .join("\n")
+        };
+        assert_eq!(named(known), named(made), "{name}");
+    };
+    compared("precision", "work-precision", &["--columns", "two"]);
+    compared("poisson", "poisson", &["--of", "tet4"]);
 }
 
 /// Of the study of the paper, whose command draws them.

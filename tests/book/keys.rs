@@ -7,8 +7,9 @@ use std::path::Path;
 use std::process::Command;
 
 /// The kinds of files, and the pages that have the tables of their keys.
-const PAGES: [(&str, &str); 5] = [
+const PAGES: [(&str, &str); 6] = [
     ("scene", "scene.md"),
+    ("compare", "comparison.md"),
     ("element", "elements.md"),
     ("material", "materials.md"),
     ("network", "outputs.md"),
@@ -18,6 +19,7 @@ const PAGES: [(&str, &str); 5] = [
 fn schema(kind: &str) -> Value {
     match kind {
         "scene" => study::scene_schema(),
+        "compare" => study::compare_schema(),
         "element" => element::schema(),
         "material" => material::schema(),
         "network" => report::network_schema(),
@@ -40,7 +42,9 @@ fn visit(value: &Value, see: &mut impl FnMut(&Value)) {
 
 #[test]
 fn every_key_has_a_sentence() {
-    for (kind, least) in [("scene", 200), ("element", 30), ("material", 7), ("network", 90), ("report", 290)] {
+    for (kind, least) in
+        [("scene", 200), ("compare", 15), ("element", 30), ("material", 7), ("network", 90), ("report", 290)]
+    {
         let (mut keys, mut wrong) = (0, Vec::new());
         visit(&schema(kind), &mut |table| {
             for (key, property) in table["properties"].as_object().unwrap() {
@@ -60,7 +64,7 @@ fn every_key_has_a_sentence() {
 /// A schema and a reader are made of one structure; a structure that refuses unknown keys has them all in its schema.
 #[test]
 fn files_that_are_read_have_no_other_keys() {
-    for kind in ["scene", "element", "material"] {
+    for kind in ["scene", "compare", "element", "material"] {
         visit(&schema(kind), &mut |table| {
             assert_eq!(table["additionalProperties"], false, "{kind}: {:?}", table["properties"]);
         });

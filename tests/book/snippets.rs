@@ -3,7 +3,7 @@
 use super::markdown::{Block, Page, pages};
 use springfit::element::Element;
 use springfit::material::{Energy, Material, State};
-use springfit::study::Scene;
+use springfit::study::{Comparing, Scene};
 use std::path::Path;
 
 /// What a scene has around a part of one.
@@ -34,6 +34,10 @@ fn check(page: &Page, block: &Block) -> bool {
             let text = scene_around(&block.text, mark.ends_with("law"));
             let scene = Scene::parse(&text, Path::new("scene.toml"));
             scene.map(|_| ()).unwrap_or_else(|e| place(e.to_string()));
+        }
+        "comparison" => {
+            let found = Comparing::parse(&block.text, Path::new("comparison.toml"));
+            found.map(|_| ()).unwrap_or_else(|e| place(e.to_string()));
         }
         "element" => Element::parse(&block.text).map(|_| ()).unwrap_or_else(|e| place(e.to_string())),
         "material" => {

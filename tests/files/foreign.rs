@@ -55,7 +55,7 @@ fn files_of_others_stay() {
         "converge swept-new.toml --levels 2 --out out",
         "export run-new.toml --to npz --out out",
         "export run-new.toml --to vtu --out out",
-        "compare tri3 --shapes 2 --iterations 5 --out out",
+        "compare tri3 --shapes 2 --fit objective='offdiag' --out out",
     ];
     let out = folder.join("out");
     let names: Vec<Vec<String>> = commands
@@ -181,7 +181,7 @@ fn a_sweep_does_not_go_on_from_other_inputs() {
         write(name, text);
         let output = sweep(" --resume");
         assert_eq!(output.status.code(), Some(2), "{name}: {}", said(&output));
-        assert!(said(&output).contains("of this scene and its files"), "{}", said(&output));
+        assert!(said(&output).contains("of this file and those that it names"), "{}", said(&output));
         match before {
             Some(bytes) => fs::write(folder.join(name), bytes).unwrap(),
             None => fs::remove_file(folder.join(name)).unwrap(),

@@ -33,7 +33,9 @@ impl Form {
             "json" => json(text()?)?,
             "jsonl" => text()?.lines().map(json).collect::<Result<Value, String>>()?,
             "csv" => table(text()?),
-            "html" => record(&json(between(text()?, "id=\"record\">", "</script>"))?),
+            "html" if text()?.contains("id=\"record\">") => {
+                record(&json(between(text()?, "id=\"record\">", "</script>"))?)
+            }
             "vtu" => vtk_arrays(text()?),
             "npz" => arrays(bytes).ok_or(format!("{name}: expected arrays of NumPy"))?,
             _ => {

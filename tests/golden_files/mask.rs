@@ -12,6 +12,8 @@ const MASKED: &str = "T";
 enum At {
     /// The numbers of a key in JSON.
     Key,
+    /// An object of a key in JSON.
+    Object,
     /// A column of a table: its heading or its unit, in print, in CSV and in the page's record.
     Column,
     /// A number in a text before this word.
@@ -23,7 +25,10 @@ enum At {
 }
 
 /// Patterns, in which `*` stands for any letters and `#` for a whole number.
-const MASKS: [(At, &str, &str); 24] = [
+const MASKS: [(At, &str, &str); 27] = [
+    (At::Object, "times", "times of passes"),
+    (At::Object, "model_times", "times of passes"),
+    (At::Column, "median / least us/element", "a time"),
     (At::Key, "seconds*", "a time"),
     (At::Key, "steps_per_second", "from a time"),
     (At::Key, "residual", "what rounding leaves of the forces after a solve; its digits are those of rounding errors"),
@@ -67,7 +72,8 @@ pub fn mask_value(value: &mut Value) {
         Value::Object(entries) => {
             mask_rows(entries);
             for (key, value) in entries.iter_mut() {
-                if is_masked(At::Key, key) && (value.is_number() || value.is_array()) {
+                let is_number = value.is_number() || value.is_array();
+                if is_masked(At::Key, key) && is_number || is_masked(At::Object, key) && value.is_object() {
                     *value = MASKED.into();
                 } else {
                     mask_value(value);
@@ -121,7 +127,7 @@ fn mask_words(line: &str) -> String {
 fn is_beside(at: At, text: &str) -> bool {
     MASKS.iter().filter(|(place, ..)| *place == at).any(|(_, words, _)| match at {
         At::After => text.ends_with(words),
-        At::Before | At::Key | At::Column | At::Line => {
+        At::Before | At::Key | At::Object | At::Column | At::Line => {
             let rest = text.strip_prefix(words);
             rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric)) || fits(text, words)
         }

@@ -10,12 +10,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 35] = [
+const LAYERS: [&str; 36] = [
     "shipped",
     "numerics",
     "multigrid",
     "text",
     "page",
+    "clock",
     "error",
     "bound",
     "range",

@@ -10,7 +10,7 @@ use springfit::text::{csv, not_a_line, of_csv, printable};
 use std::sync::Arc;
 
 fn table(text: &str) -> Table {
-    let cell = |text: &str| Cell { text: text.into(), value: None };
+    let cell = |text: &str| Cell { text: text.into(), value: None, is_best: false };
     Table {
         name: text.into(),
         title: text.into(),
@@ -32,9 +32,22 @@ fn a_cell_of_a_table_is_one_cell_with_its_text() {
         };
         let latex = Markup::Latex.table(&table(&text));
         let rows: Vec<&str> = latex.lines().filter_map(|line| line.strip_suffix(" \\\\")).collect();
-        assert_eq!(rows.len(), 3, "{latex}");
-        for (i, row) in rows.into_iter().enumerate() {
-            let title = title(i);
+        // Columns of a group stand under its name.
+        let is_grouped = !text.is_empty();
+        assert_eq!(rows.len(), 3 + usize::from(is_grouped), "{latex}");
+        let rows = match is_grouped {
+            true => {
+                let name = rows[0].trim().strip_prefix("\\multicolumn{3}{c}{").and_then(|rest| rest.strip_suffix('}'));
+                let name =
+                    printed(name.unwrap_or_else(|| panic!("{}", rows[0]))).unwrap_or_else(|| panic!("{}", rows[0]));
+                assert_eq!(name.trim(), shown.trim().replace("|R-K|", ""), "{}", rows[0]);
+                &rows[1..]
+            }
+            false => &rows[..],
+        };
+        for (i, row) in rows.iter().enumerate() {
+            let title = if i == 0 { "a" } else { "" };
+            let shown = if i == 0 { "" } else { &*shown };
             let cells = parts(row, '&');
             assert_eq!(cells.len(), 3, "{row}");
             // Leading blanks of a line and those beside `&` have no meaning.

@@ -19,6 +19,6 @@ pub mod solve;
 pub mod whole;
 
 // The layers below, by the same names as everywhere.
-use springfit_foundation::{error, memory, named, number, range, scalar, symbolic};
+use springfit_foundation::{clock, error, memory, named, number, range, scalar, symbolic};
 use springfit_kernels::{element, fit, material, springs, stiffness};
 use springfit_mesh::mesh;

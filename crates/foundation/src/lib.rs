@@ -6,6 +6,7 @@
 //! |---|---|
 //! | [`error`] | the one error type, with kind, file, line and key |
 //! | [`mod@file`] | reading with named errors, writing a file whole or not at all, TOML |
+//! | [`clock`] | processor time |
 //! | [`range`], [`bound`], [`memory`] | the limits of quantities, of counts, and of memory |
 //! | [`number`] | numbers in JSON |
 //! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print, and to write in each grammar |
@@ -15,6 +16,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bound;
+pub mod clock;
 pub mod error;
 pub mod file;
 pub mod memory;

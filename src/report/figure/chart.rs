@@ -25,6 +25,10 @@ pub enum Shape {
     Guide,
     /// The points are shown as bars of this width.
     Bars(f64),
+    /// The points are shown as small dots.
+    Dots,
+    /// Each two points are the ends of a thin line in the colour of the series before.
+    Whiskers,
 }
 
 /// Points with a name.
@@ -36,6 +40,13 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// How they are shown.
     pub shape: Shape,
+}
+
+impl Series {
+    /// Whether the legend has its name.
+    fn is_named(&self) -> bool {
+        !matches!(self.shape, Shape::Guide | Shape::Whiskers)
+    }
 }
 
 /// A chart.
@@ -60,6 +71,8 @@ const THICK: u32 = 2 * FINE as u32 - FINE as u32 / 4;
 const THIN: u32 = FINE as u32;
 /// Units from the middle of a mark to its edge.
 const MARK: i32 = 7 * FINE / 2;
+/// Units from the middle of a dot to its edge.
+const DOT: i32 = 3 * FINE / 2;
 /// Units of letters, as the drawing library counts them.
 const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
 
@@ -147,9 +160,19 @@ impl Chart {
             .label_style(("sans-serif", FONT))
             .axis_desc_style(("sans-serif", FONT))
             .draw()?;
-        for (i, series) in self.series.iter().enumerate() {
+        for (place, series) in self.series.iter().enumerate() {
+            let i = self.style(place);
             let color = COLORS[i % COLORS.len()];
             match series.shape {
+                Shape::Dots => {
+                    let dot = |point: &(f64, f64)| Circle::new(*point, DOT, color.mix(0.7).filled());
+                    chart.draw_series(series.points.iter().map(dot))?;
+                }
+                Shape::Whiskers => {
+                    for ends in series.points.chunks_exact(2) {
+                        chart.draw_series(LineSeries::new(ends.iter().copied(), color.stroke_width(THIN)))?;
+                    }
+                }
                 Shape::Bars(width) => {
                     let bar = |(x, y): &(f64, f64)| {
                         Rectangle::new([(x - width / 2.0, 0.0), (x + width / 2.0, *y)], color.filled())
@@ -202,9 +225,15 @@ impl Chart {
         Ok(())
     }
 
+    /// The place of a series among those that differ in colour, dashes and marks.
+    fn style(&self, place: usize) -> usize {
+        let others = self.series[..=place].iter().filter(|series| series.shape != Shape::Whiskers).count();
+        others.saturating_sub(1)
+    }
+
     /// The row and the left end of each name, and its place among the series.
     fn legend(&self, width: i32) -> Vec<(i32, i32, usize)> {
-        let named = || self.series.iter().enumerate().filter(|(_, series)| series.shape != Shape::Guide);
+        let named = || self.series.iter().enumerate().filter(|(_, series)| series.is_named());
         if named().count() < 2 {
             return Vec::new();
         }
@@ -222,7 +251,8 @@ impl Chart {
     }
 
     fn name(&self, area: &Area, i: usize, (left, top): (i32, i32)) -> Fallible {
-        let (series, color, at) = (&self.series[i], COLORS[i % COLORS.len()], (left + 9 * FINE, top + 6 * FINE));
+        let (series, i) = (&self.series[i], self.style(i));
+        let (color, at) = (COLORS[i % COLORS.len()], (left + 9 * FINE, top + 6 * FINE));
         match series.shape {
             Shape::Bars(_) => area.draw(&Rectangle::new(
                 [(left + 3 * FINE, top + FINE), (left + 15 * FINE, top + 11 * FINE)],
@@ -241,7 +271,8 @@ impl Chart {
                     }
                 }
             },
-            Shape::Marks | Shape::Below => {}
+            Shape::Dots => area.draw(&Circle::new(at, 2 * DOT, color.filled()))?,
+            Shape::Marks | Shape::Below | Shape::Whiskers => {}
         }
         if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
             match mark(i, series.shape) {
@@ -273,9 +304,7 @@ enum Mark {
 fn mark(i: usize, shape: Shape) -> Mark {
     match shape {
         Shape::Below => Mark::Open,
-        Shape::Marks | Shape::Line | Shape::Curve | Shape::Guide | Shape::Bars(_) => {
-            [Mark::Disc, Mark::Triangle, Mark::Cross, Mark::Ring][(i + i / COLORS.len()) % 4]
-        }
+        _ => [Mark::Disc, Mark::Triangle, Mark::Cross, Mark::Ring][(i + i / COLORS.len()) % 4],
     }
 }
 

@@ -14,6 +14,9 @@ pub struct Cell {
     pub text: String,
     /// The number is null for words, and where nothing is known.
     pub value: Option<f64>,
+    /// The number is the best of its group, which typeset tables show in bold.
+    #[serde(skip)]
+    pub is_best: bool,
 }
 
 /// How a number is written.
@@ -31,7 +34,7 @@ impl Cell {
     /// A number, where it is known.
     pub(in crate::report) fn number(value: Option<f64>, digits: Digits) -> Cell {
         let value = value.filter(|value| value.is_finite());
-        Cell { text: value.map_or(UNKNOWN.into(), |value| digits.text(value)), value }
+        Cell { text: value.map_or(UNKNOWN.into(), |value| digits.text(value)), value, is_best: false }
     }
 
     /// A share, in percent.
@@ -42,6 +45,11 @@ impl Cell {
     /// Puts a mark behind the text of the cell.
     pub(in crate::report) fn marked(self, mark: &str) -> Cell {
         Cell { text: self.text + mark, ..self }
+    }
+
+    /// Says whether the number is the best of its group.
+    pub(in crate::report) fn best(self, is_best: bool) -> Cell {
+        Cell { is_best, ..self }
     }
 
     /// Puts the cell into this column: texts of a column of numbers are read as numbers.
@@ -64,7 +72,7 @@ impl Cell {
 
 impl From<String> for Cell {
     fn from(text: String) -> Cell {
-        Cell { text: if text == "-" { UNKNOWN.into() } else { text }, value: None }
+        Cell { text: if text == "-" { UNKNOWN.into() } else { text }, value: None, is_best: false }
     }
 }
 
@@ -76,7 +84,7 @@ impl From<&str> for Cell {
 
 impl From<usize> for Cell {
     fn from(count: usize) -> Cell {
-        Cell { text: count.to_string(), value: Some(count as f64) }
+        Cell { text: count.to_string(), value: Some(count as f64), is_best: false }
     }
 }
 

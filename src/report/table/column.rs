@@ -73,7 +73,7 @@ impl Column {
     }
 
     /// Group, title and unit in one line.
-    pub(super) fn heading(&self) -> String {
+    pub(in crate::report) fn heading(&self) -> String {
         // A hyphen at the end of a line divides a word.
         let title = self.title.replace("-\n", "-").replace('\n', " ");
         let named = if self.group.is_empty() { title } else { format!("{}: {title}", self.group) };

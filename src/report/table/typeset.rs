@@ -39,7 +39,8 @@ pub(in crate::report) fn markdown_body(table: &Table) -> String {
     let cell = text::markdown;
     let mut text = line(table.columns.iter().map(|c| cell(&c.heading())).collect());
     text += &line(table.columns.iter().map(|c| if c.numbers { "---:" } else { "---" }.to_string()).collect());
-    table.rows.iter().for_each(|row| text += &line(row.iter().map(|c| cell(&c.text)).collect()));
+    let bold = |c: &Cell| if c.is_best { format!("**{}**", cell(&c.text)) } else { cell(&c.text).to_string() };
+    table.rows.iter().for_each(|row| text += &line(row.iter().map(bold).collect()));
     table.notes.iter().for_each(|note| text += &format!("\n{}\n", cell(note)));
     text
 }
@@ -52,11 +53,12 @@ fn latex(table: &Table) -> String {
     let plain: String = table.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     writeln!(text, "  \\label{{tab:{plain}}}").expect("a String grows");
     writeln!(text, "  \\begin{{tabular}}{{{columns}}}\n    \\toprule").expect("a String grows");
-    text += &line(table.columns.iter().map(|c| escaped(&c.heading())).collect());
+    text += &headings(&table.columns);
     text += "    \\midrule\n";
     for row in &table.rows {
         let cell = |(c, column): (&Cell, &Column)| {
-            if column.numbers { number(&c.text) } else { escaped(&c.text) }
+            let text = if column.numbers { number(&c.text) } else { escaped(&c.text) };
+            if c.is_best { format!("\\textbf{{{text}}}") } else { text }
         };
         text += &line(row.iter().zip(&table.columns).map(cell).collect());
     }
@@ -65,6 +67,33 @@ fn latex(table: &Table) -> String {
         writeln!(text, "  \\par\\smallskip{{\\footnotesize {}\\par}}", escaped(note)).expect("a String grows");
     }
     text + "\\end{table}\n"
+}
+
+/// The headings: columns of a group that stand beside each other are under its name.
+fn headings(columns: &[Column]) -> String {
+    let line = |cells: Vec<String>| format!("    {} \\\\\n", cells.join(" & "));
+    let groups: Vec<&[Column]> = columns.chunk_by(|a, b| !a.group.is_empty() && a.group == b.group).collect();
+    if groups.iter().all(|group| group.len() == 1) {
+        return line(columns.iter().map(|column| escaped(&column.heading())).collect());
+    }
+    let (mut names, mut rules, mut first) = (Vec::new(), String::new(), 1);
+    for group in &groups {
+        let last = first + group.len() - 1;
+        match group.len() {
+            1 => names.push(String::new()),
+            count => {
+                names.push(format!("\\multicolumn{{{count}}}{{c}}{{{}}}", escaped(&group[0].group)));
+                rules += &format!("\\cmidrule(lr){{{first}-{last}}}");
+            }
+        }
+        first = last + 1;
+    }
+    let alone = |column: &Column| escaped(&Column { group: String::new(), ..column.clone() }.heading());
+    let own = groups.iter().flat_map(|group| {
+        let is_alone = group.len() == 1;
+        group.iter().map(move |column| if is_alone { escaped(&column.heading()) } else { alone(column) })
+    });
+    format!("{}    {rules}\n{}", line(names), line(own.collect()))
 }
 
 /// Numbers with their signs and their powers of ten; a dash where nothing is known.

@@ -8,6 +8,7 @@ mod cantilevers;
 mod choice;
 mod large;
 mod motion;
+mod norms;
 mod paper;
 mod readme;
 mod stability;
@@ -43,7 +44,8 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 15] = [
+const MAKERS: [Maker; 16] = [
+    ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),
     ("elements", choice::elements, true, Kept::ToRounding),

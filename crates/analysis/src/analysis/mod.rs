@@ -6,4 +6,5 @@ pub mod metrics;
 pub mod moduli;
 pub mod random;
 pub mod shapes;
+pub mod statistics;
 pub mod tensor;

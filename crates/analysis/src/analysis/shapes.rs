@@ -7,6 +7,78 @@ use crate::stiffness::Geometry;
 
 /// How far nodes are moved, in units of the reference cell: far enough to distort it, and most shapes remain valid.
 const JITTER: f64 = 0.15;
+/// The size of the random entries of the affine maps of random shapes.
+const AFFINE: f64 = 0.4;
+
+/// How shapes are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ShapeFamily {
+    /// The reference cell under a random affine map, with each node moved at random.
+    #[default]
+    Random,
+    /// The reference cell with each node moved at random.
+    Distorted,
+}
+
+crate::named!(ShapeFamily {
+    "random" => Random,
+    "distorted" => Distorted,
+});
+
+/// A set of shapes of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeSet {
+    /// How they are drawn.
+    pub family: ShapeFamily,
+    /// Each coordinate of a node is moved by up to this length, in units of the reference cell.
+    pub distortion: f64,
+    /// The shapes are stretched along x by this factor.
+    pub aspect: f64,
+    /// Another seed gives other shapes.
+    pub seed: u64,
+    /// The number of shapes.
+    pub count: usize,
+}
+
+impl Default for ShapeSet {
+    fn default() -> ShapeSet {
+        ShapeSet { family: ShapeFamily::default(), distortion: JITTER, aspect: 1.0, seed: 2010, count: 100 }
+    }
+}
+
+impl ShapeSet {
+    /// The node positions of the shapes, `[count × nodes × dimension]`. Tangled shapes are drawn again.
+    ///
+    /// # Errors
+    /// Nearly every shape is tangled.
+    pub fn draw(&self, element: &Element) -> Result<Vec<f64>> {
+        let d = element.dimension();
+        let shapes = valid(element, self.count, self.seed, |random| {
+            let map = match self.family {
+                ShapeFamily::Random => affine(d, AFFINE, random),
+                ShapeFamily::Distorted => affine(d, 0.0, random),
+            };
+            let mut shape = Vec::new();
+            for at in element.positions.chunks_exact(d) {
+                for k in 0..d {
+                    let placed = (0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>();
+                    let moved = placed + self.distortion * random.symmetric();
+                    shape.push(if k == 0 { self.aspect * moved } else { moved });
+                }
+            }
+            shape
+        });
+        match shapes.len() == self.count {
+            true => Ok(shapes.concat()),
+            false => Err(Error::new(format!(
+                "{}: nearly every {} shape with a distortion of {} tangles",
+                element.name,
+                self.family.name(),
+                self.distortion
+            ))),
+        }
+    }
+}
 
 /// The node positions of `count` elements, `[count × nodes × dimension]`: the reference cell under random affine maps,
 /// with each node moved by up to 7 % of its size. Tangled shapes are drawn again.
@@ -14,21 +86,7 @@ const JITTER: f64 = 0.15;
 /// # Errors
 /// Nearly every shape is tangled.
 pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f64>> {
-    let d = element.dimension();
-    let shapes = valid(element, count, seed, |random| {
-        let map = affine(d, 0.4, random);
-        let mut shape = Vec::new();
-        for at in element.positions.chunks_exact(d) {
-            for k in 0..d {
-                shape.push((0..d).map(|l| map[k * d + l] * at[l]).sum::<f64>() + JITTER * random.symmetric());
-            }
-        }
-        shape
-    });
-    match shapes.len() == count {
-        true => Ok(shapes.concat()),
-        false => Err(Error::new(format!("{}: nearly every random shape tangles", element.name))),
-    }
+    ShapeSet { count, seed, ..ShapeSet::default() }.draw(element)
 }
 
 /// The node positions, `[nodes × dimension]`, of up to `count` elements with straight edges, far from tangled; fewer if

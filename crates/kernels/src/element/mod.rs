@@ -257,13 +257,29 @@ impl Element {
     }
 
     /// The groups that a fit uses: the named ones, or all that are not optional. The name of an entry that is divided into classes
-    /// names all of them.
+    /// names all of them. One of [`GROUP_CHOICES`] alone stands for the groups of any element, unless a group has that name.
     ///
     /// # Errors
-    /// The element has no group of this name.
+    /// The element has no group of this name, or no springs on its content where these are to be among them.
     pub fn select_groups(&self, names: Option<&[String]>) -> Result<Vec<&SpringGroup>> {
         let Some(names) = names else { return Ok(self.springs.iter().filter(|g| !g.optional).collect()) };
         let is_named = |group: &SpringGroup, name: &String| group.name == *name || group.entry == *name;
+        if let [one] = names
+            && !self.springs.iter().any(|group| is_named(group, one))
+            && GROUP_CHOICES.contains(&one.as_str())
+        {
+            let has_content = self.springs.iter().any(SpringGroup::is_content);
+            let kept = |group: &&SpringGroup| match one.as_str() {
+                "default" => !group.optional,
+                "all" => !group.is_content(),
+                _ => true,
+            };
+            if one == "all + volume" && !has_content {
+                let expected = format!("\"default\" or \"all\", for {} has no springs on its content", self.name);
+                return Err(Error::expected("springs", expected, "\"all + volume\""));
+            }
+            return Ok(self.springs.iter().filter(kept).collect());
+        }
         if let Some(wrong) = names.iter().find(|n| !self.springs.iter().any(|g| is_named(g, n))) {
             let known: Vec<_> = self.springs.iter().map(|g| format!("\"{}\"", g.name)).collect();
             let expected = format!("groups of {}: {}", self.name, known.join(", "));
@@ -273,6 +289,9 @@ impl Element {
         Ok(self.springs.iter().filter(|g| names.iter().any(|name| is_named(g, name))).collect())
     }
 }
+
+/// Words for groups of any element: those that are not optional; all between two points; all, with those on the content of the cell.
+pub const GROUP_CHOICES: [&str; 3] = ["default", "all", "all + volume"];
 
 /// A map of the cell onto itself that turns it inside out: it exchanges the first two reference coordinates, or else
 /// mirrors the first one.

@@ -40,8 +40,6 @@ pub fn fit_without_errors(
     named: &NamedFit,
     progress: &mut Progress,
 ) -> Result<(FitOutcome, Vec<CellFits>)> {
-    // Threads are started before the clock.
-    rayon::broadcast(|_| ());
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let fitted = named.recipe.kind().fit(&task, progress)?;
     let as_material = network_material(mesh, material, fitted.owners(), &fitted.network);
@@ -52,6 +50,8 @@ pub fn fit_without_errors(
         deficient: fitted.cells.iter().map(|cells| cells.deficient).sum(),
         unreached: fitted.cells.iter().map(|cells| cells.unreached).sum(),
         reused: fitted.cells.iter().map(|cells| cells.reused).sum(),
+        times: None,
+        model_times: None,
         errors: OnceLock::new(),
         springs: fitted.springs,
         network: fitted.network,

@@ -6,6 +6,7 @@ use super::fits::{NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
 use crate::analysis::tensor::most_samples;
+use crate::clock::Clock;
 use crate::error::Result;
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
@@ -14,7 +15,6 @@ use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
-use std::time::Instant;
 
 /// Work that takes longer is announced, s.
 const LONG: f64 = 10.0;
@@ -206,20 +206,21 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
         let own = material.of_some(&some.blocks.iter().map(first).collect::<Vec<_>>());
         // What is wrong is reported where the fit is made.
         let trial = || {
-            let start = Instant::now();
+            let start = Clock::start();
             let fit = fit_mesh(&some, &own, &reference, fit, &mut |_| {}).ok()?;
-            let (whole, sampling) = (start.elapsed().as_secs_f64(), fit.as_material.seconds);
+            let (whole, sampling) = (start.seconds(), fit.as_material.seconds);
             let (springs, entries) = (fit.network.len() as f64, fit.network.entries() as f64);
-            Some((whole - sampling, sampling / fit.as_material.samples as f64, [springs, entries]))
+            Some(((whole - sampling).max(0.0), sampling / fit.as_material.samples as f64, [springs, entries]))
         };
         // The first trial touches memory for the first time.
         let ((first, ..), (second, sample, [springs, entries])) = (trial()?, trial()?);
         let seconds = first.min(second);
         let made = some.cell_count();
         let share = total as f64 / made as f64;
-        // A trial of one chunk ran on one thread.
-        let threads = if made <= CHUNK { rayon::current_num_threads().min(total.div_ceil(CHUNK)) } else { 1 };
-        let expected = seconds * share / threads as f64 + sample * most_samples(mesh) as f64;
+        // A chunk of cells is the work of one thread, a sample as well.
+        let (threads, chunks) = (rayon::current_num_threads(), total.div_ceil(CHUNK));
+        let sampling = sample * most_samples(mesh) as f64 / threads as f64;
+        let expected = seconds * share / threads.min(chunks) as f64 + sampling;
         if seconds > TRIAL || made >= total || expected < SHORT {
             return Some([expected, SPRING * springs * share, entries * share]);
         }

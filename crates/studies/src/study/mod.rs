@@ -12,7 +12,7 @@ mod body;
 mod body_material;
 mod checkpoint;
 mod choice;
-mod comparison;
+mod compare;
 mod convergence;
 mod cost;
 mod distributed;
@@ -21,6 +21,7 @@ mod extent;
 mod fits;
 mod fitting;
 mod forecast;
+mod jobs;
 mod keys;
 mod locking;
 mod masses;
@@ -35,16 +36,21 @@ mod stages;
 mod stretches;
 mod sweep;
 mod time;
+mod timing;
 
 pub use crate::analysis::check::{Inspection, Mark, Property, inspect, spurious_modes};
 pub use crate::analysis::metrics::{DisplacementError, displacement_error};
 pub use crate::analysis::moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use crate::analysis::shapes::random_shapes;
+pub use crate::analysis::statistics;
 pub use crate::analysis::tensor::{NetworkMaterial, SpringOwners, network_material};
 pub use body::{Case, LargeBody};
 pub use body_material::{BodyConstants, assumed};
 pub use checkpoint::Controls;
-pub use comparison::{MethodOutcome, compare_element, compare_scene, compared, measure_recipes};
+pub use compare::{
+    Case as ComparedCase, CaseRecord, Comparing, MethodOutcome, MethodRecord, compare_element, compare_scene,
+    compare_schema, compared, is_comparison, measure_recipes,
+};
 pub use convergence::{
     Convergence, EachLevel, Level, Limit, LimitKind, LoadConvergence, MOST_LEVELS, ModelConvergence, Step, converge,
     converge_to, converge_with, limit_of, most_unknowns, rates, refinements,
@@ -84,3 +90,4 @@ pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, 
 pub use stages::stages;
 pub use stretches::{STRETCHES, SampledRun, StretchedFit, Stretches, compare_stretches};
 pub use sweep::{Study, Sweep, SweepEntry};
+pub use timing::{FitTimes, ModelTimes, Times};

@@ -45,6 +45,7 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
         count => stages.push(run(format!("{count} natural frequencies of each model"))),
     }
     for (asked, what) in [
+        (scene.output().time, "costs of each fit and of each model"),
         (scene.output().moduli, "moduli of each whole network"),
         (scene.output().vtu, "VTU files"),
         (scene.output().csv, "CSV files"),

@@ -2,10 +2,14 @@
 //! the number of shapes and the run time.
 
 use super::body::LargeBody;
-use super::fits::{ExactRecipe, ForceRecipe, NamedFit, Recipe, Reference, SampledRecipe};
+use super::fits::{ExactRecipe, ForceRecipe, NamedFit, Recipe, Reference, SampledOutcome, SampledRecipe};
 use super::fitting::fit_without_errors;
+use super::outcome::FitOutcome;
+use super::own_name::BODY;
 use super::progress::{Event, Progress};
+use super::timing::{Times, on_one_thread, time_fits};
 use crate::analysis::metrics::displacement_error;
+use crate::clock::Clock;
 use crate::element::{Element, SpringGroup};
 use crate::error::{Error, Result};
 use crate::fit::{Balance, DeformationFamily, Fit, Higher, Objective, Sampling, Source, Weight, fit_sampled};
@@ -16,7 +20,6 @@ use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
 use serde::Serialize;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// The stretches of the box, from the range of the linear theory to twice its length.
 pub const STRETCHES: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 0.75, 1.0];
@@ -34,8 +37,11 @@ const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s
 pub struct StretchedFit {
     /// The name of the fit.
     pub name: String,
-    /// The time per element, on all threads, s.
-    pub seconds: f64,
+    /// The processor time for each element that is fitted, s, in passes that take turns; absent where it was not measured.
+    pub times: Option<Times>,
+    /// The errors of a fit to sampled forces on its shapes and on others.
+    #[serde(skip)]
+    pub sampled: Option<SampledOutcome>,
     /// The error e_rms in percent at each of [`STRETCHES`]; `None` if one of the models has no equilibrium.
     pub errors: Vec<Option<f64>>,
     /// By how many percent the force that holds the network at each stretch exceeds that of the body.
@@ -82,36 +88,10 @@ pub fn compare_stretches(
     sampled: f64,
     progress: &mut Progress,
 ) -> Result<Stretches> {
-    if !(sampled > 0.0 && sampled <= 2.0) {
-        return Err(Error::expected("stretch", "a stretch above 0 and at most 2", sampled));
-    }
-    let energy = Energy::load(law, material).map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
-    let d = element.dimension();
-    let cells = vec![if d == 3 { 3 } else { 6 }; d];
-    let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
-    let pulled = Pulled { mesh, material, large: LargeBody::at_rest((energy, material.state())) };
-    let exact = Some(ExactRecipe::default());
-    let exact = exact.filter(|exact| exact.serves(Some(&pulled.large.laws), &pulled.mesh, &material.into()));
-    let exact = exact.map(|exact| NamedFit::of(Recipe::Exact(exact), None));
-    let recipes: Vec<NamedFit> = exact.into_iter().chain(recipes(element, sampled)).collect();
+    let pulled = Pulled::new(element, material, law)?;
+    let recipes = pulled.usual_fits(sampled)?;
     let total = recipes.len() + 1;
-    progress(Event::stage("finite elements", 0, total));
-    let body = pulled.follow(&Body { mesh: &pulled.mesh, laws: &pulled.large.laws })?;
-    let mut fits = Vec::new();
-    for (done, named) in recipes.iter().enumerate() {
-        progress(Event::stage(&named.name, done + 1, total));
-        let reference = Reference { large: Some(&pulled.large), ..Reference::default() };
-        let (fitted, _) = fit_without_errors(&pulled.mesh, &material.into(), &reference, named, &mut |_| {})?;
-        let seconds = fitted.seconds / pulled.mesh.cell_count() as f64;
-        let found = pulled.follow(&fitted.network)?;
-        let both = || body.iter().zip(&found).map(|(fem, lem)| Some((fem.as_ref()?, lem.as_ref()?)));
-        let error = |pair: Option<(&Held, &Held)>| {
-            pair.and_then(|(fem, lem)| displacement_error(&fem.displacement, &lem.displacement, d)).map(|e| e.rms)
-        };
-        let excess = |pair: Option<(&Held, &Held)>| pair.map(|(fem, lem)| 100.0 * (lem.force / fem.force - 1.0));
-        let (errors, excess) = (both().map(error).collect(), both().map(excess).collect());
-        fits.push(StretchedFit { name: named.name.clone(), seconds, errors, excess });
-    }
+    let fits = pulled.compare(&recipes, true, progress)?.into_iter().collect::<Result<_>>()?;
     let mut runs = Vec::new();
     for named in &recipes {
         let Some(recipe) = named.recipe.sampled() else { continue };
@@ -124,7 +104,7 @@ pub fn compare_stretches(
             runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
         }
     }
-    Ok(Stretches { element: element.name.clone(), law: pulled.large.laws.first().title().to_string(), fits, runs })
+    Ok(Stretches { element: element.name.clone(), law: pulled.title(), fits, runs })
 }
 
 /// An equilibrium of the box.
@@ -180,14 +160,99 @@ pub fn sampled_fits(element: &Element, groups: Option<&[String]>, stretch: f64) 
     forces.into_iter().map(recipe).collect()
 }
 
-/// The box and its material.
-struct Pulled {
+/// A box of an element at large deformation, held at both ends, and its material.
+pub struct Pulled {
     mesh: Mesh,
     material: Material,
     large: LargeBody,
 }
 
 impl Pulled {
+    /// A unit box of the element with this law.
+    ///
+    /// # Errors
+    /// The law is unknown or its file is wrong, or the element does not fill a box.
+    pub fn new(element: &Arc<Element>, material: Material, law: &str) -> Result<Pulled> {
+        let energy = Energy::load(law, material).map_err(|e| e.placed(|e| Error::at("law", e.problem())))?;
+        let d = element.dimension();
+        let cells = vec![if d == 3 { 3 } else { 6 }; d];
+        let mesh = BoxMesh { element: element.clone(), size: vec![1.0; d], cells, origin: vec![0.0; d] }.build()?;
+        Ok(Pulled { mesh, material, large: LargeBody::at_rest((energy, material.state())) })
+    }
+
+    /// The title of the law.
+    pub fn title(&self) -> String {
+        self.large.laws.first().title().to_string()
+    }
+
+    /// The ways that are compared where none is listed; sampled shapes reach to the stretch `sampled`.
+    ///
+    /// # Errors
+    /// `sampled` is out of range.
+    pub fn usual_fits(&self, sampled: f64) -> Result<Vec<NamedFit>> {
+        if !(sampled > 0.0 && sampled <= 2.0) {
+            return Err(Error::expected("stretch", "a stretch above 0 and at most 2", sampled));
+        }
+        let exact = Some(ExactRecipe::default());
+        let exact = exact.filter(|exact| exact.serves(Some(&self.large.laws), &self.mesh, &self.material.into()));
+        let exact = exact.map(|exact| NamedFit::of(Recipe::Exact(exact), None));
+        Ok(exact.into_iter().chain(recipes(&self.mesh.blocks[0].element, sampled)).collect())
+    }
+
+    /// Fits the springs in each way, and stretches the box with each network. A fit that does not serve the box has an error of its own.
+    ///
+    /// # Errors
+    /// The equations of the finite elements cannot be solved, or no thread can be started.
+    pub fn compare(
+        &self,
+        fits: &[NamedFit],
+        is_timed: bool,
+        progress: &mut Progress,
+    ) -> Result<Vec<Result<StretchedFit>>> {
+        let (total, d) = (fits.len() + 1, self.mesh.dimension);
+        progress(Event::stage(BODY, 0, total));
+        let body = self.follow(&Body { mesh: &self.mesh, laws: &self.large.laws })?;
+        let mut found = Vec::new();
+        for (done, named) in fits.iter().enumerate() {
+            progress(Event::stage(&named.name, done + 1, total));
+            let reference = Reference { large: Some(&self.large), ..Reference::default() };
+            let fitted = fit_without_errors(&self.mesh, &self.material.into(), &reference, named, &mut |_| {});
+            let compared = |(fitted, _): (FitOutcome, _)| {
+                let network = self.follow(&fitted.network)?;
+                let both = || body.iter().zip(&network).map(|(fem, lem)| Some((fem.as_ref()?, lem.as_ref()?)));
+                let error = |pair: Option<(&Held, &Held)>| {
+                    pair.and_then(|(fem, lem)| displacement_error(&fem.displacement, &lem.displacement, d))
+                        .map(|e| e.rms)
+                };
+                let excess =
+                    |pair: Option<(&Held, &Held)>| pair.map(|(fem, lem)| 100.0 * (lem.force / fem.force - 1.0));
+                let (errors, excess) = (both().map(error).collect(), both().map(excess).collect());
+                let sampled = fitted.kind.sampled().cloned();
+                Ok(StretchedFit { name: named.name.clone(), times: None, sampled, errors, excess })
+            };
+            found.push(fitted.and_then(compared));
+        }
+        if is_timed {
+            self.time(fits, &mut found)?;
+        }
+        Ok(found)
+    }
+
+    fn time(&self, fits: &[NamedFit], found: &mut [Result<StretchedFit>]) -> Result<()> {
+        let served: Vec<usize> = (0..fits.len()).filter(|fit| found[*fit].is_ok()).collect();
+        let own: Vec<NamedFit> = served.iter().map(|fit| fits[*fit].clone()).collect();
+        let times = on_one_thread(|| {
+            let reference = Reference { large: Some(&self.large), ..Reference::default() };
+            time_fits(&self.mesh, &self.material.into(), &reference, &own)
+        })?;
+        for (fit, times) in served.into_iter().zip(times) {
+            if let Ok(fit) = &mut found[fit] {
+                fit.times = Some(times.element);
+            }
+        }
+        Ok(())
+    }
+
     /// The equilibrium at each of [`STRETCHES`]; `None` if there is none.
     fn follow(&self, model: &dyn Elastic) -> Result<Vec<Option<Held>>> {
         let d = self.mesh.dimension;
@@ -225,28 +290,17 @@ impl Pulled {
         let mut fit = recipe.resolve(&block.element, &springs, &Arc::default())?;
         (fit.sampling.shapes, fit.sampling.held_out) = (shapes, 0);
         let nodes = &block.connectivity[..block.element.nodes()];
-        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-        let one = one.map_err(|e| Error::new(format!("no thread can be started: {e}")))?;
-        let run = |fit: &_| {
-            let state = self.material.state();
-            one.install(|| {
-                fit_sampled(
-                    &block.element,
-                    &springs,
-                    &self.mesh.points,
-                    nodes,
-                    self.large.laws.first(),
-                    state,
-                    fit,
-                    &mut |_| {},
-                )
-            })
-        };
-        let start = Instant::now();
-        run(&fit)?;
-        let seconds = start.elapsed().as_secs_f64();
-        fit.sampling.held_out = 1000;
-        let found = run(&fit)?;
+        let state = self.material.state();
+        let law = self.large.laws.first();
+        let run =
+            |fit: &_| fit_sampled(&block.element, &springs, &self.mesh.points, nodes, law, state, fit, &mut |_| {});
+        let (seconds, found) = on_one_thread(|| {
+            let clock = Clock::start();
+            run(&fit)?;
+            let seconds = clock.seconds();
+            fit.sampling.held_out = 1000;
+            Ok((seconds, run(&fit)?))
+        })?;
         let (trained, held_out) = (found.trained[0], found.held_out[0]);
         Ok(SampledRun { name: name.into(), shapes, seconds, trained, held_out })
     }

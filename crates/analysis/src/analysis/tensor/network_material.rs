@@ -6,6 +6,7 @@ use super::owners::SpringOwners;
 use super::piece::Piece;
 use super::relaxation::{body_tensor, tensor};
 use super::sample::{Sample, Stars};
+use crate::clock::Clock;
 use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Moments, Network, edge_springs};
@@ -14,7 +15,6 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::time::Instant;
 
 /// The largest number of samples. On unstructured tetrahedra the distances of samples differ by a tenth.
 const SAMPLES: usize = 6;
@@ -75,7 +75,7 @@ pub struct NetworkMaterial {
     pub stiffness: DMatrix<f64>,
     /// This number of cells or patches was measured.
     pub samples: usize,
-    /// The computation took this time in s.
+    /// The computation took this processor time in s.
     pub seconds: f64,
 }
 
@@ -112,7 +112,7 @@ pub fn network_material(
     network: &Network,
 ) -> NetworkMaterial {
     let material = &material.into();
-    let start = Instant::now();
+    let start = Clock::start();
     let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
     // Points that only attached cells have are in no sample.
     let seeds: Vec<usize> = (0..mesh.point_count()).filter(|&p| stars.around(p).next().is_some()).collect();
@@ -184,7 +184,7 @@ pub fn network_material(
             mean_distance: f64::NAN,
             largest_distance: f64::NAN,
             samples: count,
-            seconds: start.elapsed().as_secs_f64(),
+            seconds: start.seconds(),
             stiffness: stiffness * f64::NAN,
         };
     }
@@ -197,7 +197,7 @@ pub fn network_material(
         mean_distance: distance(&stiffness, &asked),
         largest_distance: distances.iter().copied().fold(0.0, f64::max),
         samples: count,
-        seconds: start.elapsed().as_secs_f64(),
+        seconds: start.seconds(),
         stiffness,
     }
 }

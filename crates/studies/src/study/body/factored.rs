@@ -3,6 +3,7 @@
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
 use crate::analysis::metrics::{SOLVED, square};
+use crate::clock::Clock;
 use crate::error::Result;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
@@ -10,7 +11,6 @@ use crate::model::{Network, check_body, finite_elements};
 use crate::solve::{Factor, Solved, Stability, Standing, System, compare_energies};
 use crate::study::progress::{Event, Progress};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// The finite elements under each support, factorised.
 #[derive(Default)]
@@ -34,28 +34,28 @@ impl Factored {
             return Ok((factored, answers));
         }
         check_body(mesh)?;
-        let start = Instant::now();
+        let start = Clock::start();
         let entries = finite_elements(mesh, moduli);
-        let assembly = start.elapsed().as_secs_f64();
+        let assembly = start.seconds();
         let mut setup = Vec::new();
         for (i, (case, first)) in cases.iter().zip(shared(cases)).enumerate() {
             progress(Event::stage("finite elements", i, cases.len()));
             if first == i {
-                let start = Instant::now();
+                let start = Clock::start();
                 let system = System::new(&entries, &case.support)?.placed(&mesh.points, mesh.dimension);
                 let factor = definite(&system, mesh)?;
                 factored.system_of.push(factored.systems.len());
                 factored.systems.push((Arc::new(system), Arc::new(factor)));
-                setup.push(start.elapsed().as_secs_f64());
+                setup.push(start.seconds());
             } else {
                 factored.system_of.push(factored.system_of[first]);
             }
             let index = factored.system_of[i];
             let (system, factor) = &factored.systems[index];
-            let start = Instant::now();
+            let start = Clock::start();
             let (u, residual) = system.solve(factor, &case.forces);
             check_residual(residual, SOLVED, case)?;
-            let seconds = assembly + setup[index] + start.elapsed().as_secs_f64();
+            let seconds = assembly + setup[index] + start.seconds();
             let work = case.work(&u, || Some(square(&entries, &u)));
             answers.push(BodyAnswer { displacement: u, work, seconds, solved: by_factor(factor, system, residual) });
         }
@@ -77,22 +77,22 @@ impl Factored {
         (moduli, compared): (&CellMap<Hooke>, &CellMap<Hooke>),
     ) -> Result<(Vec<NetworkAnswer>, Stability)> {
         network.check_size()?;
-        let start = Instant::now();
+        let start = Clock::start();
         let entries = network.stiffness(&mesh.points);
-        let assembly = start.elapsed().as_secs_f64();
+        let assembly = start.seconds();
         let other = (compared != moduli).then(|| finite_elements(mesh, compared));
         let mut systems: Vec<(System, Result<Option<Factor>>, Stability, f64)> = Vec::new();
         let mut answers = Vec::new();
         for (i, case) in cases.iter().enumerate() {
             let index = self.system_of[i];
             if index == systems.len() {
-                let start = Instant::now();
+                let start = Clock::start();
                 let system = System::new(&entries, &case.support)?.placed(&mesh.points, mesh.dimension);
                 let factor = match system.cholesky().map_err(|e| e.at_key("mesh"))? {
                     Some(factor) => Ok(Some(factor)),
                     None => system.general(),
                 };
-                let seconds = start.elapsed().as_secs_f64();
+                let seconds = start.seconds();
                 let (body, body_factor) = (&*self.systems[index].0, &*self.systems[index].1);
                 let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
                 let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
@@ -102,12 +102,12 @@ impl Factored {
                 systems.push((system, factor, stability, seconds));
             }
             let (system, factor, stability, setup) = &systems[index];
-            let start = Instant::now();
+            let start = Clock::start();
             let mut unsolved = factor.as_ref().err().map(|e| e.problem().to_string());
             let factor = factor.as_ref().ok().and_then(Option::as_ref);
             let factor = factor.filter(|_| stability.standing != Standing::Singular);
             let found = factor.map(|factor| (factor, system.solve(factor, &case.forces)));
-            let seconds = assembly + setup + start.elapsed().as_secs_f64();
+            let seconds = assembly + setup + start.seconds();
             if let Some((_, (_, residual))) = &found {
                 unsolved = (!(*residual <= SOLVED)).then(|| format!("the factor leaves {residual:.1e} of the forces"));
             }

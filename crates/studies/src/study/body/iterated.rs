@@ -3,6 +3,7 @@
 use super::answer::{BodyAnswer, NetworkAnswer, check_residual, largest_residual, not_definite, shared};
 use super::case::Case;
 use crate::analysis::metrics::product;
+use crate::clock::Clock;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
@@ -10,7 +11,6 @@ use crate::model::{BlockStiffness, Network};
 use crate::solve::{Levels, Solved, Stability, Standing, StaticSolver, compare_levels};
 use crate::study::progress::{Event, Progress};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// The levels of the finite elements under each support.
 pub(super) struct Iterated {
@@ -43,22 +43,22 @@ impl Iterated {
         solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Iterated, Vec<BodyAnswer>)> {
-        let start = Instant::now();
+        let start = Clock::start();
         // Those of the body, and of a network.
         let stiffness = BlockStiffness::of_body(mesh, moduli, 2, 2 * groups(cases).len())?;
-        let assembly = start.elapsed().as_secs_f64();
+        let assembly = start.seconds();
         let mut iterated = Iterated { systems: Vec::new(), system_of: vec![0; cases.len()] };
         let mut answers: Vec<Option<BodyAnswer>> = cases.iter().map(|_| None).collect();
         let mut done = 0;
         for group in groups(cases) {
-            let start = Instant::now();
+            let start = Clock::start();
             let support = &cases[group[0]].support;
             let levels = Levels::new(stiffness.clone(), &mesh.points, support).map_err(|e| e.at_key("mesh"))?;
             let levels = levels.map_err(|_| not_definite(mesh))?;
             if levels.prove().map_err(|e| e.at_key("mesh"))?.is_some() {
                 return Err(not_definite(mesh));
             }
-            let setup = start.elapsed().as_secs_f64();
+            let setup = start.seconds();
             let solutions = solutions(&levels, cases, &group, solver, ("finite elements", done), progress)?;
             for (&i, Solution { displacement, solved, seconds }) in group.iter().zip(solutions) {
                 let work =
@@ -88,18 +88,18 @@ impl Iterated {
         solver: &StaticSolver,
         progress: &mut Progress,
     ) -> Result<(Vec<NetworkAnswer>, Stability)> {
-        let start = Instant::now();
+        let start = Clock::start();
         let shared = self.systems[0].stiffness();
         let stiffness = BlockStiffness::of_network(network, &mesh.points, Some(shared));
-        let assembly = start.elapsed().as_secs_f64();
+        let assembly = start.seconds();
         let other = (compared != moduli).then(|| BlockStiffness::of_body(mesh, compared, 1, 1)).transpose()?;
         let mut answers: Vec<Option<NetworkAnswer>> = cases.iter().map(|_| None).collect();
         let (mut first, mut done) = (None, 0);
         for (system, group) in self.systems.iter().zip(groups(cases)) {
-            let start = Instant::now();
+            let start = Clock::start();
             let support = &cases[group[0]].support;
             let levels = Levels::new(stiffness.clone(), &mesh.points, support).map_err(|e| e.at_key("mesh"))?;
-            let setup = assembly + start.elapsed().as_secs_f64();
+            let setup = assembly + start.seconds();
             let other = other.as_ref().map(|other| Levels::new(other.clone(), &mesh.points, support));
             let other = match other.transpose()? {
                 Some(Err(_)) => return Err(not_definite(mesh)),
@@ -176,10 +176,10 @@ fn solutions(
         let now = PARTS * done + (part * (PARTS * group.len()) as f64) as usize;
         progress(Event::stage(stage, now.min(all - 1), all));
     };
-    let start = Instant::now();
+    let start = Clock::start();
     let forces: Vec<&[f64]> = group.iter().map(|&i| &cases[i].forces[..]).collect();
     let found = levels.solve_each(&forces, solver, &mut share).map_err(keyed)?;
-    let seconds = start.elapsed().as_secs_f64() / group.len() as f64;
+    let seconds = start.seconds() / group.len() as f64;
     let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
         check_residual(solved.residual, largest_residual(solver), &cases[i])?;
         Ok(Solution { displacement, solved, seconds })

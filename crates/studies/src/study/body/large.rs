@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use crate::analysis::metrics::product;
+use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::EnergyMap;
 use crate::mesh::{CellIndex, Mesh};
@@ -10,7 +11,6 @@ use crate::model::{Body, Elastic, check_body, displaced};
 use crate::solve::{Ending, Equilibrium, Newton, System};
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
-use std::time::Instant;
 
 /// The finite element solutions of a scene whose material has a law.
 pub struct LargeBody {
@@ -55,10 +55,10 @@ impl LargeBody {
         let mut body = LargeBody { newton, ..LargeBody::at_rest(laws) };
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finite elements", done, cases.len()));
-            let start = Instant::now();
+            let start = Clock::start();
             let model = Body { mesh, laws: &body.laws };
             let found = reach(&newton, &model, mesh, case)?;
-            body.seconds.push(start.elapsed().as_secs_f64());
+            body.seconds.push(start.seconds());
             body.followed.push(Followed::of(&found, &model));
             body.works.push(work(case, &model, &mesh.points, &found.displacement));
             body.displacements.push(found.displacement);
@@ -98,10 +98,10 @@ impl LargeBody {
         }
         let mut loads = Vec::new();
         for (i, case) in cases.iter().enumerate() {
-            let start = Instant::now();
+            let start = Clock::start();
             let model: &dyn Elastic = network;
             let found = reach(&self.newton, model, mesh, case)?;
-            let seconds_lem = start.elapsed().as_secs_f64();
+            let seconds_lem = start.seconds();
             let followed = Followed::of(&found, &Body { mesh, laws: &self.laws });
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
@@ -123,6 +123,18 @@ impl LargeBody {
             });
         }
         Ok(loads)
+    }
+}
+
+impl LargeBody {
+    /// The processor time in which Newton's method follows a load with this model, s; `None` if the load is not reached.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn seconds(&self, model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Option<f64>> {
+        let start = Clock::start();
+        let found = reach(&self.newton, model, mesh, case)?;
+        Ok((found.ending == Ending::Converged).then(|| start.seconds()))
     }
 }
 

@@ -12,6 +12,7 @@ mod large;
 mod linear;
 mod load_notes;
 mod part_notes;
+mod solution;
 mod truth;
 
 pub use case::Case;
@@ -21,4 +22,5 @@ pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;
 pub use load_notes::load_notes;
+pub use solution::{seconds_of_body, seconds_of_network};
 pub use truth::judge_by_truth;

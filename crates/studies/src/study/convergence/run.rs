@@ -142,7 +142,7 @@ fn of_levels(
 /// The time of a level with so many times the cells of the last one, in words: what grows with the number of cells alone.
 fn expected(last: &Outcome, seconds: f64, factor: f64) -> String {
     let of_fit = |fit: &FitOutcome| {
-        let seconds = factor * (fit.seconds + fit.seconds_assembly);
+        let seconds = factor * (fit.seconds + fit.seconds_assembly) / rayon::current_num_threads() as f64;
         (seconds > TOLD).then(|| format!("{} for {}", time_in_words(seconds), fit.fit.name))
     };
     let fits: Vec<String> = last.fits.iter().filter_map(of_fit).collect();

@@ -251,6 +251,27 @@ impl<'de> Deserialize<'de> for FitEntry {
     }
 }
 
+/// The names of groups, or one word for several groups.
+#[derive(Deserialize)]
+#[serde(from = "OneOrMany")]
+struct Groups(Vec<String>);
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a list of groups of the element, or \"default\", \"all\" or \"all + volume\"")]
+enum OneOrMany {
+    One(String),
+    Many(Vec<String>),
+}
+
+impl From<OneOrMany> for Groups {
+    fn from(given: OneOrMany) -> Groups {
+        Groups(match given {
+            OneOrMany::One(name) => vec![name],
+            OneOrMany::Many(names) => names,
+        })
+    }
+}
+
 struct EntryVisitor;
 
 impl<'de> Visitor<'de> for EntryVisitor {
@@ -267,7 +288,7 @@ impl<'de> Visitor<'de> for EntryVisitor {
             match key.as_str() {
                 "name" => entry.name = Some(map.next_value()?),
                 "objective" => objective = Some(map.next_value()?),
-                "springs" => entry.springs = Some(map.next_value()?),
+                "springs" => entry.springs = Some(map.next_value::<Groups>()?.0),
                 _ => {
                     let value = map.next_value()?;
                     entry.keys.insert(key, value);

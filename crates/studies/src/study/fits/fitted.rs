@@ -6,12 +6,12 @@ use super::sampled::SampledOutcome;
 use super::stiffness::StiffnessOutcome;
 use super::whole::WholeOutcome;
 use crate::analysis::tensor::SpringOwners;
+use crate::clock::Clock;
 use crate::fit::{CellFits, ShearSprings};
 use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::Springs;
-use std::time::Instant;
 
 /// The springs of a fit.
 #[non_exhaustive]
@@ -22,9 +22,9 @@ pub struct Fitted {
     pub springs: Vec<Springs>,
     /// The assembled network.
     pub network: Network,
-    /// The time for the constants without assembly, s.
+    /// The processor time for the constants without assembly, s.
     pub seconds: f64,
-    /// The time of the assembly, s.
+    /// The processor time of the assembly, s.
     pub seconds_assembly: f64,
     /// The results that only the kind of the fit has.
     pub kind: FittedKind,
@@ -48,10 +48,10 @@ pub enum FittedKind {
 impl Fitted {
     /// The assembled network of the springs of the cells, which took `seconds` to fit.
     pub fn assembled(mesh: &Mesh, cells: Vec<CellFits>, seconds: f64, kind: FittedKind) -> Fitted {
-        let start = Instant::now();
+        let start = Clock::start();
         let network = Network::assemble(mesh, &cells);
         let springs = Fitted::springs_of(&cells);
-        Fitted { cells, springs, network, seconds, seconds_assembly: start.elapsed().as_secs_f64(), kind }
+        Fitted { cells, springs, network, seconds, seconds_assembly: start.seconds(), kind }
     }
 }
 
@@ -63,6 +63,17 @@ impl Fitted {
 }
 
 impl Fitted {
+    /// The springs of each block of cells where those of a cell are its whole stiffness; none where springs belong to no element.
+    pub fn of_elements(&self) -> &[CellFits] {
+        if self.kind.is_of_cells() { &self.cells } else { &[] }
+    }
+
+    /// The number of cells that were fitted; the others took the constants of a congruent one.
+    pub fn fitted_elements(&self, mesh: &Mesh) -> usize {
+        let reused: usize = self.cells.iter().map(|cells| cells.reused).sum();
+        mesh.cell_count().saturating_sub(reused).max(1)
+    }
+
     /// To what the springs belong.
     pub fn owners(&self) -> SpringOwners<'_> {
         match self.kind.exact() {

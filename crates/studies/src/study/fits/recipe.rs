@@ -56,7 +56,12 @@ impl Recipe {
 
     /// A name that states the settings, such as `modal 0.1 +bulk k>=0`.
     pub fn name(&self, springs: Option<&[String]>) -> String {
-        let groups: String = springs.unwrap_or_default().iter().map(|group| format!(" +{group}")).collect();
+        let groups: String = match springs.unwrap_or_default() {
+            // Words for groups of any element.
+            [word] if word == "default" => String::new(),
+            [word] if word.starts_with("all") => format!(" {word}"),
+            groups => groups.iter().map(|group| format!(" +{group}")).collect(),
+        };
         self.kind().title(&groups)
     }
 }

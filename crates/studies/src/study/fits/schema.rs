@@ -6,6 +6,7 @@ use super::published::PublishedEntry;
 use super::sampled::SampledEntry;
 use super::stiffness::StiffnessEntry;
 use super::whole::WholeEntry;
+use crate::element::GROUP_CHOICES;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
@@ -65,9 +66,11 @@ fn common(kind: Kind) -> [(String, Value); COMMON.len()] {
         "description": "The objective says what the springs are fitted to, and by it which other keys the fit has.",
     });
     let groups = json!({
-        "type": "array",
-        "items": { "type": "string" },
-        "description": "The network has the springs of these groups of the element.",
+        "anyOf": [{ "type": "array", "items": { "type": "string" } }, { "type": "string", "enum": GROUP_CHOICES }],
+        "x-type": "list of texts, or a word",
+        "description": "The network has the springs of these groups of the element. A word in place of the list stands for groups of any \
+                        element: those that are not optional (`default`), all between two points (`all`), or all with those on areas \
+                        and volumes (`all + volume`).",
         "x-default": "all that are not optional",
     });
     [(name, names), (objective, objectives), (springs, groups)]

@@ -8,6 +8,7 @@ use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
 use crate::springs::Springs;
 use crate::study::fits::{FittedKind, NamedFit};
+use crate::study::timing::{FitTimes, ModelTimes};
 use std::sync::OnceLock;
 
 /// The relative errors `‖R − K‖/‖R‖` of the elements' matrices.
@@ -29,10 +30,14 @@ pub struct FitOutcome {
     pub springs: Vec<Springs>,
     /// The network.
     pub network: Network,
-    /// The time for the constants of all cells without assembly, s.
+    /// The processor time for the constants of all cells without assembly, s, in the one pass that made them.
     pub seconds: f64,
-    /// The time of the assembly, s.
+    /// The processor time of the assembly, s, in the same pass.
     pub seconds_assembly: f64,
+    /// The costs of the fit, repeated on one thread, if the scene asks for them.
+    pub times: Option<FitTimes>,
+    /// The costs of the network, if the scene asks for them.
+    pub model_times: Option<ModelTimes>,
     /// The number of cells whose springs the objective does not determine.
     pub deficient: usize,
     /// The number of cells whose iteration did not converge.
@@ -71,6 +76,13 @@ impl FitOutcome {
     /// The masses of the network, `[points]`, kg, if they were fitted.
     pub fn masses(&self) -> Option<&[f64]> {
         self.kind.whole()?.masses.as_ref().map(|found| &found.masses[..])
+    }
+
+    /// The processor time for the constants of each cell of `cells` that was fitted, s: the median of repeated passes where there are
+    /// some, otherwise that of the one pass that made them.
+    pub fn seconds_per_element(&self, cells: usize) -> f64 {
+        let of_one_pass = || self.seconds / cells.saturating_sub(self.reused).max(1) as f64;
+        self.times.as_ref().map_or_else(of_one_pass, |times| times.element.median)
     }
 
     /// One word for the state of the network.

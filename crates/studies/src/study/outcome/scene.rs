@@ -8,6 +8,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
 use crate::study::masses::PointMasses;
+use crate::study::timing::ModelTimes;
 use std::path::PathBuf;
 
 /// The results of a scene.
@@ -45,6 +46,8 @@ pub struct Outcome {
     pub loads: Vec<BodyLoad>,
     /// The fits, in the order of the scene.
     pub fits: Vec<FitOutcome>,
+    /// The costs of the finite elements of the mesh, if the scene asks for them.
+    pub model_times: Option<ModelTimes>,
     /// The motion, if the scene has one.
     pub motion: Option<MotionOutcome>,
     /// The natural frequencies of the finite elements and of each network, if the scene requests them.
@@ -82,6 +85,7 @@ impl Outcome {
             fibres,
             loads,
             fits: vec![fit],
+            model_times: None,
             motion,
             frequencies,
             left_out,

@@ -7,7 +7,7 @@ use super::surface::{of_surface, surface};
 use crate::error::{Error, Result};
 use crate::file::{create_folder, on_line_of_key, read_text, write_whole};
 use crate::solve::{Ending, Standing};
-use crate::study::comparison::{MethodOutcome, measure_recipes};
+use crate::study::compare::{MethodOutcome, measure_recipes};
 use crate::study::fits::{NamedFit, Recipe};
 use crate::study::outcome::{FitOutcome, ModelMotion, MotionEnding, Outcome};
 use crate::study::own_name::expect_own_name;
@@ -204,7 +204,7 @@ fn timed(row: &RowEntry, fits: &[NamedFit], folder: &Path, progress: &mut Progre
     let outcomes = measure_recipes(&element, material, SHAPES, &recipes, progress)?;
     let of = |(fit, found): (&NamedFit, &MethodOutcome)| {
         let published = fit.recipe.published().is_some();
-        PaperRow::new(row, &fit.name, vec![Some(found.seconds[1])], published, true)
+        PaperRow::new(row, &fit.name, vec![found.times.as_ref().map(|times| times.median)], published, true)
     };
     Ok(fits.iter().zip(&outcomes).map(of).collect())
 }

@@ -89,6 +89,7 @@ impl Answers {
             fibres: laws.as_ref().and_then(EnergyMap::distance_at_rest),
             loads,
             fits,
+            model_times: None,
             motion: None,
             frequencies: Vec::new(),
         };

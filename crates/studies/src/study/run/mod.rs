@@ -36,8 +36,10 @@ fn in_stages(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Res
     let solved = Solved::of(&mut posed, progress)?;
     let mut fits = solved.fits(&posed, controls, progress)?;
     posed.measure_moduli(&mut fits, progress)?;
+    let model_times = solved.measure_times(&posed, &mut fits, progress)?;
     let answers = Answers::of(&mut posed, solved, &mut fits, progress)?;
     let (mut outcome, plan, laws) = answers.outcome(posed, fits);
+    outcome.model_times = model_times;
     if controls.cancelled() {
         progress(Event::Note("ended early, without motion and frequencies"));
     } else {

@@ -2,13 +2,18 @@
 
 use super::posed::Posed;
 use crate::error::Result;
-use crate::study::body::{FineBody, LargeBody, LinearBody};
+use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
+use crate::study::body::{FineBody, LargeBody, LinearBody, seconds_of_body, seconds_of_network};
 use crate::study::checkpoint::Controls;
-use crate::study::fits::{Finer, Reference, WholeBody};
+use crate::study::fits::{Finer, NamedFit, Reference, WholeBody};
 use crate::study::fitting::{fit_mesh, fit_without_errors};
 use crate::study::masses::{PointMasses, point_masses};
 use crate::study::outcome::FitOutcome;
-use crate::study::progress::Progress;
+use crate::study::progress::{Event, Progress};
+use crate::study::timing::{Costed, ModelTimes, Statics, model_times, on_one_thread, time_fits};
+
+/// The density that steps are timed with where the scene gives none, kg/m³.
+const WATER: f64 = 1000.0;
 
 /// The finite elements that are solved before the fits.
 pub(super) struct Solved {
@@ -65,6 +70,84 @@ impl Solved {
             fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
         }
         Ok(fits)
+    }
+
+    /// Measures what the fits, their networks and the finite elements cost, if the scene asks for it: on one thread, in turns. Returns
+    /// the costs of the finite elements.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn measure_times(
+        &self,
+        posed: &Posed,
+        fits: &mut [FitOutcome],
+        progress: &mut Progress,
+    ) -> Result<Option<ModelTimes>> {
+        if !posed.scene.output().time {
+            return Ok(None);
+        }
+        progress(Event::stage("times", 0, 2));
+        let made: Vec<NamedFit> = fits.iter().map(|fit| fit.fit.clone()).collect();
+        let times = on_one_thread(|| {
+            let controls = Controls::default();
+            let whole = self.whole(posed, &controls);
+            let held = posed.held_points();
+            let reference = Reference { large: self.large.as_ref(), whole: Some(&whole), held: &held };
+            time_fits(&posed.mesh, &posed.material, &reference, &made)
+        })?;
+        progress(Event::stage("times", 1, 2));
+        let mut models = on_one_thread(|| self.model_times(posed, fits))?.into_iter();
+        let of_body = models.next();
+        for ((fit, times), model) in fits.iter_mut().zip(times).zip(models) {
+            (fit.times, fit.model_times) = (Some(times), Some(model));
+        }
+        Ok(of_body)
+    }
+
+    /// The costs of the finite elements, and those of each network.
+    fn model_times(&self, posed: &Posed, fits: &[FitOutcome]) -> Result<Vec<ModelTimes>> {
+        let Posed { scene, mesh, material, support, cases, .. } = posed;
+        let solver = scene.solver();
+        let moduli = material.moduli();
+        // Steps cost the same with any density.
+        let masses = match &self.masses {
+            Some(masses) => masses.values.clone(),
+            None => point_masses(mesh, WATER, material)?.values,
+        };
+        let case = cases.first();
+        let (body, linear);
+        let (model, is_linear): (&dyn Elastic, bool) = match &self.large {
+            Some(large) => {
+                body = Body { mesh, laws: &large.laws };
+                (&body, false)
+            }
+            None => {
+                check_body(mesh)?;
+                linear = LinearElastic { points: &mesh.points, stiffness: finite_elements(mesh, moduli.clone()) };
+                (&linear, true)
+            }
+        };
+        let of_body = case.map(|case| -> Statics {
+            match &self.large {
+                Some(large) => Box::new(move || large.seconds(model, mesh, case)),
+                None => Box::new(|| seconds_of_body(mesh, &moduli, case, solver)),
+            }
+        });
+        let prepared: Vec<_> = fits.iter().map(|fit| fit.network.prepared()).collect();
+        let points = &mesh.points;
+        let costed = |model, linear, masses, statics| Costed { model, linear, points, support, masses, statics };
+        let mut models = vec![costed(model, is_linear, &masses[..], of_body)];
+        for (fit, prepared) in fits.iter().zip(&prepared) {
+            let network = &fit.network;
+            let of_network = case.map(|case| -> Statics {
+                match &self.large {
+                    Some(large) => Box::new(move || large.seconds(network, mesh, case)),
+                    None => Box::new(move || seconds_of_network(mesh, network, case, solver)),
+                }
+            });
+            models.push(costed(prepared, false, fit.masses().unwrap_or(&masses), of_network));
+        }
+        model_times(&models, self.masses.is_some())
     }
 
     /// The body to which whole-object fits are fitted.

@@ -17,6 +17,8 @@ pub struct Output {
     /// The errors of the elements' matrices are computed. Without them the tables have `-`, and files null.
     #[schemars(extend("default" = true))]
     pub errors: Option<bool>,
+    /// What each fit, each network and the finite elements cost is measured: processor time of one thread, repeated in turns.
+    pub time: bool,
     /// Young's modulus, Poisson's ratio and Zener's ratio of each whole network are measured.
     pub moduli: bool,
     /// This number of natural frequencies of each model is computed, without those of rigid motions; they need a density.

@@ -2,8 +2,10 @@
 
 use super::distribution::Distribution;
 use super::document::Scene;
+use super::lists::check_fits;
 use super::output::Output;
 use super::reference::ReferenceEntry;
+use crate::error::{Error, Result};
 use crate::solve::Newton;
 use crate::study::fits::NamedFit;
 
@@ -11,6 +13,27 @@ impl Scene {
     /// Replaces the fits of the scene.
     pub fn with_fits(self, fits: Vec<NamedFit>) -> Scene {
         Scene { fits, ..self }
+    }
+
+    /// Checks that the material and the loads are those that other fits than its own require.
+    ///
+    /// # Errors
+    /// They are not; the error names the fit.
+    pub(in crate::study) fn check_fits(&self, fits: &[NamedFit]) -> Result<()> {
+        check_fits(fits, &self.material, &self.loads)
+    }
+
+    /// The scene with its loads alone, for comparisons: without motion and frequencies.
+    ///
+    /// # Errors
+    /// It has no loads.
+    pub(in crate::study) fn of_loads(self) -> Result<Scene> {
+        if self.loads.is_empty() {
+            let problem = "expected at least one [[load]] to compare under, found none";
+            return Err(self.placed(Error::at("load", problem)));
+        }
+        let output = Output { frequencies: 0, time: true, ..self.output.clone() };
+        Ok(self.with_output(output).without_motion())
     }
 
     /// Replaces the outputs of the scene.

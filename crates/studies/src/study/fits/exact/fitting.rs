@@ -3,6 +3,7 @@
 use super::outcome::ExactOutcome;
 use super::recipe::{ExactRecipe, spring_words};
 use super::record::ExactRecord;
+use crate::clock::Clock;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
@@ -16,7 +17,6 @@ use crate::study::fits::kind::{CellMethod, FitKind, Task};
 use crate::study::fits::record::KindRecord;
 use crate::study::locking::Locking;
 use crate::study::progress::{Event, Progress};
-use std::time::Instant;
 
 impl FitKind for ExactRecipe {
     fn title(&self, _groups: &str) -> String {
@@ -35,7 +35,7 @@ impl FitKind for ExactRecipe {
         let laws = task.reference.large.map(|large| &large.laws);
         let fit = self.resolve_all(laws)?;
         let materials = material.materials()?;
-        let start = Instant::now();
+        let start = Clock::start();
         let mut patches = Vec::new();
         if fit.volume == VolumeSprings::Patches {
             patches = patch_springs(mesh, material, &fit, task.reference.held)?;
@@ -63,8 +63,8 @@ impl FitKind for ExactRecipe {
             cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, own, &mut watch)?);
             done += block.cells().len();
         }
-        let mut seconds = start.elapsed().as_secs_f64();
-        let start = Instant::now();
+        let mut seconds = start.seconds();
+        let start = Clock::start();
         let mut network = match domains {
             Some(domains) => domains.joined(Network::assemble(&attached_cells(mesh), &std::mem::take(&mut cells))),
             None => Network::assemble(mesh, &cells),
@@ -82,9 +82,9 @@ impl FitKind for ExactRecipe {
         };
         network.others.extend(patches);
         network.others.extend(fibres);
-        let seconds_assembly = start.elapsed().as_secs_f64();
+        let seconds_assembly = start.seconds();
         if let Some(positive) = &self.positive {
-            let start = Instant::now();
+            let start = Clock::start();
             let search = format!("{}: nearest network", task.name);
             let (nearest, found) = {
                 let mut watch = |done, total| progress(Event::stage(&search, done, total));
@@ -95,7 +95,7 @@ impl FitKind for ExactRecipe {
                 cells.clear();
             }
             (network, outcome.positive) = (nearest, Some(found));
-            seconds += start.elapsed().as_secs_f64();
+            seconds += start.seconds();
         }
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind: FittedKind::Exact(outcome) })
     }

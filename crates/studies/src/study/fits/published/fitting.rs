@@ -2,6 +2,7 @@
 
 use super::outcome::PublishedOutcome;
 use super::record::PublishedRecord;
+use crate::clock::Clock;
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
@@ -12,7 +13,6 @@ use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{CellMethod, FitKind, Task};
 use crate::study::fits::record::KindRecord;
 use crate::study::progress::Progress;
-use std::time::Instant;
 
 impl FitKind for Method {
     fn title(&self, groups: &str) -> String {
@@ -20,7 +20,7 @@ impl FitKind for Method {
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
-        let start = Instant::now();
+        let start = Clock::start();
         let of_method = |e: Error| e.placed(|e| Error::at("objective", e.to_string()));
         let materials = task.material.materials()?;
         let mut unmet: Option<Unmet> = None;
@@ -41,7 +41,7 @@ impl FitKind for Method {
             published::fit(*self, &block.element, springs, points, cells, material).map_err(of_method)
         })?;
         let kind = FittedKind::Published(PublishedOutcome { method: *self, unmet: unmet.unwrap_or_default() });
-        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+        Ok(Fitted::assembled(task.mesh, cells, start.seconds(), kind))
     }
 
     fn cell_method(&self) -> Option<&dyn CellMethod> {

@@ -4,6 +4,7 @@ use super::entry::of_shapes;
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use super::record::SampledRecord;
+use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{SampledFits, fit_sampled};
 use crate::material::{Energy, EnergyMap, Material, MaterialMap, State};
@@ -16,7 +17,6 @@ use crate::study::fits::record::KindRecord;
 use crate::study::progress::Progress;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Instant;
 
 impl FitKind for SampledRecipe {
     fn title(&self, groups: &str) -> String {
@@ -35,11 +35,11 @@ impl FitKind for SampledRecipe {
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
-        let start = Instant::now();
+        let start = Clock::start();
         let found = fit_shapes(self, task, progress)?;
         let kind = FittedKind::Sampled(SampledOutcome::of(self, &found, task.mesh.cell_dimension()));
         let cells = found.into_iter().map(|found| found.fits).collect();
-        Ok(Fitted::assembled(task.mesh, cells, start.elapsed().as_secs_f64(), kind))
+        Ok(Fitted::assembled(task.mesh, cells, start.seconds(), kind))
     }
 
     fn sampled(&self) -> Option<&SampledRecipe> {

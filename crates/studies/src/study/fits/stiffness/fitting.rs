@@ -3,6 +3,7 @@
 use super::outcome::StiffnessOutcome;
 use super::record::StiffnessRecord;
 use super::tension::TensionOutcome;
+use crate::clock::Clock;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{CellFits, Fit, Rest, Solver, fit_cells};
@@ -12,7 +13,6 @@ use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::fits::kind::{CellMethod, FitKind, Task};
 use crate::study::fits::record::KindRecord;
 use crate::study::progress::Progress;
-use std::time::Instant;
 
 impl FitKind for Fit {
     fn title(&self, groups: &str) -> String {
@@ -34,9 +34,9 @@ impl FitKind for Fit {
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
-        let start = Instant::now();
+        let start = Clock::start();
         let cells = fit_at_rest(self, task, progress)?;
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds = start.seconds();
         let kind = FittedKind::Stiffness(StiffnessOutcome::of(self, &cells));
         let mut fitted = Fitted::assembled(task.mesh, cells, seconds, kind);
         if let (Rest::Free | Rest::Zero, FittedKind::Stiffness(outcome)) = (self.rest, &mut fitted.kind) {

@@ -2,6 +2,7 @@
 
 use super::recipe::{Start, WholeRecipe};
 use super::record::WholeRecord;
+use crate::clock::Clock;
 use crate::error::{Error, Result};
 use crate::fit::{CellFits, Fit, Objective, Weight};
 use crate::model::Network;
@@ -13,7 +14,6 @@ use crate::study::fits::sampled::{SampledRecipe, fit_shapes};
 use crate::study::fits::stiffness::fit_at_rest;
 use crate::study::progress::Progress;
 use crate::whole::raise_idle;
-use std::time::Instant;
 
 impl WholeRecipe {
     /// The constants from which the fit starts.
@@ -43,20 +43,20 @@ impl FitKind for WholeRecipe {
     }
 
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
-        let start = Instant::now();
+        let start = Clock::start();
         let mut cells = self.begin(task, progress)?;
-        let seconds = start.elapsed().as_secs_f64();
-        let start = Instant::now();
+        let seconds = start.seconds();
+        let start = Clock::start();
         raise_idle(&mut cells);
         let springs = Fitted::springs_of(&cells);
         let network = Network::assemble(task.mesh, &cells);
-        let seconds_assembly = start.elapsed().as_secs_f64();
-        let start = Instant::now();
+        let seconds_assembly = start.seconds();
+        let start = Clock::start();
         let missing = || Error::at("objective", "\"whole\" belongs to a scene with supports");
         let body = task.reference.whole.ok_or_else(missing)?;
         let own = (!matches!(self.start, Start::Exact(..))).then_some((&cells[..], &network));
         let (network, outcome) = body.fit((task.name, task.springs, task.reference.held), self, own, progress)?;
-        let seconds = seconds + start.elapsed().as_secs_f64();
+        let seconds = seconds + start.seconds();
         let (cells, kind) = (Vec::new(), FittedKind::Whole(Box::new(outcome)));
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
     }

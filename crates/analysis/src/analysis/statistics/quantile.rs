@@ -1,0 +1,60 @@
+//! Quantiles of a sample.
+
+use serde::Serialize;
+
+/// The quantile at the share `p` of ascending values, by linear interpolation between order statistics: definition 7 of Hyndman and Fan
+/// (1996), The American Statistician 50. It is not a number for no values.
+pub fn quantile(sorted: &[f64], p: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = p * last as f64;
+    let below = (place.floor() as usize).min(last);
+    let above = (below + 1).min(last);
+    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+}
+
+/// The median of values in any order.
+pub fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    quantile(&sorted, 0.5)
+}
+
+/// What is told of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantiles {
+    /// The number of values.
+    pub count: usize,
+    /// The mean.
+    pub mean: f64,
+    /// The least value.
+    pub least: f64,
+    /// The lower quartile.
+    pub lower: f64,
+    /// The median.
+    pub median: f64,
+    /// The upper quartile.
+    pub upper: f64,
+    /// The quantile at 95 %.
+    pub high: f64,
+    /// The largest value.
+    pub largest: f64,
+}
+
+impl Quantiles {
+    /// Those of values in any order.
+    pub fn of(values: &[f64]) -> Quantiles {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |p| quantile(&sorted, p);
+        Quantiles {
+            count: sorted.len(),
+            mean: sorted.iter().sum::<f64>() / sorted.len() as f64,
+            least: at(0.0),
+            lower: at(0.25),
+            median: at(0.5),
+            upper: at(0.75),
+            high: at(0.95),
+            largest: at(1.0),
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Fits whose keys have lists of values: each combination is a fit of its own.
+
+use crate::error::{Error, Result};
+use crate::fit::Solver;
+use crate::study::fits::{FitEntry, NamedFit};
+use crate::study::own_name::{BODY, expect_own_name};
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Keys whose value is a list, as paths in a fit: with a list of lists each inner one is a value.
+const LISTS: [&str; 9] = [
+    "springs",
+    "loads",
+    "validate",
+    "supports",
+    "validate_supports",
+    "other_supports",
+    "shapes.families",
+    "shapes.loads",
+    "shapes.stretch",
+];
+/// Tables whose keys may have lists as well.
+const TABLES: [&str; 1] = ["shapes"];
+/// Fits at most.
+const MOST: usize = 1000;
+
+/// A fit of a comparison, and the values of the keys that vary among the fits of its entry.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VariedFit {
+    pub named: NamedFit,
+    /// By the paths of the keys.
+    pub varied: BTreeMap<String, serde_json::Value>,
+}
+
+impl From<NamedFit> for VariedFit {
+    fn from(named: NamedFit) -> VariedFit {
+        VariedFit { named, varied: BTreeMap::new() }
+    }
+}
+
+/// The fits of all entries; files are relative to `folder`.
+///
+/// # Errors
+/// A list is empty, a key is wrong, two fits have the same name, or there are too many. The key is `fit[i]` and that of the entry.
+pub fn varied_fits(entries: &[Table], folder: &Path) -> Result<Vec<VariedFit>> {
+    let mut all: Vec<VariedFit> = Vec::new();
+    for (place, entry) in entries.iter().enumerate() {
+        let at = |e: Error| e.placed(|e| e.under(format!("fit[{place}]")));
+        let mut own: Vec<VariedFit> = Vec::new();
+        for (table, varied) in combinations(entry).map_err(at)? {
+            let entry: FitEntry = crate::file::parse_table(table).map_err(at)?;
+            entry.check().map_err(at)?;
+            let fits = entry.fits(folder).map_err(at)?.into_iter();
+            own.extend(fits.map(|named| VariedFit { named: named.of_entry(place), varied: varied.clone() }));
+        }
+        for fit in told_apart(own) {
+            let names = std::iter::once(BODY).chain(all.iter().map(|known| known.named.name.as_str()));
+            expect_own_name(&format!("fit[{place}].name"), &fit.named.name, names)?;
+            all.push(fit);
+        }
+        if all.len() > MOST {
+            return Err(Error::expected("fit", format!("at most {MOST} fits"), "more"));
+        }
+    }
+    Ok(all)
+}
+
+/// The fits of one entry. Those of the same name have the values in it by which they differ.
+fn told_apart(fits: Vec<VariedFit>) -> Vec<VariedFit> {
+    let name = |fit: &VariedFit| {
+        let same: Vec<&VariedFit> = fits.iter().filter(|other| other.named.name == fit.named.name).collect();
+        let differs = |key: &&String| same.iter().any(|other| other.varied.get(*key) != fit.varied.get(*key));
+        let told = fit.varied.keys().filter(differs).map(|key| words(key, &fit.varied[key]));
+        std::iter::once(fit.named.name.clone()).chain(told).collect::<Vec<_>>().join(", ")
+    };
+    let names: Vec<String> = fits.iter().map(name).collect();
+    let named = |(mut fit, name): (VariedFit, String)| {
+        fit.named.name = name;
+        fit
+    };
+    fits.into_iter().zip(names).map(named).collect()
+}
+
+/// A key and its value in the name of a fit.
+fn words(key: &str, value: &serde_json::Value) -> String {
+    let key = key.strip_prefix("shapes.").unwrap_or(key);
+    match value {
+        serde_json::Value::Bool(true) => key.into(),
+        serde_json::Value::Bool(false) => format!("not {key}"),
+        serde_json::Value::String(text) => format!("{key} {text}"),
+        value => format!("{key} {value}"),
+    }
+}
+
+type Combination = (Table, BTreeMap<String, serde_json::Value>);
+
+/// All combinations of the values, the last key fastest, with those of the keys that vary.
+fn combinations(entry: &Table) -> Result<Vec<Combination>> {
+    let mut all: Vec<Combination> = vec![(Table::new(), BTreeMap::new())];
+    let mut add = |path: [Option<&str>; 2], value: &Value| -> Result<()> {
+        let key = path.iter().flatten().copied().collect::<Vec<_>>().join(".");
+        let choices = choices(&key, value)?;
+        let mut more = Vec::new();
+        for (table, varied) in &all {
+            for choice in choices.as_deref().unwrap_or(std::slice::from_ref(value)) {
+                let (mut table, mut varied) = (table.clone(), varied.clone());
+                match path {
+                    [Some(parent), Some(name)] => {
+                        let inner = table.entry(parent).or_insert_with(|| Value::Table(Table::new()));
+                        inner.as_table_mut().map(|inner| inner.insert(name.into(), choice.clone()));
+                    }
+                    [_, name] => drop(table.insert(name.unwrap_or_default().into(), choice.clone())),
+                }
+                if choices.is_some() {
+                    varied.insert(key.clone(), serde_json::to_value(choice).unwrap_or_default());
+                }
+                more.push((table, varied));
+            }
+        }
+        all = more;
+        match all.len() > MOST {
+            true => Err(Error::expected(key, format!("at most {MOST} combinations"), "more")),
+            false => Ok(()),
+        }
+    };
+    for (key, value) in entry {
+        match value {
+            Value::Table(inner) if TABLES.contains(&key.as_str()) => {
+                inner.iter().try_for_each(|(name, value)| add([Some(key), Some(name)], value))?;
+            }
+            value => add([None, Some(key)], value)?,
+        }
+    }
+    Ok(all)
+}
+
+/// The values that a key has in turn; `None` where it has one.
+fn choices(key: &str, value: &Value) -> Result<Option<Vec<Value>>> {
+    let Value::Array(list) = value else { return Ok(None) };
+    let is_list = |value: &Value| value.is_array() || key == "springs" && is_choice_of_groups(value);
+    match (LISTS.contains(&key), list.iter().all(is_list)) {
+        _ if list.is_empty() => Err(Error::expected(key, "at least one value", "an empty list")),
+        (true, false) => Ok(None),
+        (true, true) | (false, _) => Ok(Some(list.clone())),
+    }
+}
+
+/// Whether a text stands for several groups of any element, and not for one group.
+fn is_choice_of_groups(value: &Value) -> bool {
+    value.as_str().is_some_and(|text| crate::element::GROUP_CHOICES.contains(&text))
+}
+
+/// The solver of a fit, in a word.
+pub fn solver_of(named: &NamedFit) -> &'static str {
+    match (named.recipe.kind().cell_method(), named.recipe.stiffness()) {
+        (Some(method), _) => method.solver(),
+        (None, Some(fit)) if fit.solver != Solver::Native => fit.solver.name(),
+        (None, _) => "native",
+    }
+}

@@ -1,0 +1,348 @@
+//! A comparison that has been read: its cases and its fits.
+
+use super::axes::{VariedFit, varied_fits};
+use super::entry::{CompareEntry, CompareFile, ShapesKeys, numbers, values};
+use crate::analysis::shapes::{ShapeFamily, ShapeSet};
+use crate::bound::{self, check_count};
+use crate::element::Element;
+use crate::error::{Error, Result};
+use crate::file::{self, Sum};
+use crate::fit::Solver;
+use crate::material::{Material, Plane};
+use crate::springs::Springs;
+use crate::study::choice::choice;
+use crate::study::fits::law_at;
+use crate::study::keys::keys;
+use crate::study::scene::{Scene, load_elements};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::hash::Hasher;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Young's modulus of the elements, Pa; errors do not depend on it.
+pub(super) const YOUNG: f64 = 10e3;
+/// Poisson's ratio where none is given.
+const POISSON: f64 = 0.3;
+/// The largest stretch of sampled shapes where no fit is listed.
+const STRETCH: f64 = 0.35;
+
+/// A comparison that has been read and checked.
+#[derive(Debug)]
+pub struct Comparing {
+    pub(super) title: Option<String>,
+    /// The table, as it identifies the comparison on disk.
+    text: String,
+    folder: PathBuf,
+    pub(super) cases: Vec<Case>,
+    /// The fits that are listed; none if all that are usual are compared.
+    pub(super) fits: Vec<VariedFit>,
+    pub(super) iterations: u64,
+    pub(super) stretch: f64,
+    pub(super) is_timed: bool,
+}
+
+/// One case: what all fits are compared on.
+#[derive(Debug)]
+pub struct Case {
+    /// What the case is, by the keys that cases differ in.
+    pub settings: BTreeMap<String, Value>,
+    pub(super) subject: Subject,
+}
+
+/// What a case is of.
+#[derive(Debug)]
+pub(super) enum Subject {
+    /// Shapes of an element.
+    Shapes { element: Arc<Element>, material: Material, set: ShapeSet },
+    /// A box of an element that is stretched.
+    Box { element: Arc<Element>, material: Material, law: String },
+    /// A scene.
+    Scene(Box<Scene>),
+}
+
+impl Comparing {
+    /// Reads the comparison in a file.
+    ///
+    /// # Errors
+    /// The file, or one that it names, is missing or wrong; the error names file, line and key.
+    pub fn load(path: &Path) -> Result<Comparing> {
+        Comparing::parse(&file::read_text(path)?, path)
+    }
+
+    /// Reads a comparison as [`Comparing::load`] does, from a text that is at `path`, to which other files are relative.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn parse(text: &str, path: &Path) -> Result<Comparing> {
+        let read = || {
+            let file: CompareFile = file::parse_toml(text)?;
+            let table: toml::Table = text.parse().map_err(|e| Error::new(format!("is not TOML: {e}")))?;
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let comparing = Comparing::of(&file.compare, table.get("compare"), folder);
+            Ok(Comparing { title: file.title, ..comparing.map_err(|e| e.placed(|e| e.under("compare")))? })
+        };
+        read().map_err(|e: Error| e.placed(|e| file::on_line_of_key(e, text).in_file(path)))
+    }
+
+    /// Reads the keys of `[compare]` without a file; paths are relative to `folder`.
+    ///
+    /// # Errors
+    /// A key is wrong, or a file that is named.
+    pub fn of_table(table: toml::Table, folder: &Path) -> Result<Comparing> {
+        let entry: CompareEntry = file::parse_table(table.clone())?;
+        Comparing::of(&entry, Some(&toml::Value::Table(table)), folder)
+    }
+
+    fn of(entry: &CompareEntry, table: Option<&toml::Value>, folder: &Path) -> Result<Comparing> {
+        let fits = varied_fits(&entry.fit, folder)?;
+        let iterations = entry.iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
+        check_count("iterations", iterations, 1, bound::SEARCH_ITERATIONS)?;
+        if entry.elements.is_empty() && entry.scenes.is_empty() {
+            return Err(Error::expected("elements", "elements or \"scenes\" to compare on", "none"));
+        }
+        if entry.stretch.is_some() && entry.laws.is_empty() {
+            return Err(Error::at("stretch", "belongs to a comparison with laws"));
+        }
+        if entry.shapes.is_some() && !entry.laws.is_empty() {
+            return Err(Error::at("shapes", "belongs to a comparison without laws"));
+        }
+        let mut cases = element_cases(entry, folder)?;
+        for (place, path) in entry.scenes.iter().enumerate() {
+            let at = |e: Error| e.placed(|e| e.at_key(format!("scenes[{place}]")));
+            let scene = Scene::load(&folder.join(path)).map_err(at)?;
+            let settings = BTreeMap::from([("scene".to_string(), json!(path.to_string_lossy()))]);
+            cases.push(Case { settings, subject: Subject::Scene(Box::new(scene)) });
+        }
+        if let Some(again) = (1..cases.len()).find(|&i| cases[..i].iter().any(|c| c.settings == cases[i].settings)) {
+            let found = serde_json::to_string(&cases[again].settings).unwrap_or_default();
+            return Err(Error::new(format!("expected each case once, found {found} again")));
+        }
+        check_count("cases", cases.len() as u64, 1, bound::STUDIES)?;
+        for case in &cases {
+            case.check(&fits)?;
+        }
+        let text = table.map(without_cases).transpose()?.unwrap_or_default();
+        Ok(Comparing {
+            title: None,
+            text,
+            folder: folder.into(),
+            cases,
+            fits,
+            iterations,
+            stretch: entry.stretch.unwrap_or(STRETCH),
+            is_timed: entry.time != Some(false),
+        })
+    }
+
+    /// The title.
+    pub fn title(&self) -> Option<&str> {
+        self.title.as_deref()
+    }
+
+    /// The cases in their order.
+    pub fn cases(&self) -> &[Case] {
+        &self.cases
+    }
+
+    /// The names of the fits that are listed; none if all that are usual are compared.
+    pub fn fit_names(&self) -> Vec<&str> {
+        self.fits.iter().map(|fit| fit.named.name.as_str()).collect()
+    }
+
+    /// The files that the comparison reads.
+    pub fn inputs(&self) -> Vec<PathBuf> {
+        let mut all: Vec<PathBuf> = self.cases.iter().flat_map(|case| case.inputs(&self.folder)).collect();
+        all.sort();
+        all.dedup();
+        all
+    }
+
+    /// A sum of all that a case depends on: its settings, the fits, the files that it names and the version of the program.
+    pub fn sum(&self, case: &Case) -> String {
+        let mut sum = Sum::default();
+        sum.write(env!("CARGO_PKG_VERSION").as_bytes());
+        sum.write(self.text.as_bytes());
+        sum.write(serde_json::to_string(&case.settings).unwrap_or_default().as_bytes());
+        for path in case.inputs(&self.folder) {
+            // A file that cannot be read fails in the case.
+            sum.write(&Sum::of_file(&path).unwrap_or_default().finish().to_le_bytes());
+        }
+        format!("{:016x}", sum.finish())
+    }
+}
+
+/// The table without what only says which cases there are, so that a comparison can be extended.
+fn without_cases(table: &toml::Value) -> Result<String> {
+    let mut table = table.clone();
+    if let Some(table) = table.as_table_mut() {
+        ["elements", "poisson", "shapes", "laws", "scenes"].iter().for_each(|key| drop(table.remove(*key)));
+    }
+    serde_json::to_string(&table).map_err(|e| Error::new(format!("has a value that JSON has not: {e}")))
+}
+
+/// The cases of all elements.
+fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
+    let elements = load_elements(&entry.elements, folder)?;
+    let ratios = numbers("poisson", entry.poisson.as_ref(), POISSON)?;
+    let sets = shape_sets(entry.shapes.as_ref())?;
+    let mut cases = Vec::new();
+    for (name, element) in entry.elements.iter().zip(elements) {
+        let d = element.dimension();
+        for ratio in &ratios {
+            let plane = entry.plane.filter(|_| d == 2);
+            let material = Material::for_body(d, YOUNG, *ratio, plane, None)?;
+            let mut settings = BTreeMap::from([("element".to_string(), json!(name)), ("poisson".into(), json!(ratio))]);
+            if d == 2 {
+                let plane = if entry.plane == Some(Plane::Strain) { "strain" } else { "stress" };
+                settings.insert("plane".into(), json!(plane));
+            }
+            for law in &entry.laws {
+                let settings = settings.clone().into_iter().chain([("law".to_string(), json!(law))]).collect();
+                let (element, law) = (element.clone(), law_at(law, folder));
+                cases.push(Case { settings, subject: Subject::Box { element, material, law } });
+            }
+            for set in sets.iter().filter(|_| entry.laws.is_empty()) {
+                let own = [
+                    ("family", json!(set.family.name())),
+                    ("distortion", json!(set.distortion)),
+                    ("aspect", json!(set.aspect)),
+                    ("seed", json!(set.seed)),
+                    ("count", json!(set.count)),
+                ];
+                let own = own.map(|(key, value)| (key.to_string(), value));
+                let settings = settings.clone().into_iter().chain(own).collect();
+                let subject = Subject::Shapes { element: element.clone(), material, set: *set };
+                cases.push(Case { settings, subject });
+            }
+        }
+    }
+    Ok(cases)
+}
+
+/// The sets of shapes of `shapes`: all combinations of the values of each table.
+fn shape_sets(shapes: Option<&toml::Value>) -> Result<Vec<ShapeSet>> {
+    let tables: Vec<(String, toml::Table)> = match shapes {
+        None => vec![("shapes".into(), toml::Table::new())],
+        Some(toml::Value::Table(table)) => vec![("shapes".into(), table.clone())],
+        Some(toml::Value::Array(list)) if !list.is_empty() => {
+            let table = |(i, value): (usize, &toml::Value)| {
+                let key = format!("shapes[{i}]");
+                let table = value.as_table().cloned();
+                table.map(|table| (key.clone(), table)).ok_or_else(|| Error::expected(key, "a table", value.type_str()))
+            };
+            list.iter().enumerate().map(table).collect::<Result<_>>()?
+        }
+        Some(toml::Value::Array(_)) => {
+            return Err(Error::expected("shapes", "a table, or a list of tables", "an empty list"));
+        }
+        Some(other) => return Err(Error::expected("shapes", "a table, or a list of tables", other.type_str())),
+    };
+    let mut sets = Vec::new();
+    for (key, table) in tables {
+        sets.extend(sets_of(&table).map_err(|e| e.under(key))?);
+    }
+    Ok(sets)
+}
+
+fn sets_of(table: &toml::Table) -> Result<Vec<ShapeSet>> {
+    let known = keys::<ShapesKeys>();
+    if let Some(unknown) = table.keys().find(|key| !known.contains(&key.as_str())) {
+        let expected = known.iter().map(|key| format!("\"{key}\"")).collect::<Vec<_>>().join(", ");
+        return Err(Error::at(unknown, format!("unknown field \"{unknown}\", expected one of {expected}")));
+    }
+    let usual = ShapeSet::default();
+    let whole = |key: &str, usual: usize, most: u64| -> Result<Vec<u64>> {
+        let list = numbers(key, table.get(key), usual as f64)?;
+        let is_whole = |v: &&f64| v.fract() == 0.0 && **v >= 0.0 && **v <= most as f64;
+        match list.iter().find(|v| !is_whole(v)) {
+            Some(wrong) => Err(Error::expected(key, format!("whole numbers from 0 to {most}"), wrong)),
+            None => Ok(list.into_iter().map(|v| v as u64).collect()),
+        }
+    };
+    let between = |key: &str, usual: f64, [least, most]: [f64; 2]| -> Result<Vec<f64>> {
+        let list = numbers(key, table.get(key), usual)?;
+        match list.iter().find(|v| !(least..=most).contains(*v)) {
+            Some(wrong) => Err(Error::expected(key, format!("numbers from {least} to {most}"), wrong)),
+            None => Ok(list),
+        }
+    };
+    let families = values("family", table.get("family"))?;
+    let family = |value: &toml::Value| {
+        let name = value.as_str().ok_or_else(|| Error::expected("family", "a text", value.type_str()))?;
+        choice("family", Some(name), usual.family, ShapeFamily::named)
+    };
+    let families = match families.is_empty() {
+        true => vec![usual.family],
+        false => families.iter().map(family).collect::<Result<_>>()?,
+    };
+    let counts = whole("count", usual.count, bound::RANDOM_SHAPES)?;
+    counts.iter().try_for_each(|count| check_count("count", *count, 1, bound::RANDOM_SHAPES).map(|_| ()))?;
+    let seeds = whole("seed", usual.seed as usize, 1 << 53)?;
+    let (distortions, aspects) =
+        (between("distortion", usual.distortion, [0.0, 1.0])?, between("aspect", usual.aspect, [1e-3, 1e3])?);
+    let mut sets = Vec::new();
+    for &family in &families {
+        for &distortion in &distortions {
+            for &aspect in &aspects {
+                for &seed in &seeds {
+                    sets.extend(counts.iter().map(|count| ShapeSet {
+                        family,
+                        distortion,
+                        aspect,
+                        seed,
+                        count: *count as usize,
+                    }));
+                }
+            }
+        }
+    }
+    Ok(sets)
+}
+
+impl Case {
+    /// The files that the case reads.
+    fn inputs(&self, folder: &Path) -> Vec<PathBuf> {
+        let named = |key: &str| {
+            let name = self.settings.get(key).and_then(Value::as_str).filter(|name| name.ends_with(".toml"));
+            name.map(|name| folder.join(name))
+        };
+        match &self.subject {
+            Subject::Scene(scene) => scene.inputs(),
+            Subject::Shapes { .. } | Subject::Box { .. } => named("element").into_iter().chain(named("law")).collect(),
+        }
+    }
+
+    /// Checks what can be wrong with the fits on this case and is not found by trying.
+    fn check(&self, fits: &[VariedFit]) -> Result<()> {
+        let (Subject::Shapes { element, .. } | Subject::Box { element, .. }) = &self.subject else {
+            let Subject::Scene(scene) = &self.subject else { return Ok(()) };
+            return scene.check_fits(&fits.iter().map(|fit| fit.named.clone()).collect::<Vec<_>>());
+        };
+        for fit in fits {
+            let key = fit.named.entry().map_or("fit".into(), |entry| format!("fit[{entry}]"));
+            Springs::select(element, fit.named.springs.as_deref()).map_err(|e| e.placed(|e| e.under(&key)))?;
+            let is_of_cells = fit.named.recipe.kind().cell_method().is_some();
+            if matches!(self.subject, Subject::Shapes { .. }) && !is_of_cells {
+                let expected = "a fit of single elements, for \"elements\" are compared without \"laws\"";
+                return Err(Error::expected(key, expected, format!("\"{}\"", fit.named.name)));
+            }
+        }
+        Ok(())
+    }
+
+    /// The case in words: its values in the order of their keys.
+    pub fn words(&self) -> String {
+        let word = |(key, value): (&String, &Value)| match value {
+            Value::String(text) if key == "element" || key == "scene" => text.clone(),
+            Value::String(text) => format!("{key} {text}"),
+            value => format!("{key} {value}"),
+        };
+        self.settings.iter().map(word).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Whether the text is that of a comparison: a table with `compare`.
+pub fn is_comparison(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("compare"))
+}

@@ -1,0 +1,117 @@
+//! What a model costs that is there: a solution, and a step of a motion.
+
+use super::costs::ModelTimes;
+use super::repeats::{TimedWork, interleaved};
+use crate::clock::Clock;
+use crate::dynamics::{Integrator, LinearSolver, Motion, Options, Simulation};
+use crate::error::{Error, Result};
+use crate::model::{Elastic, Support};
+
+/// The time step of the implicit method, s: that of pictures that move.
+const IMPLICIT_STEP: f64 = 1.0 / 60.0;
+/// The step of the explicit method as a share of the longest one that is stable.
+const SHARE: f64 = 0.5;
+/// A pass of steps takes about this time, s: much more than a look at the clock.
+const PASS: f64 = 2e-4;
+/// Steps of a pass at most.
+const MOST_STEPS: usize = 1000;
+/// Points are displaced by this share of the body's size at the start, so that no force is zero.
+const DISPLACED: f64 = 1e-6;
+
+/// A solution under a load: what is timed, with its own clock.
+pub type Statics<'a> = Box<dyn Fn() -> Result<Option<f64>> + 'a>;
+
+/// A model whose costs are measured.
+pub struct Costed<'a> {
+    pub model: &'a dyn Elastic,
+    /// Whether the model is linear.
+    pub linear: bool,
+    pub points: &'a [f64],
+    pub support: &'a Support,
+    /// `[points]`, kg.
+    pub masses: &'a [f64],
+    pub statics: Option<Statics<'a>>,
+}
+
+impl<'a> Costed<'a> {
+    /// A solution, and a step of each kind, as works that are timed; `None` of those that the model does not have.
+    fn works(&'a self) -> Result<[Option<TimedWork<'a>>; 3]> {
+        let solve = match &self.statics {
+            Some(statics) => statics()?.map(|_| {
+                let lost = || Error::new("a solution was found once, and then not");
+                Box::new(move || statics()?.ok_or_else(lost)) as TimedWork
+            }),
+            None => None,
+        };
+        Ok([solve, self.explicit()?, self.implicit()?])
+    }
+
+    fn motion(&self) -> Motion<'a> {
+        Motion { support: self.support.clone(), ..Motion::free(self.model, self.points, self.masses) }
+    }
+
+    fn options(&self, integrator: Integrator, step: f64) -> Options {
+        let solver = LinearSolver::default();
+        Options { step, integrator, iterations: 1, linear: self.linear, solver, account: false, ..Options::default() }
+    }
+
+    /// The longest explicit step that is stable, s.
+    fn longest_step(&self) -> Option<f64> {
+        let tried = self.options(Integrator::SymplecticEuler, f64::MIN_POSITIVE);
+        Simulation::new(self.motion(), tried).ok().map(|found| found.longest_step()).filter(|step| step.is_finite())
+    }
+
+    fn explicit(&self) -> Result<Option<TimedWork<'a>>> {
+        let Some(longest) = self.longest_step() else { return Ok(None) };
+        self.steps(self.options(Integrator::SymplecticEuler, SHARE * longest))
+    }
+
+    fn implicit(&self) -> Result<Option<TimedWork<'a>>> {
+        self.steps(self.options(Integrator::ImplicitEuler, IMPLICIT_STEP))
+    }
+
+    /// Steps from a shape near rest; `None` if the model has no such motion.
+    fn steps(&self, options: Options) -> Result<Option<TimedWork<'a>>> {
+        let Ok(mut simulation) = Simulation::new(self.motion(), options) else { return Ok(None) };
+        let extent = self.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
+        let held = |dof: usize| self.support.prescribed[dof].is_some();
+        let moved = |dof: usize| if held(dof) { 0.0 } else { DISPLACED * extent * (1.0 + dof as f64).sin() };
+        let displacement: Vec<f64> = (0..self.points.len()).map(moved).collect();
+        let still = vec![0.0; displacement.len()];
+        if simulation.start(&displacement, &still).is_err() {
+            return Ok(None);
+        }
+        let mut count = 1;
+        Ok(Some(Box::new(move || {
+            simulation.start(&displacement, &still)?;
+            let clock = Clock::start();
+            for _ in 0..count {
+                simulation.step();
+            }
+            let each = clock.seconds() / count as f64;
+            count = ((PASS / each.max(1e-12)) as usize).clamp(1, MOST_STEPS);
+            Ok(each)
+        })))
+    }
+}
+
+/// The costs of each model, all in turns; `has_density` says whether the masses are those of the scene.
+///
+/// # Errors
+/// The equations do not fit into memory.
+pub fn model_times(models: &[Costed], has_density: bool) -> Result<Vec<ModelTimes>> {
+    let mut works = Vec::new();
+    let mut has = Vec::new();
+    for model in models {
+        let own = model.works()?;
+        has.push(own.each_ref().map(Option::is_some));
+        works.extend(own.into_iter().flatten());
+    }
+    let mut found = interleaved(&mut works)?.into_iter();
+    let times = models.iter().zip(has).map(|(model, has)| {
+        let [solve, explicit_step, implicit_step] = has.map(|has| if has { found.next() } else { None });
+        let longest_step = if has_density { model.longest_step() } else { None };
+        ModelTimes { solve, explicit_step, implicit_step, longest_step }
+    });
+    Ok(times.collect())
+}

@@ -1,0 +1,164 @@
+//! Methods in pairs, and their ranks.
+
+use crate::study::statistics::{Interval, Paired, Verdict, adjust, mean_ranks, median, ratio_interval};
+use crate::study::{CaseRecord, MethodRecord};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Times that differ by less than this factor are told as ties: what else a machine does changes them by as much.
+const SAME_TIME: f64 = 1.1;
+/// Quantities that are figures of merit: the smaller the better.
+const MERITS: [&str; 3] = ["spectral", "frobenius", "e_rms"];
+/// Smaller errors are those of rounding, which are no better or worse than each other; of e_rms in percent.
+const ROUNDING: f64 = 1e-12;
+/// With more fits each is compared with the first alone.
+const MOST: usize = 40;
+
+/// Two methods on the same cases.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pair {
+    /// The quantity, or `seconds` and what was timed.
+    pub quantity: String,
+    /// The first method.
+    pub first: String,
+    /// The second method.
+    pub second: String,
+    /// The figures; of times a case is one figure.
+    #[serde(flatten)]
+    pub paired: Paired,
+    /// The probability after Holm's correction for all pairs of the quantity; of times of few cases absent.
+    pub adjusted: Option<f64>,
+    /// The better method, or a tie.
+    pub verdict: Verdict,
+}
+
+/// The rank of a method.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rank {
+    /// The quantity.
+    pub quantity: String,
+    /// The method.
+    pub fit: String,
+    /// The mean of its ranks in all cases, by the median; absent where it has no figure in some case.
+    pub rank: Option<f64>,
+}
+
+/// The names of the fits, in the order in which they appear.
+pub fn fits(records: &[CaseRecord]) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for method in records.iter().flat_map(|record| &record.methods) {
+        if !names.contains(&method.fit.as_str()) {
+            names.push(&method.fit);
+        }
+    }
+    names
+}
+
+/// The method of this name on a case, if it has figures there.
+pub fn method<'a>(record: &'a CaseRecord, fit: &str) -> Option<&'a MethodRecord> {
+    record.methods.iter().find(|method| method.fit == fit)
+}
+
+/// All pairs of methods, for each figure of merit and each time.
+pub fn pairs(records: &[CaseRecord]) -> Vec<Pair> {
+    let names = fits(records);
+    let couples: Vec<(&str, &str)> = match names.len() {
+        count if count > MOST => names[1..].iter().map(|name| (names[0], *name)).collect(),
+        count => {
+            (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))).map(|(i, j)| (names[i], names[j])).collect()
+        }
+    };
+    let mut all = Vec::new();
+    for quantity in MERITS {
+        let found: Vec<((&str, &str), Paired)> =
+            couples.iter().filter_map(|pair| Some((*pair, of_values(records, quantity, *pair)?))).collect();
+        let adjusted = adjust(&found.iter().map(|(_, paired)| paired.p).collect::<Vec<_>>());
+        all.extend(found.into_iter().zip(adjusted).map(|(((first, second), paired), adjusted)| Pair {
+            quantity: quantity.into(),
+            first: first.into(),
+            second: second.into(),
+            paired,
+            adjusted: Some(adjusted),
+            verdict: paired.verdict(adjusted),
+        }));
+    }
+    let kinds: BTreeMap<&str, ()> =
+        records.iter().flat_map(|r| &r.methods).flat_map(|m| m.times.keys()).map(|kind| (kind.as_str(), ())).collect();
+    for kind in kinds.keys() {
+        all.extend(couples.iter().filter_map(|pair| of_times(records, kind, *pair)));
+    }
+    all
+}
+
+fn of_values(records: &[CaseRecord], quantity: &str, (first, second): (&str, &str)) -> Option<Paired> {
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for record in records {
+        let lists = [first, second].map(|fit| method(record, fit).and_then(|method| method.values.get(quantity)));
+        let [Some(one), Some(other)] = lists else { continue };
+        for pair in one.iter().zip(other) {
+            if let (Some(one), Some(other)) = pair {
+                a.push(one.max(ROUNDING));
+                b.push(other.max(ROUNDING));
+            }
+        }
+    }
+    Paired::of(&a, &b)
+}
+
+/// The times of two methods. On each case the medians are apart where the interval of their ratio does not have 1 and they differ by more
+/// than [`SAME_TIME`]; over all cases the verdict is that of each of them.
+fn of_times(records: &[CaseRecord], kind: &str, (first, second): (&str, &str)) -> Option<Pair> {
+    let (mut ratios, mut interval, mut verdicts) = (Vec::new(), None::<Interval>, Vec::new());
+    for record in records {
+        let lists = [first, second].map(|fit| method(record, fit).and_then(|method| method.times.get(kind)));
+        let [Some(a), Some(b)] = lists else { continue };
+        let (ratio, own) = (median(a) / median(b), ratio_interval(a, b));
+        if !ratio.is_finite() {
+            continue;
+        }
+        ratios.push(ratio);
+        let joined = |known: Interval| Interval { low: known.low.min(own.low), high: known.high.max(own.high) };
+        interval = Some(interval.map_or(own, joined));
+        verdicts.push(match ratio {
+            _ if own.has(1.0) || (1.0 / SAME_TIME..SAME_TIME).contains(&ratio) => Verdict::Tie,
+            ratio if ratio < 1.0 => Verdict::First,
+            _ => Verdict::Second,
+        });
+    }
+    let verdict = *verdicts.first()?;
+    let count = |wanted| verdicts.iter().filter(|verdict| **verdict == wanted).count();
+    let paired = Paired {
+        count: ratios.len(),
+        wins: count(Verdict::First),
+        losses: count(Verdict::Second),
+        ratio: median(&ratios),
+        interval: interval?,
+        p: f64::NAN,
+    };
+    let verdict = if verdicts.iter().all(|other| *other == verdict) { verdict } else { Verdict::Tie };
+    let quantity = format!("seconds {kind}");
+    Some(Pair { quantity, first: first.into(), second: second.into(), paired, adjusted: None, verdict })
+}
+
+/// The mean ranks by each figure of merit, over all cases.
+pub fn ranks(records: &[CaseRecord]) -> Vec<Rank> {
+    let names = fits(records);
+    let mut all = Vec::new();
+    for quantity in MERITS {
+        let has = |record: &&CaseRecord| record.methods.iter().any(|method| method.values.contains_key(quantity));
+        let own: Vec<&CaseRecord> = records.iter().filter(has).collect();
+        let middle = |record: &CaseRecord, name: &str| {
+            let known: Vec<f64> = method(record, name)?.values.get(quantity)?.iter().copied().flatten().collect();
+            Some(median(&known)).filter(|median| median.is_finite())
+        };
+        let figures: Vec<Vec<Option<f64>>> =
+            names.iter().map(|name| own.iter().map(|record| middle(record, name)).collect()).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let found = names.iter().zip(mean_ranks(&figures));
+        let rank = |(name, rank): (&&str, Option<f64>)| Rank { quantity: quantity.into(), fit: name.to_string(), rank };
+        all.extend(found.map(rank));
+    }
+    all
+}

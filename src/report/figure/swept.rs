@@ -1,0 +1,77 @@
+//! The errors of a sweep over one of its keys.
+
+use super::axis::Axis;
+use super::chart::{Chart, Series, Shape};
+use super::run_folder::RunFolder;
+use crate::error::{Error, Result};
+use crate::file::{files_in, read_text};
+use crate::report::StudyRecord;
+use crate::study::statistics::median;
+use serde_json::Value;
+
+/// The errors at each value of a key.
+type Errors = Vec<(f64, Vec<f64>)>;
+
+/// A curve for each fit: the median over all studies and loads of the error e_rms at each value of the key, which is the first one with
+/// several numbers unless it is named.
+///
+/// # Errors
+/// The folder has no studies, or they have no such key with numbers.
+pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
+    let folder = run.file("");
+    let mut records: Vec<StudyRecord> = Vec::new();
+    for path in files_in(&folder, "jsonl")? {
+        for (number, line) in read_text(&path)?.lines().enumerate() {
+            let wrong = |e| Error::new(format!("expected a study of a sweep, found something else: {e}"));
+            records.push(serde_json::from_str(line).map_err(|e| wrong(e).on_line(number + 1).in_file(&path))?);
+        }
+    }
+    let Some(first) = records.first() else {
+        return Err(Error::new("has no studies: springfit sweep writes them").in_file(&folder));
+    };
+    let values = |key: &str| -> Vec<f64> { records.iter().filter_map(|r| r.settings.get(key)?.as_f64()).collect() };
+    let varies = |key: &&String| values(key).windows(2).any(|pair| pair[0] != pair[1]);
+    let known: Vec<&String> = first.settings.keys().filter(varies).collect();
+    let key = match key {
+        Some(key) => known.iter().find(|known| **known == key),
+        None => known.first(),
+    };
+    let Some(key) = key else {
+        let names: Vec<&str> = known.iter().map(|key| key.as_str()).collect();
+        return Err(Error::expected(
+            "--of",
+            format!("a key with several numbers: {}", names.join(", ")),
+            "none of them",
+        ));
+    };
+    let mut curves: Vec<(String, Errors)> = Vec::new();
+    for record in &records {
+        let Some(at) = record.settings.get(*key).and_then(Value::as_f64) else { continue };
+        let fits = record.report.as_ref().and_then(|report| report["fits"].as_array());
+        for fit in fits.into_iter().flatten() {
+            let name = fit["name"].as_str().unwrap_or_default();
+            let errors = fit["loads"].as_array().into_iter().flatten().filter_map(|load| load["e_rms"].as_f64());
+            let place = curves.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
+                curves.push((name.into(), Vec::new()));
+                curves.len() - 1
+            });
+            let points = &mut curves[place].1;
+            match points.iter_mut().find(|(other, _)| *other == at) {
+                Some((_, list)) => list.extend(errors),
+                None => points.push((at, errors.collect())),
+            }
+        }
+    }
+    let curve = |(name, mut points): (String, Errors)| {
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let points = points.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > 1e-9);
+        Series { name, points: points.collect(), shape: Shape::Curve }
+    };
+    let series: Vec<Series> = curves.into_iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+    Ok(Chart {
+        title: format!("e_rms over {key}, {} studies", records.len()),
+        x: Axis::linear(key.as_str()),
+        y: Axis::log("e_rms, % (median of studies and loads)"),
+        series,
+    })
+}
