@@ -67,7 +67,7 @@ fn cases_are_all_combinations_and_fits_too() {
                 shapes = { count = [10, 20] }\nname = \"mine\"\n";
     assert_eq!(comparing(laws).unwrap().fit_names(), ["mine, count 10", "mine, count 20"]);
     // What the name tells already is not told again.
-    let forces = laws.replace("name = \"mine\"", "force = [\"linear\", \"free-rest\"]").replace("[10, 20]", "[10, 20]");
+    let forces = laws.replace("name = \"mine\"", "force = [\"linear\", \"free-rest\"]");
     let names =
         ["sampled, count 10", "sampled, count 20", "sampled free rest, count 10", "sampled free rest, count 20"];
     let found = comparing(&forces).unwrap();
