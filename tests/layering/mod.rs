@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 35] = [
+const LAYERS: [&str; 36] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -21,6 +21,7 @@ const LAYERS: [&str; 35] = [
     "range",
     "named",
     "number",
+    "random",
     "quantity",
     "file",
     "memory",

@@ -4,6 +4,5 @@
 pub mod check;
 pub mod metrics;
 pub mod moduli;
-pub mod random;
 pub mod shapes;
 pub mod tensor;
