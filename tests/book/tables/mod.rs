@@ -11,6 +11,7 @@ mod motion;
 mod paper;
 mod readme;
 mod stability;
+mod tensile;
 mod truths;
 mod whole;
 
@@ -43,7 +44,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 15] = [
+const MAKERS: [Maker; 16] = [
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),
     ("elements", choice::elements, true, Kept::ToRounding),
@@ -58,6 +59,7 @@ const MAKERS: [Maker; 15] = [
     ("paper-1", paper::first, true, Kept::Roughly),
     ("paper-meshes", paper::meshes, false, Kept::ToRounding),
     ("stability", stability::table, true, Kept::Magnitude),
+    ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),
 ];
 
