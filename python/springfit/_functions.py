@@ -13,6 +13,8 @@ from .material import Material
 
 #: The step of differences at rest, and the relative difference of stiffnesses above which a warning is given.
 _STEP, _TOLD = 1e-4, 0.01
+#: The least det F of a shape of a list, as in a scene.
+_FLATTEST = 1e-3
 
 
 def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] | None]":
@@ -98,6 +100,11 @@ def _listed(place: str, shapes: "dict[str, Any]", usual: int, part: int) -> "dic
     if not np.isfinite(found).all():
         wrong = int(np.flatnonzero(~np.isfinite(found).all(axis=(1, 2)))[0])
         raise failure(key, "finite numbers", f"others in shape {wrong}")
+    contents = np.linalg.det(found)
+    if (contents < _FLATTEST).any():
+        wrong = int(np.flatnonzero(contents < _FLATTEST)[0])
+        expected = f"shapes that are neither flat nor inverted, with det F of at least {_FLATTEST}"
+        raise failure(key, expected, f"det F = {contents[wrong]:.4f} of shape {wrong}")
     return {**shapes, "gradients": found.tolist(), "count": number}
 
 
