@@ -47,6 +47,7 @@
 //! |---|---|
 //! | [`error`] | the error type: kind, file, line, key and problem |
 //! | [`scalar`], [`symbolic`] | the numbers of the kernels; expressions, and exact rational functions |
+//! | [`random`] | reproducible random numbers, and points that fill a cube evenly |
 //! | [`range`], [`quantity`], [`text`] | limits of physical quantities, units, texts made safe to print |
 //! | [`element`] | elements read from TOML files: cell, shape functions, quadrature, groups of springs |
 //! | [`material`] | elastic moduli, plane states, hyperelastic energies |
@@ -96,7 +97,7 @@ pub mod referee;
 pub mod report;
 
 pub use springfit_bodies::{dynamics, model, positive, solve, whole};
-pub use springfit_foundation::{error, quantity, range, scalar, symbolic, text};
+pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};
 #[cfg(feature = "cli")]
 pub use springfit_generate::generate;
 pub use springfit_kernels::{element, fit, material, springs, stiffness};

@@ -15,7 +15,7 @@ from .material import Material
 from .mesh import Mesh
 from .network import Network, fit, mass, sampled, stiffness, whole
 from .report import Report, run
-from .studies import compare, converge, stability
+from .studies import compare, converge, learning_curve, stability
 from .sweep import sweep
 
 __all__ = [
@@ -31,6 +31,7 @@ __all__ = [
     "compare",
     "converge",
     "fit",
+    "learning_curve",
     "mass",
     "run",
     "sampled",

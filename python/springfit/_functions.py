@@ -1,4 +1,4 @@
-"""Python functions in place of an energy and of laws of force."""
+"""Python functions in place of an energy, of laws of force, of a norm and of shapes."""
 
 from __future__ import annotations
 
@@ -8,18 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import array, failure, warn
+from ._arguments import array, count, failure, typed, warn
 from .material import Material
 
 #: The step of differences at rest, and the relative difference of stiffnesses above which a warning is given.
 _STEP, _TOLD = 1e-4, 0.01
+#: The least det F of a shape of a list, as in a scene.
+_FLATTEST = 1e-3
 
 
 def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] | None]":
     """The keys of a fit without functions, and the functions, if there are any."""
     keys = dict(keys)
     law, stress, force = keys.get("law"), keys.pop("stress", None), keys.get("force")
-    energy, forces = None, []
+    energy, forces, norm = None, [], None
+    if keys.get("shapes") is not None:
+        keys["shapes"] = drawn(keys["shapes"])
+    if callable(keys.get("norm")):
+        norm = keys.pop("norm")
+        norm = (_name(norm), norm)
     if stress is not None and not callable(stress):
         raise failure("stress", "a function of F", type(stress).__name__)
     if callable(law):
@@ -32,13 +39,73 @@ def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] |
         forces = [_force(f"force.{group}", group, law) for group, law in force.items() if callable(law)]
         rest = {group: law for group, law in force.items() if not callable(law)}
         keys["force"] = rest or None
-    if energy is None and stress is None and not forces:
+    if energy is None and stress is None and not forces and norm is None:
         return keys, None
     own = None
     if energy is not None or stress is not None:
         checked = [None if given is None else _unmasked(key, given) for key, given in (("law", energy), ("stress", stress))]
         own = (_name(energy or stress), *checked)
-    return keys, {"energy": own, "forces": forces}
+    return keys, {"energy": own, "forces": forces, "norm": norm}
+
+
+def drawn(shapes: Any) -> Any:
+    """The shapes with deformation gradients in place of samplers that are functions."""
+    if isinstance(shapes, (list, tuple)):
+        return [_drawn(f"shapes[{i}]", one) for i, one in enumerate(shapes)]
+    return _drawn("shapes", shapes)
+
+
+def _drawn(place: str, shapes: Any) -> Any:
+    if not isinstance(shapes, Mapping):
+        return shapes
+    shapes = dict(shapes)
+    held_out, seed = shapes.get("held_out"), shapes.get("seed")
+    if isinstance(held_out, Mapping) and "sampler" in held_out:
+        shapes["held_out"] = _listed(f"{place}.held_out", {"seed": seed, **held_out}, 100, 1)
+    if shapes.get("sampler") is None:
+        return shapes
+    if held_out is None or not (isinstance(held_out, Mapping) or _is_zero(held_out)):
+        held_out = 100 if held_out is None else count(f"{place}.held_out", held_out)
+        rest = {"sampler": shapes["sampler"], "count": held_out, "seed": seed}
+        shapes["held_out"] = _listed(f"{place}.held_out", rest, 100, 1)
+    return _listed(place, shapes, 300, 0)
+
+
+def _is_zero(value: Any) -> bool:
+    return isinstance(value, (int, np.integer)) and value == 0
+
+
+def _listed(place: str, shapes: "dict[str, Any]", usual: int, part: int) -> "dict[str, Any]":
+    """The shapes with the gradients that their sampler draws; ``part`` tells those of the fit from others."""
+    sampler, key = shapes.pop("sampler"), f"{place}.sampler"
+    if not callable(sampler):
+        raise failure(key, "a function of a number of shapes and a random generator", type(sampler).__name__)
+    given = [name for name in ("families", "gradients", "loads", "run", "states") if shapes.get(name) is not None]
+    if given:
+        raise failure(place, "one source of shapes", f'"sampler" and "{given[0]}"')
+    number = shapes.pop("count", None)
+    number = usual if number is None else count(f"{place}.count", number)
+    seed = shapes.get("seed")
+    if seed is not None and not (_is_zero(seed) or count(f"{place}.seed", seed)):
+        raise failure(f"{place}.seed", "a whole number from 0", seed)
+    # Of a list with nothing held out beside it each fifth shape is left out.
+    drawn = number + (number // 4 if part == 0 and _is_zero(shapes.get("held_out")) else 0)
+    try:
+        found = sampler(drawn, np.random.default_rng([1 if seed is None else int(seed), part]))
+    except Exception as fault:
+        raise failure(key, "a function that returns", f"{type(fault).__name__}: {fault}") from fault
+    found = typed(key, array(key, found), np.float64)
+    if found.ndim != 3 or found.shape[0] != drawn or found.shape[1] != found.shape[2]:
+        raise failure(key, f"deformation gradients of shape ({drawn}, d, d)", f"an array of shape {found.shape}")
+    if not np.isfinite(found).all():
+        wrong = int(np.flatnonzero(~np.isfinite(found).all(axis=(1, 2)))[0])
+        raise failure(key, "finite numbers", f"others in shape {wrong}")
+    contents = np.linalg.det(found)
+    if (contents < _FLATTEST).any():
+        wrong = int(np.flatnonzero(contents < _FLATTEST)[0])
+        expected = f"shapes that are neither flat nor inverted, with det F of at least {_FLATTEST}"
+        raise failure(key, expected, f"det F = {contents[wrong]:.4f} of shape {wrong}")
+    return {**shapes, "gradients": found.tolist(), "count": number}
 
 
 def _name(function: Callable) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -71,6 +72,7 @@ def sampled(
     *,
     stress: "Callable[[np.ndarray], Any] | None" = None,
     force: "str | Callable[..., Any] | Mapping[str, str | Callable[..., Any]] | None" = None,
+    norm: "str | Callable[[np.ndarray], Any] | None" = None,
     **keys: Any,
 ) -> "Network":
     """Fits the springs of every cell to the forces of an energy at sampled shapes.
@@ -85,8 +87,12 @@ def sampled(
             laws by spring group. Arguments of a function are the strain s = (c - c0)/c0 and the measure c, of shape (n,), the measure c0 at
             rest, and the parameters to fit, which are numbers and have any other names; those with a default keep it. It returns the
             forces (n,), N. Its derivatives are differences.
+        norm: What is minimised: "2", "1", "max", "huber", or a function of the residual forces of a cell, (shapes, nodes, d), each shape
+            times the root of its weight; with ``higher`` below 1, d more rows follow. It returns a pair: the value, or one of each shape
+            (shapes,), which are added, and its gradient in the residuals. It belongs to laws that are linear in their parameters.
         **keys: The other keys of a ``[[fit]]`` with the objective "sampled", such as ``shapes={"count": 300, "stretch": 0.3}``; and the
-            options of :func:`fit`.
+            options of :func:`fit`. ``shapes`` may have a ``sampler`` in place of families: a function of a number and a
+            ``numpy.random.Generator`` that returns as many deformation gradients, (count, d, d); also in its ``held_out``.
 
     Functions are called on the threads of the fit, one call at a time. What they raise is the cause of the error. A network whose law of
     force is a function is not written to files.
@@ -95,7 +101,7 @@ def sampled(
         SpringfitError: A key or a value is wrong, a function fails or returns an array of another shape, or a cell cannot be fitted.
     """
     law = law if law is None or callable(law) else os.fspath(law)
-    return fit(mesh, material, "sampled", law=law, stress=stress, force=force, **keys)
+    return fit(mesh, material, "sampled", law=law, stress=stress, force=force, norm=norm, **keys)
 
 
 def whole(mesh: Mesh, material: Material, fix: Any, **keys: Any) -> "Network":
@@ -236,6 +242,19 @@ class Network:
     def statistics(self) -> dict:
         """Seconds, counts, and the mean and largest ‖R−K‖/‖R‖ of the cells in both norms, which are computed when this is first read."""
         return self._core.statistics
+
+    @property
+    def sampled(self) -> "dict | None":
+        """The errors of a sampled fit, as in ``report.json``: ``trained``, ``held_out``, ``families``, ``starts`` and more; None of other fits.
+
+        With ``data=True`` in the fit, ``errors`` has the error of each shape of one cell of each shape and ``ends`` the end of each start,
+        as dictionaries of columns that ``pandas.DataFrame`` takes (but ``stretches``, the least and the largest one, (n, 2)).
+        """
+        found = self._core.sampled
+        if found is None:
+            return None
+        text, errors, ends = found
+        return {**json.loads(text), "errors": errors, "ends": ends}
 
     @property
     def status(self) -> str:

@@ -1,4 +1,4 @@
-"""Studies that compare objectives, refine meshes and try extreme cases."""
+"""Studies that compare objectives, refine meshes, take more shapes and try extreme cases."""
 
 from __future__ import annotations
 
@@ -11,10 +11,15 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 from . import _core
 from ._arguments import PLANES, count, failure, number, word
 from ._core import Element
+from ._functions import separated, warn_of_rest
 from ._progress import listener
+from .material import Material
+from .mesh import Mesh
+from .network import check_body
 from .report import Report, SceneLike, given, settings_of
 
 if TYPE_CHECKING:
+    import numpy as np
     import pandas
 
 
@@ -164,6 +169,58 @@ def stability(
         else:
             found = json.loads(_core.stability_of_scene((*given(what, folder), settings_of(set)), told))
     return pandas.json_normalize(found["rows"])
+
+
+def learning_curve(
+    mesh: Mesh,
+    material: Material,
+    law: "str | os.PathLike[str] | Callable[[np.ndarray], Any] | None" = None,
+    *,
+    counts: "list[int]",
+    seeds: "list[int] | None" = None,
+    progress: "bool | Callable[[str, int, int], Any]" = False,
+    **keys: Any,
+) -> "pandas.DataFrame":
+    """The errors of a sampled fit over the number of its shapes.
+
+    Each fit sees the first shapes of one sequence for each seed, so that a larger one sees those of a smaller one as well, and all have the same
+    shapes held out: those of the fit's own seed.
+
+    Args:
+        counts: Numbers of shapes, of each set.
+        seeds: Seeds of the sequences; that of the shapes if None.
+        **keys: What :func:`sampled` takes.
+
+    Returns:
+        A ``pandas.DataFrame`` with a row for each seed and count: ``seed``, ``shapes``, ``seconds`` (without the shapes that are held out),
+        ``trained`` and ``held_out`` (the mean relative errors over the cells), ``trained_max`` and ``held_out_max``, and ``held_out NAME`` for
+        each family.
+
+    Raises:
+        SpringfitError: As by :func:`sampled`; or a count or a seed is wrong, or no shape is held out.
+    """
+    import pandas
+
+    check_body(mesh, material)
+    counts = [count("counts", one) for one in counts]
+    shapes = keys.get("shapes")
+    if isinstance(shapes, Mapping):
+        if "sampler" in shapes:
+            keys["shapes"] = shapes = {**shapes, "count": max(counts, default=1)}
+        seeds = [shapes.get("seed") or 1] if seeds is None else seeds
+    law = law if law is None or callable(law) else os.fspath(law)
+    entry, functions = separated({"objective": "sampled", "springs": keys.pop("springs", None), "law": law, **keys})
+    if functions is not None and functions["energy"] is not None:
+        warn_of_rest(material, *functions["energy"][1:])
+    with listener(progress) as told:
+        text = _core.learning_curve(mesh._core, material, entry, counts, [1] if seeds is None else list(seeds), told, functions)
+    rows = []
+    for point in json.loads(text):
+        row = {key: point[key] for key in ("seed", "shapes", "seconds")}
+        for key in ("trained", "held_out"):
+            row |= {key: point[key]["mean"], f"{key}_max": point[key]["max"]}
+        rows.append(row | {f"held_out {family['family']}": family["held_out"]["mean"] for family in point["families"]})
+    return pandas.DataFrame(rows)
 
 
 def _refuse(owner: str, what: str, **arguments: Any) -> None:

@@ -1,6 +1,6 @@
 //! `fit` and the finite elements of the same body.
 
-use crate::arguments::{found, number, text};
+use crate::arguments::{self, found, number, text};
 use crate::arrays::list;
 use crate::entry::fit_entry;
 use crate::error::invalid;
@@ -15,7 +15,8 @@ use springfit::error::{Error, Result};
 use springfit::material::{CellMap, Material, MaterialMap, Plane};
 use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{
-    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_without_errors, point_masses,
+    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_without_errors,
+    learning_curve as learn, point_masses,
 };
 
 /// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²), and the density.
@@ -105,6 +106,41 @@ pub fn fit(
         None => progress::run(py, progress, work)?,
     };
     Ok(Network::new(outcome, cells, ends.is_some()))
+}
+
+/// The errors of a sampled fit to the first shapes of a sequence, as a list in JSON; the other arguments are those of [`fit`].
+#[pyfunction]
+#[pyo3(signature = (mesh, material, keys, counts, seeds, progress=None, functions=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn learning_curve(
+    py: Python,
+    mesh: &Mesh,
+    material: &Bound<PyAny>,
+    keys: &Bound<PyDict>,
+    counts: &Bound<PyAny>,
+    seeds: &Bound<PyAny>,
+    progress: Option<Py<PyAny>>,
+    functions: Option<Given>,
+) -> PyResult<String> {
+    let (entry, constants) = (fit_entry(py, keys)?, Constants::given(material)?);
+    let counts = arguments::counts("counts", counts)?;
+    let seeds: Vec<u64> = arguments::counts("seeds", seeds)?.into_iter().map(|seed| seed as u64).collect();
+    let functions = functions.map(|given| Functions::new(py, given, constants.young)).transpose()?;
+    let ends = functions.as_ref().map(|functions| functions.ends.clone());
+    let mesh = mesh.mesh.clone();
+    let work = move |told: &mut dyn FnMut(Event)| {
+        entry.check()?;
+        let material = constants.of(&mesh)?;
+        let own = functions.as_ref().map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
+        let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
+        let map = MaterialMap::from(material);
+        let points = learn(&mesh, &map, &Reference::default(), &named, &counts, &seeds, told)?;
+        serde_json::to_string(&points).map_err(|e| Error::new(e.to_string()))
+    };
+    match &ends {
+        Some(ends) => progress::run_functions(py, progress, ends, work),
+        None => progress::run(py, progress, work),
+    }
 }
 
 /// What is held at rest, `[points, dimension]`.

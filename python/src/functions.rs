@@ -10,6 +10,7 @@ use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use springfit::error::{Error, Result};
+use springfit::fit::{ResidualFunction, ResidualObjective};
 use springfit::material::Material;
 use springfit::springs::{ForceFunction, Law};
 use springfit::stiffness::{EnergyFunction, StressFunction};
@@ -43,30 +44,76 @@ impl Function {
         py: Python<'py>,
         shape: &[usize],
     ) -> Option<Vec<f64>> {
+        self.called(py, || {
+            let arguments = arguments(py)?;
+            let found = calling(|| self.call.bind(py).call1(arguments))?;
+            let array = self.real(py, &found)?;
+            self.shaped(py, &array, "an array", shape)
+        })
+    }
+
+    /// What `call` gives; `None` once a function has not returned.
+    fn called<T>(&self, _: Python, call: impl FnOnce() -> PyResult<T>) -> Option<T> {
         let ends = Ends::current(&self.ends);
         if ends.is_set() {
             return None;
         }
-        let called = || {
-            let arguments = arguments(py)?;
-            let found = calling(|| self.call.bind(py).call1(arguments))?;
-            check_mask(&self.key, &found)?;
-            let found = py.import("numpy")?.call_method1("asarray", (found,))?;
-            let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;
-            if !["f", "i", "u"].contains(&&*kind) {
-                let found = found.getattr("dtype")?;
-                return Err(invalid(py, &self.key, "an array of real numbers from the function", found));
-            }
-            let found = found.call_method1("astype", ("float64",))?;
-            let array: &Bound<PyArrayDyn<f64>> = found.cast()?;
-            if array.shape() != shape {
-                let shown = |shape: &[usize]| PyTuple::new(py, shape).map(|shape| shape.to_string());
-                let expected = format!("an array of shape {} from the function", shown(shape)?);
-                return Err(invalid(py, &self.key, &expected, format!("one of shape {}", shown(array.shape())?)));
-            }
-            Ok(array.readonly().as_array().iter().copied().collect())
-        };
-        called().map_err(|exception| ends.set(&self.key, exception)).ok()
+        call().map_err(|exception| ends.set(&self.key, exception)).ok()
+    }
+
+    /// What the function has returned as real numbers.
+    fn real<'py>(&self, py: Python<'py>, found: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        check_mask(&self.key, found)?;
+        let found = py.import("numpy")?.call_method1("asarray", (found,))?;
+        let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;
+        if !["f", "i", "u"].contains(&&*kind) {
+            let found = found.getattr("dtype")?;
+            return Err(invalid(py, &self.key, "an array of real numbers from the function", found));
+        }
+        Ok(found.call_method1("astype", ("float64",))?.cast_into()?)
+    }
+
+    /// The numbers of an array of this shape; errors call it by `what`.
+    fn shaped(&self, py: Python, array: &Bound<PyArrayDyn<f64>>, what: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
+        if array.shape() != shape {
+            let shown = |shape: &[usize]| PyTuple::new(py, shape).map(|shape| shape.to_string());
+            let expected = format!("{what} of shape {} from the function", shown(shape)?);
+            return Err(invalid(py, &self.key, &expected, format!("one of shape {}", shown(array.shape())?)));
+        }
+        Ok(array.readonly().as_array().iter().copied().collect())
+    }
+}
+
+/// What a fit minimises: the value of the residual forces of a cell and its gradient.
+#[derive(Debug)]
+struct Residual(Function);
+
+impl ResidualFunction for Residual {
+    fn value(&self, residuals: &[f64], shape: [usize; 3], gradient: &mut [f64]) -> Result<f64> {
+        let found = Python::attach(|py| {
+            self.0.called(py, || {
+                let array = ArrayD::from_shape_vec(shape.to_vec(), residuals.to_vec());
+                let array = array.expect("the shape is that of the residuals").into_pyarray(py);
+                let found = calling(|| self.0.call.bind(py).call1((array,)))?;
+                let expected = "a pair from the function: the value, or one of each shape, and its gradient";
+                let pair = found.cast::<PyTuple>().ok().filter(|pair| pair.len() == 2);
+                let pair = pair.ok_or_else(|| {
+                    let kind =
+                        found.get_type().name().map_or_else(|_| "another object".into(), |name| name.to_string());
+                    invalid(py, &self.0.key, expected, kind)
+                })?;
+                let values = self.0.real(py, &pair.get_item(0)?)?;
+                // One value, or that of each shape.
+                let own: &[usize] = if values.shape().is_empty() { &[] } else { &shape[..1] };
+                let values = self.0.shaped(py, &values, "one value, or an array", own)?;
+                let slopes = self.0.real(py, &pair.get_item(1)?)?;
+                Ok((values.iter().sum::<f64>(), self.0.shaped(py, &slopes, "a gradient", &shape)?))
+            })
+        });
+        // What ended it is raised in place of this.
+        let (value, slopes) = found.ok_or_else(|| Error::at("norm", "the function has not returned"))?;
+        gradient.copy_from_slice(&slopes);
+        Ok(value)
     }
 }
 
@@ -194,6 +241,7 @@ type GivenEnergy = (String, Option<Py<PyAny>>, Option<Py<PyAny>>);
 pub struct Given {
     energy: Option<GivenEnergy>,
     forces: Vec<GivenForce>,
+    norm: Option<(String, Py<PyAny>)>,
 }
 
 /// Functions that have been tried.
@@ -240,6 +288,10 @@ impl Functions {
                 None => own.force = Some(law),
             }
         }
+        own.norm = given.norm.map(|(name, call)| {
+            let function = Residual(function("norm", call));
+            ResidualObjective::new(&name, Arc::new(function))
+        });
         Ok(Functions { ends, given: own, energy })
     }
 

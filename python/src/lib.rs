@@ -14,6 +14,7 @@ mod mesh;
 mod network;
 mod pickled;
 mod progress;
+mod sampled;
 mod studies;
 mod study;
 mod sweep;
@@ -38,6 +39,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(element::parsed_element, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::restored_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
+    module.add_function(wrap_pyfunction!(fit::learning_curve, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;
     module.add_function(wrap_pyfunction!(fit::masses, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;

@@ -5,6 +5,7 @@ use crate::arrays::{list, matrix, vectors};
 use crate::ends::Ends;
 use crate::error::{invalid, raised};
 use crate::progress::{alone, apart};
+use crate::sampled;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -34,6 +35,9 @@ pub struct Network {
     /// Whether its laws of force call functions of Python.
     has_functions: bool,
 }
+
+/// The outcome of a sampled fit as JSON, the errors of its shapes and the ends of its starts by columns.
+type Sampled<'py> = (String, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
 /// Rows, columns and values of a matrix.
 pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
@@ -275,6 +279,14 @@ impl Network {
             record.set_item(key, spread.map(pair))?;
         }
         Ok(record)
+    }
+
+    /// The outcome of a sampled fit as JSON, and its data by columns; None of other fits.
+    #[getter]
+    fn sampled<'py>(&self, py: Python<'py>) -> PyResult<Option<Sampled<'py>>> {
+        let Some(outcome) = self.fit().kind.sampled() else { return Ok(None) };
+        let text = serde_json::to_string(outcome).map_err(|e| raised(py, Error::new(e.to_string())))?;
+        Ok(Some((text, sampled::shapes(py, outcome)?, sampled::starts(py, outcome)?)))
     }
 
     fn __len__(&self) -> usize {

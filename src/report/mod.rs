@@ -35,6 +35,7 @@ mod quality;
 mod referee;
 mod region_record;
 mod run_tables;
+mod sampled;
 mod series;
 mod stability;
 mod stretches;
@@ -79,6 +80,7 @@ pub use referee::{
     referee_tables, referee_text, write_referee,
 };
 pub use region_record::RegionRecord;
+pub use sampled::{shapes_csv, starts_csv};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
 pub use stretches::{STRETCHES_FILES, stretches_tables, write_stretches};
@@ -104,7 +106,8 @@ use std::path::PathBuf;
 pub fn write_outputs(outcome: &Outcome, output: &Output, mut edition: Edition) -> Result<Vec<PathBuf>> {
     let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
     let names = models().map(|model| model.name.as_str());
-    let Stems { fits: stems, motions, points } = Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
+    let Stems { fits: stems, motions, points, sampled } =
+        Stems::of(outcome.fits.iter().map(|f| f.fit.name.as_str()), names);
     let moved = || models().zip(&motions);
     let fits = || outcome.fits.iter().zip(&stems);
     if output.csv {
@@ -120,6 +123,11 @@ pub fn write_outputs(outcome: &Outcome, output: &Output, mut edition: Edition) -
     for (fit, stem) in fits().filter(|_| output.json != Some(false)) {
         let write = |to: &mut dyn Write| network_json(&NetworkFile::of(outcome, fit), to);
         edition.write(&format!("{stem}.json"), |path| write_with(path, write))?;
+    }
+    for (fit, [shapes, starts]) in outcome.fits.iter().zip(&sampled) {
+        let Some(own) = fit.kind.sampled().filter(|own| !own.errors.is_empty()) else { continue };
+        edition.write(&format!("{shapes}.csv"), |path| write_with(path, |to| shapes_csv(own, to)))?;
+        edition.write(&format!("{starts}.csv"), |path| write_with(path, |to| starts_csv(own, to)))?;
     }
     for (model, stem) in moved() {
         edition.write(&format!("{stem}.csv"), |path| write_whole(path, motion_csv(model).as_bytes()))?;

@@ -15,6 +15,8 @@ pub(super) struct Stems {
     pub motions: Vec<String>,
     /// Files of the points of each network, where they are not the same.
     pub points: Vec<String>,
+    /// Files of the errors of each fit at sampled shapes, and of its starts.
+    pub sampled: Vec<[String; 2]>,
 }
 
 impl Stems {
@@ -23,11 +25,15 @@ impl Stems {
         let fits: Vec<&str> = fits.collect();
         let moved: Vec<String> = moved.map(|name| format!("motion {name}")).collect();
         let points: Vec<String> = fits.iter().map(|name| format!("points {name}")).collect();
-        let own = moved.iter().chain(&points).map(String::as_str);
+        let sampled: Vec<String> =
+            fits.iter().flat_map(|name| [format!("shapes {name}"), format!("starts {name}")]).collect();
+        let own = moved.iter().chain(&points).chain(&sampled).map(String::as_str);
         let mut stems = file_stems(fits.iter().copied().chain(own));
+        let sampled = stems.split_off(fits.len() + moved.len() + points.len());
+        let sampled = sampled.as_chunks::<2>().0.to_vec();
         let points = stems.split_off(fits.len() + moved.len());
         let motions = stems.split_off(fits.len());
-        Stems { fits: stems, motions, points }
+        Stems { fits: stems, motions, points, sampled }
     }
 
     /// The names of all files that a run can write, but for the pictures of motions.
@@ -39,6 +45,7 @@ impl Stems {
         with(&self.fits, &["csv", "json", "vtu"])
             .chain(with(&self.motions, &["csv", "pvd"]))
             .chain(with(&self.points, &["csv"]))
+            .chain(with(self.sampled.as_flattened(), &["csv"]))
             .chain(["mesh.vtu", POINTS, REPORT, PAGE].map(String::from))
     }
 }

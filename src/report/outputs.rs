@@ -31,10 +31,15 @@ pub fn open_scene_outputs(scene: &Scene, folder: &Path) -> Result<Edition> {
         check_arrays(scene)?;
     }
     let has_masses = |fit: &NamedFit| fit.recipe.whole().is_some_and(|whole| whole.masses > 0);
+    let has_data = |fit: &NamedFit| fit.recipe.sampled().is_some_and(|recipe| recipe.fit.data);
     let is_written = |name: &String| match name.rsplit_once('.') {
         _ if stems.motions.iter().any(|stem| *name == format!("{stem}.csv")) => true,
         _ if stems.points.iter().any(|stem| *name == format!("{stem}.csv")) => {
             output.csv && scene.fits().iter().any(has_masses)
+        }
+        Some((stem, "csv")) if stems.sampled.as_flattened().iter().any(|own| own == stem) => {
+            let fit = stems.sampled.iter().position(|own| own.iter().any(|own| own == stem));
+            fit.is_some_and(|fit| has_data(&scene.fits()[fit]))
         }
         Some((_, "csv")) => output.csv,
         Some((_, "html")) => output.has_page(),

@@ -101,6 +101,78 @@ fn shapes() {
             ),
             (SHAPES, two, "scene.toml: fit[0].shapes", "found more"),
             (SHAPES, "shapes = { count = 0 }", "scene.toml: fit[0].shapes.count", "found 0"),
+            (SHAPES, "shapes = []", "scene.toml: fit[0].shapes", "found none"),
+            (SHAPES, "shapes = { weight = 2 }", "scene.toml: fit[0].shapes.weight", "several sets"),
+            (SHAPES, "shapes = { design = \"halton\" }", "scene.toml: fit[0].shapes.design", "found \"halton\""),
+            (SHAPES, "shapes = { directions = [[1, 0]] }", "scene.toml: fit[0].shapes.directions[0]", "found 2"),
+            (SHAPES, "shapes = { scale = 2 }", "scene.toml: fit[0].shapes.scale", "\"states\""),
+            (SHAPES, "shapes = { states = [] }", "scene.toml: fit[0].shapes.states", "found none"),
+            (SHAPES, "shapes = { states = 3 }", "scene.toml: fit[0].shapes.states", "integer"),
+            (SHAPES, "shapes = { states = [\"a.npy\"] }", "scene.toml: fit[0].shapes.states", "found \"a.npy\""),
+            (SHAPES, "shapes = { run = \"nowhere\" }", "scene.toml: fit[0].shapes.run", "found nowhere"),
+            (
+                SHAPES,
+                "shapes = [{ families = [\"bending\"] }, { families = [\"bent\"] }]",
+                "scene.toml: fit[0].shapes[1].families",
+                "found \"bent\"",
+            ),
+            (
+                SHAPES,
+                "shapes = { gradients = [[1, 0, 0, 0, 1, 0, 0, 0, -1]] }",
+                "scene.toml: fit[0].shapes.gradients[0]",
+                "det F = -1.0000",
+            ),
+            (
+                SHAPES,
+                "shapes = { gradients = [[1, \"a\"]] }",
+                "scene.toml: fit[0].shapes.gradients[0][1]",
+                "found \"a\"",
+            ),
+            (SHAPES, "shapes = { gradients = [] }", "scene.toml: fit[0].shapes.gradients", "found 0 numbers in all"),
+            (SHAPES, "shapes = { gradients = true }", "scene.toml: fit[0].shapes.gradients", "found a boolean"),
+            (
+                SHAPES,
+                "shapes = { gradients = [[1, 0, 0, 0, 1, 0, 0, 0, 2]], directions = [[1, 0, 0]] }",
+                "scene.toml: fit[0].shapes.directions",
+                "\"families\"",
+            ),
+        ],
+    );
+    refusals.expect_of_edits(
+        SOFT,
+        &[
+            (SHAPES, "shapes = { held_out = -1 }", "scene.toml: fit[0].shapes.held_out", "found -1"),
+            (SHAPES, "shapes = { held_out = { count = 0 } }", "scene.toml: fit[0].shapes.held_out.count", "found 0"),
+            (
+                SHAPES,
+                "shapes = { held_out = { families = [\"torsional\"] } }",
+                "scene.toml: fit[0].shapes.held_out.families",
+                "found \"torsional\"",
+            ),
+            (
+                SHAPES,
+                "shapes = { held_out = { held_out = 3 } }",
+                "scene.toml: fit[0].shapes.held_out.held_out",
+                "belongs to the shapes of the fit",
+            ),
+            (
+                SHAPES,
+                "shapes = { gradients = [[1, 0, 0, 0, 1, 0, 0, 0, 2]], held_out = { count = 3 } }",
+                "scene.toml: fit[0].shapes.held_out",
+                "apart from those of the list",
+            ),
+            (
+                SHAPES,
+                "shapes = { held_out = { loads = [\"push\"] } }",
+                "scene.toml: fit[0].shapes.held_out.loads",
+                "(pull), found \"push\"",
+            ),
+            (
+                SHAPES,
+                "data = true\nshapes = { held_out = 0 }",
+                "scene.toml: fit[0].shapes.held_out",
+                "whose errors are the data",
+            ),
             (SHAPES, "shapes = { stretch = \"much\" }", "scene.toml: fit[0].shapes.stretch", "found \"much\""),
             (SHAPES, "shapes = { stretch = [0.5, 0] }", "scene.toml: fit[0].shapes.stretch", "found 0.5 to 0"),
             (SHAPES, "shapes = { perturbation = 9 }", "scene.toml: fit[0].shapes.perturbation", "found 9"),
@@ -109,6 +181,19 @@ fn shapes() {
     );
     let list = edited(SOFT, SHAPES, "shapes = { gradients = \"list.csv\" }");
     refusals.expect_of_scene(&list, "list.csv", "cannot be read");
+    let states = edited(SOFT, SHAPES, "shapes = { states = \"states.csv\" }");
+    refusals.expect_of_scene(&states, "states.csv", "cannot be read");
+    let flat = "point,ux,uy,uz\n0,0,0,0\n1,0,0,0\n2,0,0,0\n3,0,0,0\n4,0,0,-1.5\n5,0,0,-1.5\n6,0,0,-1.5\n7,0,0,-1.5\n";
+    for (text, place, words) in [
+        (flat, "scene.toml: fit[0].shapes.states[0]", "det F = -0.5000 in the cell with the nodes"),
+        ("point,ux,uy,uz\n0,0,0,0\n", "states.csv: displacement", "found none of point 1 along x"),
+    ] {
+        let files: [(&str, &[u8]); 2] = [("scene.toml", states.as_bytes()), ("states.csv", text.as_bytes())];
+        refusals.expect(&files, &["run", "scene.toml"], place, words);
+    }
+    let run = edited(SOFT, SHAPES, "shapes = { run = \"out\" }");
+    let files: [(&str, &[u8]); 2] = [("scene.toml", run.as_bytes()), ("out/", b"")];
+    refusals.expect(&files, &["run", "scene.toml"], "scene.toml: fit[0].shapes.run", "mesh.vtu");
     for (text, place, words) in [
         ("1 0 0 0 1 0 0 0\n", "scene.toml: fit[0].shapes.gradients", "found 8 numbers in all"),
         ("1 0 0\n0 one 0 0 0 1\n", "list.csv:2", "found one"),

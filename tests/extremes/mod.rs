@@ -145,9 +145,13 @@ fn every_numeric_key_of_a_scene_is_swept() {
         known.extend(numeric_places(&document).iter().map(|place| key(place)));
     }
     let lists = |name: &String| [name.clone(), format!("{name}[]"), format!("{name}[][]")];
-    // A material alone has the keys of one in a list, and the mesh of a finer body those of a mesh.
+    // A material alone has the keys of one in a list, a set of shapes and what is held out as well, and the mesh of a finer body those of
+    // a mesh.
     let alone = |names: BTreeSet<String>| -> BTreeSet<String> {
-        let plain = |name: String| name.replacen("material[]", "material", 1).replacen("reference.mesh", "mesh", 1);
+        let plain = |name: String| {
+            let name = name.replacen("material[]", "material", 1).replacen("reference.mesh", "mesh", 1);
+            name.replacen("shapes[]", "shapes", 1).replacen("shapes.held_out.", "shapes.", 1)
+        };
         names.into_iter().map(plain).collect()
     };
     let (known, visited) = (alone(known), alone(visited));

@@ -177,6 +177,23 @@ norm = "huber"
 huber = 0.5
 shapes = { families = ["uniaxial"], count = 4, held_out = 2, stretch = [-0.1, 0.2], perturbation = 0.02, seed = 1 }
 [[fit]]
+name = "sets"
+objective = "sampled"
+[[fit.shapes]]
+families = ["uniaxial"]
+directions = [[1.0, 0.5]]
+count = 4
+stretch = 0.2
+weight = 2.0
+held_out = { families = ["pure-shear"], directions = [[0.5, 1.0, 1.0, 0.0]], count = 2, stretch = [0.1, 0.3], perturbation = 0.01, seed = 2 }
+[[fit.shapes]]
+gradients = [[1.1, 0.0, 0.05, 0.95]]
+count = 1
+[[fit.shapes]]
+states = "states.csv"
+scale = 1.0
+held_out = { gradients = [[0.9, 0.1, 0.0, 1.0]], count = 1 }
+[[fit]]
 name = "law"
 objective = "sampled"
 force = "k*(exp(a*s) - 1)"
@@ -451,7 +468,7 @@ pub const ALL: [(&str, &str); 15] = [
 ];
 
 /// Files that the scenes name.
-pub const FILES: [(&str, &str); 6] = [
+pub const FILES: [(&str, &str); 7] = [
     (
         "octahedron.off",
         "OFF\n6 8 12\n0.53 0 0\n-0.51 0 0\n0 0.47 0\n0 -0.55 0\n0 0 0.57\n0 0 -0.45\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n\
@@ -467,6 +484,7 @@ pub const FILES: [(&str, &str); 6] = [
         "frame.vtk",
         "# vtk DataFile Version 3.0\nframe\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n0 0 0\n1 0 0\n2 0 0\n3 0 0\n0 1 0\n1 1 0\n2 1 0\n3 1 0\n0 2 0\n1 2 0\n2 2 0\n3 2 0\n0 3 0\n1 3 0\n2 3 0\n3 3 0\nCELLS 8 40\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 4 5 9 8\n4 6 7 11 10\n4 8 9 13 12\n4 9 10 14 13\n4 10 11 15 14\nCELL_TYPES 8\n9\n9\n9\n9\n9\n9\n9\n9\n",
     ),
+    ("states.csv", "point,ux,uy\n0,0,0\n1,0.05,0\n2,0,0.1\n3,0.05,0.1\n"),
     ("young.csv", "x,y,E\n0.5,0.5,5e3\n1.5,0.5,2e4\n"),
     ("fibres.csv", "x,y,z,a_x,a_y,a_z\n1.5,0.5,0.5,1,0,0\n1.5,0.5,0.6,1,1,0\n"),
 ];

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 36] = [
+const LAYERS: [&str; 37] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -22,6 +22,7 @@ const LAYERS: [&str; 36] = [
     "range",
     "named",
     "number",
+    "random",
     "quantity",
     "file",
     "memory",

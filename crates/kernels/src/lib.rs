@@ -19,4 +19,4 @@ pub mod springs;
 pub mod stiffness;
 
 // The layers below, by the same names as everywhere.
-use springfit_foundation::{bound, error, file, named, number, range, scalar, symbolic};
+use springfit_foundation::{bound, error, file, named, number, random, range, scalar, symbolic};

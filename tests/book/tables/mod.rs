@@ -12,6 +12,7 @@ mod norms;
 mod paper;
 mod readme;
 mod stability;
+mod tensile;
 mod truths;
 mod whole;
 
@@ -44,7 +45,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 16] = [
+const MAKERS: [Maker; 17] = [
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),
@@ -60,6 +61,7 @@ const MAKERS: [Maker; 16] = [
     ("paper-1", paper::first, true, Kept::Roughly),
     ("paper-meshes", paper::meshes, false, Kept::ToRounding),
     ("stability", stability::table, true, Kept::Magnitude),
+    ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),
 ];
 

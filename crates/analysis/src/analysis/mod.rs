@@ -4,7 +4,6 @@
 pub mod check;
 pub mod metrics;
 pub mod moduli;
-pub mod random;
 pub mod shapes;
 pub mod statistics;
 pub mod tensor;

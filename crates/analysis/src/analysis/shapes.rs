@@ -1,8 +1,8 @@
 //! Random shapes of an element. The same seed always gives the same shapes.
 
-use super::random::Random;
 use crate::element::Element;
 use crate::error::{Error, Result};
+use crate::random::Random;
 use crate::stiffness::Geometry;
 
 /// How far nodes are moved, in units of the reference cell: far enough to distort it, and most shapes remain valid.

@@ -81,7 +81,10 @@ pub use precision::{
 };
 pub use residual::{ElementErrors, Spread, SpreadSum, each_element_errors, element_errors};
 pub use rest::Rest;
-pub use sampled::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
+pub use sampled::{
+    CellStart, DeformationFamily, Design, FamilyErrors, Part, ResidualFunction, ResidualObjective, SampledFit,
+    SampledFits, Sampling, ShapeError, Source, StartEnd, Weights, fit_sampled,
+};
 pub use settings::Fit;
 pub use solver::{Search, Solver, Topology};
 pub use weight::{Higher, MotionWeight, Weight};

@@ -193,7 +193,7 @@ impl Forecast {
 /// pace of the last trial. `None` of fits to the whole object and to states of loads, which are no sum over cells.
 fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &NamedFit) -> Option<[f64; 3]> {
     let kind = fit.recipe.kind();
-    let of_loads = fit.recipe.sampled().is_some_and(|recipe| !recipe.loads.is_empty());
+    let of_loads = fit.recipe.sampled().is_some_and(|recipe| recipe.has_states());
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
         return None;
     }

@@ -23,6 +23,7 @@ mod fitting;
 mod forecast;
 mod jobs;
 mod keys;
+mod learning;
 mod locking;
 mod masses;
 mod outcome;
@@ -59,15 +60,16 @@ pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,
-    FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
-    ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
-    SampledRecipe, SampledRecord, SceneFacts, Sharing, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies,
-    SupportPart, Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
-    fit_schema,
+    CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, Fitted,
+    FittedKind, FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection,
+    ModelError, ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference,
+    SampledOutcome, SampledRecipe, SampledRecord, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start,
+    StartOutcome, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape, fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
+pub use learning::{LearningPoint, learning_curve};
 pub use locking::{is_one_cell_across, locks_at};
 pub use masses::{PointMasses, point_masses};
 pub use outcome::{

@@ -1,7 +1,7 @@
 //! Intervals by resampling: the percentile bootstrap of Efron (1979), The Annals of Statistics 7.
 
 use super::quantile::{median, quantile};
-use crate::analysis::random::Random;
+use crate::random::Random;
 use serde::Serialize;
 
 /// The number of resamples.

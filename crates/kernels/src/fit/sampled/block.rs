@@ -4,12 +4,12 @@
 //! Theory: page *Sampled fits* of the book.
 
 use super::cell::{Sample, SampledCell, Sums};
-use super::shapes::Part;
+use super::sampling::Part;
 use crate::error::Result;
 use crate::scalar::{Packed, PackedWork, widest};
 
 /// The number of shapes is filled up to a multiple of this, which every width of registers divides.
-const SIDE: usize = 8;
+pub const SIDE: usize = 8;
 /// The largest number of shapes of a block; its values stay in the second cache.
 const SHAPES: usize = 256;
 /// The largest number of values that the blocks of a cell may hold: 64 megabytes.
@@ -26,6 +26,8 @@ struct Block {
     pairs: Vec<(usize, usize, Vec<f64>)>,
     /// `Σ_q w_q ‖f‖²`.
     size: f64,
+    /// The number of shapes that have less of their deformation than was drawn.
+    reduced: usize,
 }
 
 /// A spring at the shapes.
@@ -131,7 +133,8 @@ impl Block {
                 }
             }
         }
-        Ok(Block { shapes, forces, springs, pairs, size })
+        let reduced = placed.iter().filter(|placed| placed.is_reduced).count();
+        Ok(Block { shapes, forces, springs, pairs, size, reduced })
     }
 
     /// The number of values.
@@ -143,6 +146,7 @@ impl Block {
     fn add(&self, cell: &SampledCell, unknowns: &[f64], chosen: &[bool], curved: &mut Curved) {
         let laws: Vec<Vec<f64>> = (0..self.springs.len()).map(|s| self.law(cell, s, unknowns, chosen)).collect();
         curved.sums.size += self.size;
+        curved.sums.reduced += self.reduced;
         widest(Add { block: self, cell, laws: &laws, chosen, curved });
     }
 

@@ -1,8 +1,10 @@
 //! One cell of a sampled fit: its forces and those of its springs at every shape, summed to normal equations.
 
 use super::placed::{Placed, ShapeForces};
+use super::sampling::Part;
+use super::sets::Sets;
 use super::settings::{SampledFit, Weights};
-use super::shapes::{Part, Shapes};
+use super::shapes::Drawing;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::dense::inner;
@@ -18,9 +20,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The number of shapes that one thread sums,
-const BLOCK: usize = 256;
+pub const BLOCK: usize = 256;
 /// and the number of such blocks before they are added to the rest.
-const BLOCKS: usize = 16;
+pub const BLOCKS: usize = 16;
 /// Numbers of equations that are stored before they are summed: a few hundred kilobytes.
 const HELD: usize = 1 << 15;
 /// The number of parameters of a spring for which no memory is allocated.
@@ -42,11 +44,13 @@ pub struct SampledCell<'a> {
     /// The largest number of unknowns of a spring.
     widest: usize,
     /// The `‖f‖²` of a strain below which forces count as those of no deformation.
-    least_square: f64,
-    geometry: &'a Geometry,
+    pub(super) least_square: f64,
+    pub(super) geometry: &'a Geometry,
     energy: &'a dyn Hyperelastic,
     state: State,
-    shapes: Shapes<'a>,
+    drawing: Drawing<'a>,
+    trained: Sets<'a>,
+    held_out: Sets<'a>,
     pub(super) fit: &'a SampledFit,
     /// Orthonormal coordinates of the nodes, `[dimension × nodes]`, which give the work of a force on homogeneous
     /// deformations. Empty if all forces count equally.
@@ -61,11 +65,14 @@ struct Spring {
 
 /// The sums `Σ_q w_q Jᵀ J`, `Σ_q w_q Jᵀ r` and `Σ_q w_q ‖r‖²` so far, with J the derivative of the springs' forces in
 /// the unknowns and r the missing force.
+#[derive(Debug, Clone)]
 pub struct Sums {
     pub normal: Normal,
     pub square: f64,
     /// `Σ_q w_q ‖f‖²`.
     pub size: f64,
+    /// The number of shapes that have less of their deformation than was drawn.
+    pub reduced: usize,
 }
 
 /// The forces of a cell at one shape, weighted as by [`SampledFit::higher`].
@@ -88,11 +95,11 @@ impl<'a> SampledCell<'a> {
         energy: &'a dyn Hyperelastic,
         state: State,
         fit: &'a SampledFit,
-        shapes: Shapes<'a>,
+        drawing: Drawing<'a>,
     ) -> SampledCell<'a> {
         let d = element.dimension();
         let with_rest = |(nodes, measure): (Vec<usize>, Measure)| {
-            let rest = measure.value(&gathered(shapes.rest, d, &nodes), d);
+            let rest = measure.value(&gathered(drawing.rest, d, &nodes), d);
             Spring { nodes, measure, rest }
         };
         let mut unknowns: Vec<Range<usize>> = Vec::new();
@@ -109,20 +116,25 @@ impl<'a> SampledCell<'a> {
             count,
             groups: &springs.groups,
             widest,
-            least_square: (SLIGHT * energy.young() * state.thickness() * geometry.content() / shapes.extent).powi(2),
+            least_square: (SLIGHT * energy.young() * state.thickness() * geometry.content() / drawing.extent).powi(2),
             springs: springs.measures(element).into_iter().map(with_rest).collect(),
             geometry,
             energy,
             state,
             fit,
-            affine: if fit.higher < 1.0 { coordinates(shapes.rest, d) } else { Vec::new() },
-            shapes,
+            affine: if fit.higher < 1.0 { coordinates(drawing.rest, d) } else { Vec::new() },
+            drawing,
+            trained: Sets::new(fit.sets(), drawing, Part::Trained),
+            held_out: Sets::new(fit.sets(), drawing, Part::HeldOut),
         }
     }
 
-    /// Whether there are shapes that the fit does not use.
-    pub fn has_others(&self) -> bool {
-        self.shapes.has_others()
+    /// The shapes of a part.
+    pub fn sets(&self, part: Part) -> &Sets<'a> {
+        match part {
+            Part::Trained => &self.trained,
+            Part::HeldOut => &self.held_out,
+        }
     }
 
     /// The number of unknowns of the fit.
@@ -137,6 +149,15 @@ impl<'a> SampledCell<'a> {
     /// The measure of spring s at rest.
     pub fn rest(&self, s: usize) -> f64 {
         self.springs[s].rest
+    }
+
+    pub fn dimension(&self) -> usize {
+        self.drawing.dimension
+    }
+
+    /// The group of spring s.
+    pub fn group(&self, s: usize) -> usize {
+        self.groups[s]
     }
 
     /// The places of the unknowns of spring s.
@@ -166,7 +187,7 @@ impl<'a> SampledCell<'a> {
 
     /// The number of shapes of the part.
     pub fn shapes(&self, part: Part) -> usize {
-        self.shapes.count(part)
+        self.sets(part).count()
     }
 
     /// The sums over the shapes of one part, with J and r at `unknowns`.
@@ -180,6 +201,7 @@ impl<'a> SampledCell<'a> {
                 self.sample(&placed, &mut sample)?;
                 self.equations(&sample, unknowns, &mut rows, &mut lacking);
                 sums.size += sample.weight * inner(&sample.force, &sample.force);
+                sums.reduced += usize::from(placed.is_reduced);
                 if rows.len() > HELD {
                     sums.add(&mut rows, &mut lacking);
                 }
@@ -198,13 +220,13 @@ impl<'a> SampledCell<'a> {
         Ok(sums)
     }
 
-    /// The shapes of a part with these indices.
+    /// The shapes of a part with these numbers.
     ///
     /// # Errors
     /// Those of [`ShapeForces::at`].
-    pub fn placed(&self, part: Part, indices: &[usize]) -> Result<Vec<Placed>> {
-        let &SampledCell { geometry, energy, state, ref shapes, .. } = self;
-        ShapeForces { shapes, geometry, energy, state }.at(part, indices)
+    pub fn placed(&self, part: Part, numbers: &[usize]) -> Result<Vec<Placed>> {
+        let &SampledCell { geometry, energy, state, .. } = self;
+        ShapeForces { sets: self.sets(part), geometry, energy, state }.at(numbers)
     }
 
     /// What the springs measure at a shape, and the forces there, weighted.
@@ -212,7 +234,7 @@ impl<'a> SampledCell<'a> {
     /// # Errors
     /// A spring has no gradient there.
     pub fn sample(&self, placed: &Placed, sample: &mut Sample) -> Result<()> {
-        let size = self.shapes.rest.len();
+        let size = self.drawing.rest.len();
         let seen = self.seen();
         sample.force.resize(seen, 0.0);
         sample.force[..size].copy_from_slice(&placed.force);
@@ -226,17 +248,18 @@ impl<'a> SampledCell<'a> {
         std::iter::once(&mut sample.force[..])
             .chain(sample.gradients.chunks_exact_mut(seen))
             .for_each(|row| self.see(row));
-        sample.weight = match self.fit.weights {
+        let weight = match self.fit.weights {
             Weights::Alike => 1.0,
             Weights::Relative => 1.0 / inner(&sample.force, &sample.force).max(self.least_square),
         };
+        sample.weight = placed.share * weight;
         Ok(())
     }
 
     /// The number of values of a weighted force.
     pub fn seen(&self) -> usize {
-        let d = self.shapes.dimension;
-        self.shapes.rest.len() + if self.affine.is_empty() { 0 } else { d * d }
+        let d = self.drawing.dimension;
+        self.drawing.rest.len() + if self.affine.is_empty() { 0 } else { d * d }
     }
 
     /// `f ↦ (h f, √(1 − h²) Cᵀ f)`, for which `‖·‖² = ‖(C Cᵀ + h H Hᵀ) f‖²`, with C the homogeneous deformations and H
@@ -245,8 +268,8 @@ impl<'a> SampledCell<'a> {
         if self.affine.is_empty() {
             return;
         }
-        let (d, h) = (self.shapes.dimension, self.fit.higher);
-        let (force, homogeneous) = row.split_at_mut(self.shapes.rest.len());
+        let (d, h) = (self.drawing.dimension, self.fit.higher);
+        let (force, homogeneous) = row.split_at_mut(self.drawing.rest.len());
         let share = (1.0 - h * h).sqrt();
         for (l, coordinate) in self.affine.chunks_exact(force.len() / d).enumerate() {
             for k in 0..d {
@@ -258,7 +281,7 @@ impl<'a> SampledCell<'a> {
     }
 
     fn measure(&self, x: &[f64], sample: &mut Sample) {
-        let (d, seen) = (self.shapes.dimension, self.seen());
+        let (d, seen) = (self.drawing.dimension, self.seen());
         sample.measures.clear();
         for (spring, row) in self.springs.iter().zip(sample.gradients.chunks_exact_mut(seen)) {
             if let Measure::Length = spring.measure {
@@ -324,7 +347,7 @@ impl<'a> SampledCell<'a> {
 
 impl Sums {
     pub fn of(count: usize) -> Sums {
-        Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0 }
+        Sums { normal: Normal::new(vec![0.0; count * count], vec![0.0; count]), square: 0.0, size: 0.0, reduced: 0 }
     }
 
     /// Adds `AᵀA` to M, `Aᵀ r` to b and `‖r‖²` for some equations, which are then removed.
@@ -351,6 +374,7 @@ impl Sums {
         add(&mut self.normal.rhs, &other.normal.rhs);
         self.square += other.square;
         self.size += other.size;
+        self.reduced += other.reduced;
     }
 
     /// `√(Σ w ‖r‖²/Σ w ‖f‖²)` after a step of the unknowns, for forces that are linear in them.

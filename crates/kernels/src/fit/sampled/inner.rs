@@ -7,7 +7,9 @@
 use super::block::Drawn;
 use super::cell::{SampledCell, Sums};
 use super::newton::{Descent, End};
-use super::shapes::{Numbers, Part};
+use super::numbers::Numbers;
+use super::sampling::Part;
+use super::starts::{StartEnd, distance, scales};
 use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
@@ -34,6 +36,8 @@ pub struct Search {
     pub converged: bool,
     /// The share of the starts that ended at the same error.
     pub agreeing: f64,
+    /// Where each start ended.
+    pub starts: Vec<StartEnd>,
 }
 
 /// Minimises from `starts` points within `bounds` of each unknown.
@@ -73,33 +77,52 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
         let (constants, parameters) = cell.written(&end.unknowns);
         end.is_finite() && constants.iter().chain(&parameters).all(|value| value.is_finite())
     };
-    let starts = found.len() as f64;
-    let rest = found.split_off(1);
-    let mut ends: Vec<(End, f64)> = found.into_iter().filter(is_sound).map(|end| (end, 1.0)).collect();
-    for (end, count) in distinct(rest.into_iter().filter(is_sound)) {
-        let end = if few.is_some() { descent.run(&all, end.unknowns, PROMISE)? } else { end };
-        ends.extend(is_sound(&end).then_some((end, count)));
-    }
-    let square = |(end, _): &(End, f64)| end.sums.sums.square;
-    let best = ends.iter().min_by(|a, b| square(a).total_cmp(&square(b))).ok_or_else(without_values)?;
-    let limit = (square(best).sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.0.sums.sums.size;
-    let agreeing = ends.iter().filter(|end| square(end) <= limit).map(|(_, count)| count).sum::<f64>() / starts;
-    let (best, _) = ends.into_iter().min_by(|a, b| square(a).total_cmp(&square(b))).ok_or_else(without_values)?;
-    Ok(Search { unknowns: best.unknowns, sums: best.sums.sums, converged: best.converged, agreeing })
-}
-
-/// The ends that differ in their error, with the number of those that each stands for.
-fn distinct(found: impl Iterator<Item = End>) -> Vec<(End, f64)> {
+    let starts = found.len();
+    let mut of_starts = vec![(None, 0); starts];
     let mut ends: Vec<(End, f64)> = Vec::new();
-    for end in found {
+    for (start, end) in found.into_iter().enumerate() {
+        of_starts[start].1 = end.steps;
+        if !is_sound(&end) {
+            continue;
+        }
         let square = end.sums.sums.square;
-        let same = |other: &End| (other.sums.sums.square - square).abs() <= EQUAL * square;
-        match ends.iter_mut().find(|(other, _)| same(other)) {
-            Some((_, count)) => *count += 1.0,
+        let same = |(other, _): &(End, f64)| (other.sums.sums.square - square).abs() <= EQUAL * square;
+        // The first start may be on other shapes than the rest.
+        let first = usize::from(start > 0 && of_starts[0].0.is_some());
+        let known = ends[first..].iter().position(same).map(|place| place + first);
+        match known {
+            Some(known) => ends[known].1 += 1.0,
             None => ends.push((end, 1.0)),
         }
+        of_starts[start].0 = Some(known.unwrap_or(ends.len() - 1));
     }
-    ends
+    // Those that the others stand for end on all shapes.
+    let first = usize::from(of_starts[0].0.is_some());
+    for (place, (end, _)) in ends.iter_mut().enumerate() {
+        if few.is_some() && place >= first {
+            *end = descent.run(&all, std::mem::take(&mut end.unknowns), PROMISE)?;
+            of_starts.iter_mut().filter(|(own, _)| *own == Some(place)).for_each(|(_, steps)| *steps += end.steps);
+        }
+    }
+    let square = |end: &End| if is_sound(end) { end.sums.sums.square } else { f64::INFINITY };
+    let best = ends.iter().map(|(end, _)| end).min_by(|a, b| square(a).total_cmp(&square(b)));
+    let best = best.filter(|end| is_sound(end)).ok_or_else(without_values)?;
+    let limit = (square(best).sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.sums.sums.size;
+    let is_best = |(end, _): &&(End, f64)| square(end) <= limit;
+    let agreeing = ends.iter().filter(is_best).map(|(_, count)| count).sum::<f64>() / starts as f64;
+    let scales = scales(cell, &best.unknowns);
+    let of_start = |(end, steps): (Option<usize>, usize)| match end.map(|place| &ends[place].0) {
+        Some(end) if is_sound(end) => StartEnd {
+            error: end.sums.sums.error(&vec![0.0; end.unknowns.len()]),
+            steps,
+            converged: end.converged,
+            distance: distance(&end.unknowns, &best.unknowns, &scales),
+        },
+        Some(_) | None => StartEnd { error: f64::NAN, steps, converged: false, distance: f64::NAN },
+    };
+    let starts = of_starts.into_iter().map(of_start).collect();
+    let (sums, converged, unknowns) = (best.sums.sums.clone(), best.converged, best.unknowns.clone());
+    Ok(Search { unknowns, sums, converged, agreeing, starts })
 }
 
 fn without_values() -> Error {

@@ -10,16 +10,30 @@
 
 mod block;
 mod cell;
+mod errors;
+mod family;
 mod inner;
 mod newton;
+mod numbers;
+mod objective;
+mod outcome;
 mod placed;
+mod quasi_newton;
+mod sampling;
+mod sets;
 mod settings;
 mod shapes;
+mod starts;
 
+pub use errors::{FamilyErrors, ShapeError};
+pub use family::DeformationFamily;
+pub use numbers::Design;
+pub use objective::{ResidualFunction, ResidualObjective};
+pub use outcome::{CellStart, SampledFits};
+pub use sampling::{Part, Sampling, Source};
 pub use settings::{SampledFit, Weights};
-pub use shapes::{DeformationFamily, Sampling, Source};
+pub use starts::StartEnd;
 
-use super::cells::CellFits;
 use super::congruence::Congruence;
 use super::constrained::solve_nonnegative;
 use super::input::check_cells;
@@ -32,35 +46,18 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::State;
 use crate::springs::{Force, Law, Springs};
 use crate::stiffness::Hyperelastic;
-use block::Drawn;
 use cell::{REST_RANGE, Sample, SampledCell};
+use objective::Residuals;
+use outcome::CellFit;
+use quasi_newton::Quadratic;
 use rayon::prelude::*;
-use shapes::{Part, Shapes};
+use shapes::Drawing;
 use std::sync::Arc;
 
 /// The number of consecutive cells that one thread fits.
 const CHUNK: usize = 8;
 /// The largest number of values that a norm other than the Euclidean one may store for a cell: half a gigabyte.
 const MOST_NUMBERS: usize = 1 << 26;
-
-/// The constants of all cells, and the errors at the shapes.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct SampledFits {
-    /// The constants and parameters.
-    pub fits: CellFits,
-    /// The number of shapes of the fit, that of the cell with the most.
-    pub shapes: usize,
-    /// `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` on the shapes of the fit, `[cells]`, with f the forces of the element and K those of
-    /// its springs.
-    pub trained: Vec<f64>,
-    /// The error `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` of the springs' forces K from those of the element, f, on the shapes that were held out,
-    /// `[cells]`; NaN if there are none.
-    pub held_out: Vec<f64>,
-    /// For laws that are not linear in their parameters: the share of the starts that ended at the best error, the
-    /// least over the cells.
-    pub agreeing: Option<f64>,
-}
 
 /// Fits every cell. `connectivity` is `[cells × nodes]` into `points`, `[points × dimension]`, m.
 ///
@@ -93,7 +90,7 @@ pub fn fit_sampled(
         return Err(Error::new(problem).of_kind(ErrorKind::Unsupported));
     }
     fit.force.check(springs.names.len())?;
-    fit.sampling.check_states(points.len())?;
+    fit.each_set(|sampling| sampling.check_states(points.len()))?;
     check_cells(element, points, connectivity)?;
     state.check(element.dimension())?;
     let n = element.nodes();
@@ -107,17 +104,16 @@ pub fn fit_sampled(
             let nodes = &connectivity[cell * n..(cell + 1) * n];
             let mut outcome = Ok(());
             each_cell(element, points, nodes, *cell, |_, x, geometry| {
-                let shapes = Shapes {
-                    sampling: &fit.sampling,
+                let drawing = Drawing {
                     rest: x,
-                    cells: alike.clone(),
+                    cells: alike,
                     points,
                     dimension: element.dimension(),
                     extent: geometry.content().powf(1.0 / element.dimension() as f64),
                     poisson: energy.poisson(),
                 };
-                let mut cell = SampledCell::new(element, springs, geometry, energy, state, fit, shapes);
-                match cell.fit() {
+                let mut found_by = SampledCell::new(element, springs, geometry, energy, state, fit, drawing);
+                match found_by.fit(*cell) {
                     Ok(one) => found.push(one),
                     Err(error) => outcome = Err(error),
                 }
@@ -135,37 +131,11 @@ pub fn fit_sampled(
         }
         progress(fitted.len() * cells / chosen.len());
     }
-    let mut all = SampledFits {
-        fits: CellFits::new(springs.clone()),
-        shapes: fitted.iter().map(|f| f.shapes).max().unwrap_or(0),
-        trained: Vec::new(),
-        held_out: Vec::new(),
-        agreeing: fitted.iter().filter_map(|f| f.agreeing).reduce(f64::min),
-    };
-    all.fits.unreached = fitted.iter().filter(|f| !f.converged).count();
-    all.fits.force = fit.force.clone();
-    all.fits.deficient = fitted.iter().filter(|f| f.rank == Rank::Deficient).count();
+    let mut all = SampledFits::new(springs, fit);
     all.fits.reused = cells - fitted.len();
-    for one in shapes.iter().map(|&shape| &fitted[shape]) {
-        all.fits.constants.extend(&one.constants);
-        all.fits.parameters.extend(&one.parameters);
-        all.trained.push(one.trained);
-        all.held_out.push(one.held_out);
-    }
+    fitted.iter().try_for_each(|one| all.count(one))?;
+    shapes.iter().for_each(|&shape| all.add(&fitted[shape]));
     Ok(all)
-}
-
-/// The outcome of one cell.
-#[derive(Default)]
-struct CellFit {
-    constants: Vec<f64>,
-    parameters: Vec<f64>,
-    rank: Rank,
-    converged: bool,
-    agreeing: Option<f64>,
-    shapes: usize,
-    trained: f64,
-    held_out: f64,
 }
 
 impl SampledFit {
@@ -212,11 +182,24 @@ impl SampledFit {
                 return Err(Error::expected(format!("bounds.{name}"), expected, found));
             }
         }
-        if self.norm != Norm::Two && (!self.is_direct() || !self.bounds.is_empty()) {
+        if (self.norm != Norm::Two || self.objective.is_some()) && (!self.is_direct() || !self.bounds.is_empty()) {
             let expected = "the 2-norm for a law with bounds or that is not linear in its parameters";
-            return Err(Error::expected("norm", expected, format!("{:?}", self.norm)));
+            let function = self.objective.as_ref().map(|objective| format!("the function \"{}\"", objective.name()));
+            return Err(Error::expected("norm", expected, function.unwrap_or_else(|| format!("{:?}", self.norm))));
         }
-        self.sampling.check(dimension)
+        self.each_set(|sampling| sampling.check(dimension))?;
+        if self.data && self.sets().all(|sampling| sampling.held_out == 0 && sampling.others.is_none()) {
+            return Err(Error::expected("held_out", "shapes whose errors are the data", "none"));
+        }
+        Ok(())
+    }
+
+    /// Checks each set; the key of an error begins with the number of the set if there are several.
+    fn each_set(&self, check: impl Fn(&Sampling) -> Result<()>) -> Result<()> {
+        let several = !self.beside.is_empty();
+        let named = |(i, error): (usize, Error)| if several { error.under(format!("[{i}]")) } else { error };
+        let check = |(i, sampling)| check(sampling).map_err(|error| named((i, error)));
+        self.sets().enumerate().try_for_each(check)
     }
 
     /// Whether the forces are linear in the unknowns.
@@ -226,24 +209,21 @@ impl SampledFit {
 }
 
 impl SampledCell<'_> {
-    fn fit(&mut self) -> Result<CellFit> {
+    fn fit(&mut self, cell: usize) -> Result<CellFit> {
         let (unknowns, found) = match &self.fit.force {
             Force::Laws(_) if !self.fit.is_direct() || !self.fit.bounds.is_empty() => self.iterated()?,
             // Functions are asked for many shapes at once there.
-            Force::Laws(_) if self.has_functions() && self.fit.norm == Norm::Two => self.iterated()?,
+            Force::Laws(_) if self.has_functions() && self.is_squared() => self.iterated()?,
             _ => self.direct()?,
         };
         for s in 0..self.len() {
             let own = self.of_spring(s, &unknowns);
             self.law(s).map_or(Ok(()), |law| law.check_linear(self.rest(s), own))?;
         }
-        let held_out = match (self.has_others(), self.has_functions()) {
-            (false, _) => f64::NAN,
-            (true, false) => self.sums(Part::HeldOut, &unknowns)?.error(&vec![0.0; self.count()]),
-            (true, true) => {
-                let shapes = Drawn::new(self, Part::HeldOut, (0..self.shapes(Part::HeldOut)).collect())?;
-                shapes.sums(&unknowns, &vec![false; self.count()])?.sums.error(&vec![0.0; self.count()])
-            }
+        let held_out = self.evaluate(Part::HeldOut, &unknowns, self.fit.data)?;
+        let mut errors = match self.fit.data {
+            true => self.evaluate(Part::Trained, &unknowns, true)?.shapes,
+            false => Vec::new(),
         };
         let (constants, parameters) = self.written(&unknowns);
         let finite = constants.iter().chain(&parameters).all(|k| k.is_finite());
@@ -251,7 +231,16 @@ impl SampledCell<'_> {
             let expected = "a law with finite values at the sampled shapes and a finite slope at rest";
             return Err(Error::expected("force", expected, "one without").of_kind(ErrorKind::Infeasible));
         }
-        Ok(CellFit { constants, parameters, shapes: self.shapes(Part::Trained), held_out, ..found })
+        let (shapes, held) = (self.shapes(Part::Trained), held_out.error());
+        errors.extend(held_out.shapes);
+        errors.iter_mut().for_each(|error| error.cell = cell);
+        let families = held_out.families;
+        Ok(CellFit { constants, parameters, cell, shapes, held_out: held, families, errors, ..found })
+    }
+
+    /// Whether the sum of squares is minimised.
+    fn is_squared(&self) -> bool {
+        self.fit.norm == Norm::Two && self.fit.objective.is_none()
     }
 
     fn has_functions(&self) -> bool {
@@ -260,22 +249,40 @@ impl SampledCell<'_> {
 
     fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
         let bounded = self.fit.nonnegative || self.fit.force == Force::FreeRest;
-        let in_norm = if self.fit.norm == Norm::Two { None } else { self.in_norm(bounded)? };
-        let in_its_norm = self.fit.norm == Norm::Two || in_norm.is_some();
         let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
-        let (unknowns, rank) = match in_norm {
-            Some(unknowns) => (unknowns, Rank::Full),
-            None if bounded => solve_nonnegative(&sums.normal),
-            None => sums.normal.solve(),
+        let squares = || if bounded { solve_nonnegative(&sums.normal) } else { sums.normal.solve() };
+        let (unknowns, rank, converged) = match &self.fit.objective {
+            _ if self.is_squared() => {
+                let (unknowns, rank) = squares();
+                (unknowns, rank, true)
+            }
+            Some(objective) => {
+                let (start, rank) = squares();
+                let (rows, rhs) = self.all_equations()?;
+                let shape = [self.shapes(Part::Trained), self.seen() / self.dimension(), self.dimension()];
+                let residuals = Residuals { rows: &rows, rhs: &rhs, shape };
+                let quadratic = Quadratic { gram: &sums.normal.gram, nonnegative: bounded };
+                let found = objective.minimize(&residuals, &quadratic, start)?;
+                (found.unknowns, rank, found.converged)
+            }
+            None => {
+                let (rows, rhs) = self.all_equations()?;
+                match solve_norm(&rows, &rhs, self.count(), self.fit.norm, bounded) {
+                    Some(unknowns) => (unknowns, Rank::Full, true),
+                    None => {
+                        let (unknowns, rank) = squares();
+                        (unknowns, rank, false)
+                    }
+                }
+            }
         };
         let trained = sums.error(&unknowns);
-        let converged = in_its_norm && rank != Rank::Unsolved;
-        Ok((unknowns, CellFit { rank, converged, trained, ..CellFit::default() }))
+        let converged = converged && rank != Rank::Unsolved;
+        Ok((unknowns, CellFit { rank, converged, trained, reduced: sums.reduced, ..CellFit::default() }))
     }
 
-    /// The unknowns with the least residual forces in a norm that normal equations cannot express. All shapes are
-    /// stored.
-    fn in_norm(&self, bounded: bool) -> Result<Option<Vec<f64>>> {
+    /// The equations of all shapes of the fit, for objectives that normal equations cannot express.
+    fn all_equations(&self) -> Result<(Vec<f64>, Vec<f64>)> {
         let (shapes, count, seen) = (self.shapes(Part::Trained), self.count(), self.seen());
         if shapes.saturating_mul(seen).saturating_mul(count) > MOST_NUMBERS {
             let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (seen * count));
@@ -287,7 +294,7 @@ impl SampledCell<'_> {
             self.sample(&placed, &mut sample)?;
             self.equations(&sample, &vec![0.0; count], &mut rows, &mut rhs);
         }
-        Ok(solve_norm(&rows, &rhs, count, self.fit.norm, bounded))
+        Ok((rows, rhs))
     }
 
     fn iterated(&mut self) -> Result<(Vec<f64>, CellFit)> {
@@ -301,7 +308,8 @@ impl SampledCell<'_> {
         let found = inner::search(self, starts, &bounds)?;
         let trained = found.sums.error(&vec![0.0; self.count()]);
         let agreeing = Some(found.agreeing);
-        let rest = CellFit { trained, converged: found.converged, agreeing, ..CellFit::default() };
+        let (converged, starts, reduced) = (found.converged, found.starts, found.sums.reduced);
+        let rest = CellFit { trained, converged, agreeing, starts, reduced, ..CellFit::default() };
         Ok((found.unknowns, rest))
     }
 

@@ -37,6 +37,8 @@ pub struct End {
     pub unknowns: Vec<f64>,
     pub sums: Curved,
     pub converged: bool,
+    /// The number of steps that were tried.
+    pub steps: usize,
 }
 
 impl End {
@@ -57,7 +59,8 @@ impl Descent<'_> {
     pub fn run(&self, shapes: &Drawn, unknowns: Vec<f64>, promised: f64) -> Result<End> {
         let mut end = self.at(shapes, unknowns)?;
         let mut damping = 1e-3;
-        for _ in 0..STEPS {
+        for steps in 0..STEPS {
+            end.steps = steps;
             let sums = &end.sums.sums;
             if !end.is_finite() {
                 return Ok(end);
@@ -80,6 +83,7 @@ impl Descent<'_> {
             let gain = (sums.square - after.sums.sums.square) / promise;
             if gain > 1e-4 && after.is_finite() {
                 end = after;
+                end.steps = steps + 1;
                 damping *= if gain > 0.75 { 0.1 } else { 1.0 };
                 damping = if damping < SLIGHTEST { 0.0 } else { damping };
             } else if slight {
@@ -99,7 +103,7 @@ impl Descent<'_> {
     fn at(&self, shapes: &Drawn, mut unknowns: Vec<f64>) -> Result<End> {
         self.eliminate(shapes, &mut unknowns, self.eliminated, self.nonnegative)?;
         let sums = shapes.sums(&unknowns, &vec![true; unknowns.len()])?;
-        Ok(End { unknowns, sums, converged: false })
+        Ok(End { unknowns, sums, converged: false, steps: 0 })
     }
 
     /// Sets the unknowns of `outer`, in which the forces are linear, to those of least squares. If these are not known,

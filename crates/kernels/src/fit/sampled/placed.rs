@@ -1,6 +1,7 @@
 //! The shapes of a cell with the forces of the material, many at once, so that an energy that is a function is called seldom.
 
-use super::shapes::{Part, Shapes};
+use super::sampling::FLATTEST;
+use super::sets::{Place, Sets};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::State;
 use crate::stiffness::{Geometry, Hyperelastic};
@@ -18,41 +19,54 @@ pub struct Placed {
     pub x: Vec<f64>,
     /// The forces of the material, `[nodes × dimension]`, N.
     pub force: Vec<f64>,
+    /// By what the weight of the shape is multiplied.
+    pub share: f64,
+    /// Whether it has less of its deformation than was drawn.
+    pub is_reduced: bool,
 }
 
 /// What gives the shapes of a cell their forces.
-pub struct ShapeForces<'a> {
-    pub shapes: &'a Shapes<'a>,
+pub struct ShapeForces<'s, 'a> {
+    pub sets: &'s Sets<'a>,
     pub geometry: &'a Geometry,
     pub energy: &'a dyn Hyperelastic,
     pub state: State,
 }
 
-impl ShapeForces<'_> {
-    /// The shapes with these indices, each with less of its deformation if it would invert the cell, and the forces of the material.
+impl ShapeForces<'_, '_> {
+    /// The shapes with these numbers, and the forces of the material. A shape of a family has less of its deformation if it would invert
+    /// the cell, one of a list less of the displacements of its nodes.
     ///
     /// # Errors
-    /// A shape is inverted however small its deformation is made, or the energy has failed.
-    pub fn at(&self, part: Part, indices: &[usize]) -> Result<Vec<Placed>> {
-        let size = self.shapes.rest.len();
-        let mut all = vec![Placed::default(); indices.len()];
-        let mut waiting: Vec<usize> = (0..indices.len()).collect();
+    /// A shape of a list is flat or inverted, or has no forces; one of a family is inverted however small its deformation is made; or the
+    /// energy has failed.
+    pub fn at(&self, numbers: &[usize]) -> Result<Vec<Placed>> {
+        let places: Vec<Place> = numbers.iter().map(|&number| self.sets.at(number)).collect();
+        let mut all = vec![Placed::default(); numbers.len()];
+        let mut limits = vec![FLAT; numbers.len()];
+        let mut waiting: Vec<usize> = (0..numbers.len()).collect();
         for halvings in 0..HALVINGS {
             let (mut f, mut left, mut asked) = (Vec::new(), Vec::new(), Vec::new());
-            for &place in &waiting {
-                let x = self.shapes.place(part, indices[place], 0.5f64.powi(halvings));
+            for &i in &waiting {
+                let Place { shapes, index, .. } = places[i];
+                let x = shapes.place(index, 0.5f64.powi(halvings));
                 let first = f.len();
-                match self.geometry.deformations(&x, FLAT, &mut f) {
-                    true => asked.push((place, first..f.len(), x)),
-                    false => left.push(place),
+                let mut is_upright = self.geometry.deformations(&x, limits[i], &mut f);
+                if !is_upright && shapes.are_listed() && limits[i] == FLAT {
+                    limits[i] = self.limit(&places[i])?;
+                    is_upright = self.geometry.deformations(&x, limits[i], &mut f);
+                }
+                match is_upright {
+                    true => asked.push((i, first..f.len(), x)),
+                    false => left.push(i),
                 }
             }
             self.energy.stresses(self.state, &mut f)?;
-            for (place, points, x) in asked {
-                let mut force = vec![0.0; size];
+            for (i, points, x) in asked {
+                let mut force = vec![0.0; x.len()];
                 match self.geometry.forces_of(&f[points], self.state, &mut force) {
-                    true => all[place] = Placed { x, force },
-                    false => left.push(place),
+                    true => all[i] = Placed { x, force, share: places[i].share, is_reduced: halvings > 0 },
+                    false => left.push(i),
                 }
             }
             if left.is_empty() {
@@ -60,7 +74,27 @@ impl ShapeForces<'_> {
             }
             waiting = left;
         }
+        let Place { shapes, index, .. } = places[waiting[0]];
+        if shapes.are_listed() {
+            let ((key, cell), expected) = (shapes.named(index), "a shape at which the energy has finite forces");
+            return Err(Error::expected(key, expected, format!("none{cell}")).of_kind(ErrorKind::Infeasible));
+        }
         let problem = "the sampled shapes are turned inside out: expected a smaller stretch";
         Err(Error::new(problem).of_kind(ErrorKind::Infeasible))
+    }
+
+    /// The least det F of a shape of a list with displacements of its nodes: half of what it has without them.
+    ///
+    /// # Errors
+    /// Without them it is flat or inverted.
+    fn limit(&self, place: &Place) -> Result<f64> {
+        let least = self.geometry.least_determinant(&place.shapes.place(place.index, 0.0));
+        if !(least >= FLATTEST) {
+            let expected = format!("a shape that is neither flat nor inverted, with det F of at least {FLATTEST}");
+            let (key, cell) = place.shapes.named(place.index);
+            let error = Error::expected(key, expected, format!("det F = {least:.4}{cell}"));
+            return Err(error.of_kind(ErrorKind::Infeasible));
+        }
+        Ok((0.5 * least).min(FLAT))
     }
 }

@@ -1,6 +1,7 @@
 //! The settings of a fit to forces.
 
-use super::shapes::Sampling;
+use super::objective::ResidualObjective;
+use super::sampling::Sampling;
 use crate::fit::norms::Norm;
 use crate::springs::Force;
 
@@ -21,6 +22,8 @@ crate::named!(Weights { "none" => Alike, "relative" => Relative });
 pub struct SampledFit {
     /// The deformed shapes.
     pub sampling: Sampling,
+    /// Further sets of shapes. Each set counts by its weight, however many shapes it has.
+    pub beside: Vec<Sampling>,
     /// The force law of the springs.
     pub force: Force,
     /// The weights of the shapes.
@@ -34,24 +37,38 @@ pub struct SampledFit {
     pub nonnegative: bool,
     /// The norm of the residual forces. Laws that are not linear in their parameters allow only `Norm::Two`.
     pub norm: Norm,
+    /// What is minimised in place of a norm of the residual forces, for laws that are linear in their parameters.
+    pub objective: Option<ResidualObjective>,
     /// Lower and upper bounds of parameters of the laws, by name.
     pub bounds: Vec<(String, [f64; 2])>,
     /// The number of starts of the search, for laws that are not linear in their parameters.
     pub starts: usize,
+    /// Whether the error of each shape and the end of each start are kept, of one cell of each shape.
+    pub data: bool,
+}
+
+impl SampledFit {
+    /// All sets of shapes.
+    pub fn sets(&self) -> impl Iterator<Item = &Sampling> {
+        std::iter::once(&self.sampling).chain(&self.beside)
+    }
 }
 
 impl Default for SampledFit {
     fn default() -> SampledFit {
         SampledFit {
             sampling: Sampling::default(),
+            beside: Vec::new(),
             force: Force::Linear,
             weights: Weights::Alike,
             higher: 1.0,
             tied: false,
             nonnegative: false,
             norm: Norm::Two,
+            objective: None,
             bounds: Vec::new(),
             starts: 4,
+            data: false,
         }
     }
 }

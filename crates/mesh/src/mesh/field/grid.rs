@@ -16,8 +16,16 @@ const NAMES: [&str; 4] = ["displacement", "displacements", "u", "disp"];
 pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Reading) -> Result<()> {
     pieces.retain(|piece| !piece.points.is_empty());
     let name = name_of_array(&pieces, array)?;
+    read_array(&pieces, name, reading)
+}
+
+/// Reads the point array with this name.
+///
+/// # Errors
+/// Those of [`read`].
+pub(super) fn read_array(pieces: &[Piece], name: &str, reading: &mut Reading) -> Result<()> {
     let mut first = 0;
-    for piece in &pieces {
+    for piece in pieces.iter().filter(|piece| !piece.points.is_empty()) {
         let named = piece.point_arrays.iter().find(|array| array.name == name);
         let vectors = named.and_then(|array| Some((array.components as usize, array.vectors()?)));
         let Some((components, vectors)) = vectors.filter(|(n, values)| values.len() == n * piece.points.len()) else {
@@ -32,6 +40,33 @@ pub(super) fn read(mut pieces: Vec<Piece>, array: Option<&str>, reading: &mut Re
         first += piece.points.len();
     }
     Ok(())
+}
+
+/// The names of all point arrays that can hold displacements.
+pub(super) fn names(pieces: &[Piece]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for array in pieces.iter().flat_map(|piece| &piece.point_arrays) {
+        let is_normals = array.name.eq_ignore_ascii_case("normals");
+        if array.components == 3 && array.vectors().is_some() && !is_normals && !names.contains(&array.name) {
+            names.push(array.name.clone());
+        }
+    }
+    names
+}
+
+/// Takes the displacements of an array from the points, and returns where they were.
+pub(super) fn moved_back(pieces: &mut [Piece], name: &str) -> Vec<Vec<[f64; 3]>> {
+    let back = |piece: &mut Piece| {
+        let points = piece.points.clone();
+        let named = piece.point_arrays.iter().find(|array| array.name == name);
+        if let Some(vectors) = named.and_then(DataArray::vectors) {
+            for (x, u) in piece.points.iter_mut().zip(vectors.as_chunks::<3>().0) {
+                x.iter_mut().zip(u).for_each(|(x, u)| *x -= u);
+            }
+        }
+        points
+    };
+    pieces.iter_mut().map(back).collect()
 }
 
 /// `number` is the number of the point in the file, from 0.

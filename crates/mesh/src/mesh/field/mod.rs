@@ -10,8 +10,10 @@ mod raw;
 mod reading;
 mod rows;
 mod samples;
+mod states;
 mod table;
 
 pub use displacements::Field;
 pub use raw::Holder;
 pub use samples::{Accepted, Interpolation, SampleReading, Samples};
+pub use states::NamedState;

@@ -24,6 +24,16 @@ impl Reading<'_> {
         Reading { mesh, scale, locator: Locator::new(mesh), displacements: vec![None; mesh.points.len()], places }
     }
 
+    /// The displacements that `read` reads, which may all be zero.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn of(mesh: &Mesh, scale: f64, read: impl FnOnce(&mut Reading) -> Result<()>) -> Result<Vec<Option<f64>>> {
+        let mut reading = Reading::new(mesh, scale);
+        read(&mut reading)?;
+        Ok(reading.displacements)
+    }
+
     /// A length of the file in m; `None` if it is not measured.
     pub fn length(&self, value: f64) -> Result<Option<f64>> {
         let length = value * self.scale;

@@ -83,7 +83,7 @@ impl LargeBody {
         let states: Vec<Vec<f64>> = named.flat_map(|(_, path)| path).map(|u| displaced(&mesh.points, u)).collect();
         if states.is_empty() && !loads.is_empty() {
             let expected = "loads that the finite elements reach in part at least";
-            return Err(Error::expected("shapes.loads", expected, format!("none of {}", loads.join(", "))));
+            return Err(Error::expected("loads", expected, format!("none of {}", loads.join(", "))));
         }
         Ok(states)
     }

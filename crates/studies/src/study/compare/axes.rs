@@ -8,17 +8,21 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Keys whose value is a list, as paths in a fit: with a list of lists each inner one is a value.
-const LISTS: [&str; 9] = [
-    "springs",
-    "loads",
-    "validate",
-    "supports",
-    "validate_supports",
-    "other_supports",
-    "shapes.families",
-    "shapes.loads",
-    "shapes.stretch",
+/// Keys whose value is a list, as paths in a fit, and how deep its lists are: a list that is deeper has several values.
+const LISTS: [(&str, usize); 13] = [
+    ("springs", 1),
+    ("loads", 1),
+    ("validate", 1),
+    ("supports", 1),
+    ("validate_supports", 1),
+    ("other_supports", 1),
+    ("shapes", 1),
+    ("shapes.families", 1),
+    ("shapes.loads", 1),
+    ("shapes.states", 1),
+    ("shapes.stretch", 1),
+    ("shapes.directions", 2),
+    ("shapes.gradients", 2),
 ];
 /// Tables whose keys may have lists as well.
 const TABLES: [&str; 1] = ["shapes"];
@@ -138,12 +142,17 @@ fn combinations(entry: &Table) -> Result<Vec<Combination>> {
 /// The values that a key has in turn; `None` where it has one.
 fn choices(key: &str, value: &Value) -> Result<Option<Vec<Value>>> {
     let Value::Array(list) = value else { return Ok(None) };
-    let is_list = |value: &Value| value.is_array() || key == "springs" && is_choice_of_groups(value);
-    match (LISTS.contains(&key), list.iter().all(is_list)) {
-        _ if list.is_empty() => Err(Error::expected(key, "at least one value", "an empty list")),
-        (true, false) => Ok(None),
-        (true, true) | (false, _) => Ok(Some(list.clone())),
+    if list.is_empty() {
+        return Err(Error::expected(key, "at least one value", "an empty list"));
     }
+    let own = LISTS.iter().find(|(known, _)| *known == key).map_or(0, |(_, depth)| *depth);
+    let has_words = key == "springs" && list.iter().all(is_choice_of_groups);
+    Ok((depth(value) > own || has_words).then(|| list.clone()))
+}
+
+/// How deep the lists of a value are: 0 for a number.
+fn depth(value: &Value) -> usize {
+    value.as_array().map_or(0, |list| 1 + list.iter().map(depth).max().unwrap_or(0))
 }
 
 /// Whether a text stands for several groups of any element, and not for one group.

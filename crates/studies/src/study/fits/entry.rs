@@ -228,7 +228,8 @@ impl FitEntry {
         let own = |key: &str| {
             let from_sampled = kind == Kind::Whole && self.starts_from_sampled();
             // Whole-object fits share constants by "unknowns".
-            kind.keys().contains(&key) || from_sampled && key != "tied" && Kind::Sampled.keys().contains(&key)
+            kind.keys().contains(&key)
+                || from_sampled && !["tied", "data"].contains(&key) && Kind::Sampled.keys().contains(&key)
         };
         let Some(key) = self.keys.keys().find(|key| !own(key)) else { return Ok(()) };
         let objectives: Vec<&str> = owners(key).flat_map(Kind::objectives).collect();

@@ -23,7 +23,10 @@ pub use named::NamedFit;
 pub use published::{PublishedOutcome, PublishedRecord};
 pub use recipe::Recipe;
 pub use record::KindRecord;
-pub use sampled::{FitFunctions, ForceRecipe, SampledOutcome, SampledRecipe, SampledRecord, law_at};
+pub use sampled::{
+    FamilyOutcome, FitFunctions, ForceRecipe, SampledOutcome, SampledRecipe, SampledRecord, SetStates, ShapeOrigin,
+    ShapesRecord, StartOutcome, WorstShape, law_at,
+};
 pub use schema::fit_schema;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome};
 pub use whole::{

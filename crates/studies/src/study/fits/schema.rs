@@ -33,6 +33,7 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
         // It may start from a sampled fit.
         properties.extend(keys::<SampledEntry>(generator));
         properties.remove("tied");
+        properties.remove("data");
         properties.values_mut().for_each(|key| key["x-of"] = Kind::Sampled.name().into());
     }
     properties.extend(match kind {

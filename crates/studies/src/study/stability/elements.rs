@@ -2,13 +2,13 @@
 
 use super::outcome::{StabilityRow, Verdict, worst};
 use super::shapes::{ShapeCase, shape_cases};
-use crate::analysis::random::Random;
 use crate::element::Element;
 use crate::error::Result;
 use crate::fit::{
     CellFits, ExactFit, Fit, Objective, Weight, bounded_constants, condition, distance_from_optimum,
     double_double_constants, exact_double_double_constants, fit_cells, fit_element, fit_exact, single_constants,
 };
+use crate::random::Random;
 use crate::scalar::{DoubleDouble, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;

@@ -1,10 +1,9 @@
 //! Which combinations of values are studies.
 
 use super::range::Values;
-use super::sobol::{DIMENSIONS, Sobol};
-use crate::analysis::random::Random;
 use crate::bound::{self, check_count};
 use crate::error::{Error, ErrorKind, Result};
+use crate::random::{DIMENSIONS, Random, Sobol};
 use crate::study::scene::Setting;
 use schemars::JsonSchema;
 use serde::Deserialize;

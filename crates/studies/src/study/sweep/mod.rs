@@ -4,7 +4,6 @@ mod design;
 mod entry;
 mod range;
 mod run;
-mod sobol;
 mod studies;
 
 pub use entry::SweepEntry;

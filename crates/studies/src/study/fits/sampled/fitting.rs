@@ -1,9 +1,9 @@
 //! Computes fits to the forces at sampled shapes.
 
-use super::entry::of_shapes;
 use super::outcome::SampledOutcome;
 use super::recipe::SampledRecipe;
 use super::record::SampledRecord;
+use super::shapes_check::of_shapes;
 use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{SampledFits, fit_sampled};
@@ -16,7 +16,6 @@ use crate::study::fits::kind::{FitKind, Task};
 use crate::study::fits::record::KindRecord;
 use crate::study::progress::Progress;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 impl FitKind for SampledRecipe {
     fn title(&self, groups: &str) -> String {
@@ -67,7 +66,7 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
     let own = own.map_err(|e| e.placed(|e| Error::at("law", e.problem())))?.map(LargeBody::at_rest);
     let expected = "the energy whose forces are sampled";
     let large = own.as_ref().or(task.reference.large).ok_or_else(|| Error::expected("law", expected, "none"))?;
-    let states = Arc::new(large.states(mesh, &recipe.loads)?);
+    let states = recipe.states(mesh, Some(large))?;
     check_groups(recipe, task)?;
     task.each_block(progress, |index, block, springs, progress| {
         let fit = recipe.resolve(&block.element, springs, &states)?;
@@ -88,7 +87,9 @@ pub fn fit_shapes(recipe: &SampledRecipe, task: &Task, progress: &mut Progress) 
             let connectivity: Vec<usize> = cells.iter().flat_map(|cell| block.cell(*cell)).copied().collect();
             let (element, points) = (&block.element, &mesh.points);
             let found = fit_sampled(element, springs, points, &connectivity, energy, state, &fit, progress);
-            let found = found.map_err(of_shapes)?;
+            let mut found = found.map_err(of_shapes)?;
+            found.errors.iter_mut().for_each(|error| error.cell = cells[error.cell]);
+            found.starts.iter_mut().for_each(|start| start.cell = cells[start.cell]);
             regions.push((cells, found));
         }
         Ok(joined(regions))
@@ -105,17 +106,14 @@ fn fit_function(
     task: &Task,
     progress: &mut Progress,
 ) -> Result<Vec<SampledFits>> {
-    if !recipe.loads.is_empty() {
-        let expected = "a law as an expression: a function is not solved under loads";
-        return Err(Error::expected("shapes.loads", expected, "a function").of_kind(ErrorKind::Unsupported));
-    }
+    let states = recipe.states(task.mesh, None)?;
     let Some(material) = task.material.uniform() else {
         let expected = "one material of all cells for an energy that is a function";
         return Err(Error::expected("law", expected, "several").of_kind(ErrorKind::Unsupported));
     };
     check_groups(recipe, task)?;
     task.each_block(progress, |_, block, springs, progress| {
-        let fit = recipe.resolve(&block.element, springs, &Arc::default())?;
+        let fit = recipe.resolve(&block.element, springs, &states)?;
         let points = &task.mesh.points;
         fit_sampled(&block.element, springs, points, &block.connectivity, energy, material.state(), &fit, progress)
             .map_err(of_shapes)
@@ -160,33 +158,7 @@ fn joined(mut regions: Vec<(Vec<usize>, SampledFits)>) -> SampledFits {
         return all;
     }
     let count = cells.len() + regions.iter().map(|(cells, _)| cells.len()).sum::<usize>();
-    let width = |values: &[f64]| values.len() / cells.len();
-    let [m, p] = [width(&all.fits.constants), width(&all.fits.parameters)];
-    let own = all.clone();
-    for (values, width) in
-        [(&mut all.fits.constants, m), (&mut all.fits.parameters, p), (&mut all.trained, 1), (&mut all.held_out, 1)]
-    {
-        *values = vec![0.0; count * width];
-    }
-    regions.insert(0, (cells, own));
-    for (i, (cells, found)) in regions.iter().enumerate() {
-        for (to, from, width) in [
-            (&mut all.fits.constants, &found.fits.constants, m),
-            (&mut all.fits.parameters, &found.fits.parameters, p),
-            (&mut all.trained, &found.trained, 1),
-            (&mut all.held_out, &found.held_out, 1),
-        ] {
-            for (place, &cell) in cells.iter().enumerate() {
-                to[cell * width..(cell + 1) * width].copy_from_slice(&from[place * width..(place + 1) * width]);
-            }
-        }
-        if i > 0 {
-            all.shapes = all.shapes.max(found.shapes);
-            all.fits.deficient += found.fits.deficient;
-            all.fits.unreached += found.fits.unreached;
-            all.fits.reused += found.fits.reused;
-            all.agreeing = all.agreeing.into_iter().chain(found.agreeing).reduce(f64::min);
-        }
-    }
+    all.spread(&cells, count);
+    regions.into_iter().for_each(|(cells, found)| all.join(&cells, found));
     all
 }

@@ -2,6 +2,7 @@
 
 use super::force::ForceRecipe;
 use crate::error::{Error, Result};
+use crate::fit::ResidualObjective;
 use crate::springs::Law;
 use crate::stiffness::EnergyFunction;
 
@@ -14,6 +15,8 @@ pub struct FitFunctions {
     pub groups: Vec<(String, Law)>,
     /// The law of force of all springs, in place of the key `force`.
     pub force: Option<Law>,
+    /// What is minimised, in place of the key `norm`.
+    pub norm: Option<ResidualObjective>,
 }
 
 impl FitFunctions {
@@ -22,7 +25,7 @@ impl FitFunctions {
         match (&self.energy, self.force.is_some() || !self.groups.is_empty()) {
             (Some(_), _) => Some("law"),
             (None, true) => Some("force"),
-            (None, false) => None,
+            (None, false) => self.norm.is_some().then_some("norm"),
         }
     }
 

@@ -1,7 +1,8 @@
 //! The errors of a sampled fit.
 
 use super::recipe::SampledRecipe;
-use crate::fit::{SampledFits, Spread};
+use crate::fit::{CellStart, SampledFits, ShapeError, Spread};
+use crate::number::or_nan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct SampledOutcome {
     /// The springs are fitted to this number of shapes, those of the element with the most.
     pub shapes: usize,
-    /// The shapes of a list of gradients that may be fitted; `None` if they are not from a list.
+    /// The shapes of a list of gradients that may be fitted; `None` if they are not from one list.
     #[serde(skip)]
     pub listed: Option<usize>,
     /// The forces have these relative errors on the shapes of the fit: `√(Σ w ‖f − K‖²/Σ w ‖f‖²)` with the weights w of the fit, so that
@@ -23,6 +24,70 @@ pub struct SampledOutcome {
     pub agreeing: Option<f64>,
     /// The shapes of these loads of the scene were sampled; errors under them are not held out.
     pub loads: Vec<String>,
+    /// In the element with the most, this number of shapes has less of its deformation than was drawn, as it would have turned the element
+    /// inside out.
+    pub reduced: usize,
+    /// In this number of elements the springs have no finite force at a shape that is held out; then `held_out` is null.
+    pub infinite: usize,
+    /// Each entry has the errors on the shapes of a family that were held out, of the elements where they are finite.
+    pub families: Vec<FamilyOutcome>,
+    /// Each entry has the end of a start in the element in which the fewest agree, the first 16; the list is empty with a single start.
+    pub starts: Vec<StartOutcome>,
+    /// Each entry has one of the 8 shapes with the largest errors, if `data` are asked for. The table `shapes-NAME.csv` has all.
+    pub worst: Vec<WorstShape>,
+    /// The error of each shape by block of cells, if the data are asked for.
+    #[serde(skip)]
+    pub errors: Vec<Vec<ShapeError>>,
+    /// The end of each start by block of cells, if the data are asked for.
+    #[serde(skip)]
+    pub ends: Vec<Vec<CellStart>>,
+}
+
+/// The errors on the shapes of a family that were held out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FamilyOutcome {
+    /// The family has this name; it is `listed` of a list of gradients, and `states` of states of the body.
+    pub family: String,
+    /// This number of its shapes is held out, that of the element with the most.
+    pub shapes: usize,
+    /// The forces have these relative errors on them.
+    pub held_out: Spread,
+}
+
+/// The end of a start of the search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StartOutcome {
+    /// The forces have this relative error at the end; it is null where the law has no value.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
+    pub error: f64,
+    /// The search took this number of steps.
+    pub steps: usize,
+    /// The search has converged.
+    pub converged: bool,
+    /// A parameter differs by this much from that of the best start, at most, relative to its largest value in the group of springs.
+    #[serde(deserialize_with = "or_nan")]
+    #[schemars(with = "Option<f64>")]
+    pub distance: f64,
+}
+
+/// A shape with a large error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WorstShape {
+    /// The block of cells has this number, from 0.
+    pub block: usize,
+    /// The cell has this number in its block, from 0.
+    pub cell: usize,
+    /// The shape is `trained` or `held-out`.
+    pub part: String,
+    /// The shape is of this family, `listed` or one of the `states`.
+    pub family: String,
+    /// The shape has this number in its set, from 0.
+    pub shape: usize,
+    /// The least det F over the quadrature points has this value.
+    pub content: f64,
+    /// The force has this relative error.
+    pub error: f64,
 }
 
 impl SampledOutcome {
@@ -34,13 +99,85 @@ impl SampledOutcome {
         let held_out = apart.then(|| spread(|f| &f.held_out));
         SampledOutcome {
             shapes: found.iter().map(|found| found.shapes).max().unwrap_or(0),
-            listed: recipe.fit.sampling.listed(dimension).map(|[own, _]| own),
+            listed: match &recipe.fit.beside[..] {
+                [] => recipe.fit.sampling.listed(dimension).map(|[own, _]| own),
+                [..] => None,
+            },
             trained: spread(|f| &f.trained),
             held_out,
             agreeing: found.iter().filter_map(|f| f.agreeing).reduce(f64::min),
-            loads: recipe.loads.clone(),
+            loads: recipe.loads(),
+            reduced: found.iter().map(|found| found.reduced).max().unwrap_or(0),
+            infinite: found.iter().flat_map(|f| &f.held_out).filter(|error| error.is_infinite()).count(),
+            families: families(found),
+            starts: starts(found),
+            worst: worst(found),
+            errors: if recipe.fit.data { found.iter().map(|found| found.errors.clone()).collect() } else { Vec::new() },
+            ends: if recipe.fit.data { found.iter().map(|found| found.starts.clone()).collect() } else { Vec::new() },
         }
     }
+}
+
+/// The largest number of starts in a report.
+const STARTS: usize = 16;
+/// The largest number of single shapes in a report.
+const WORST: usize = 8;
+
+fn families(found: &[SampledFits]) -> Vec<FamilyOutcome> {
+    let mut all: Vec<(&str, usize, Vec<f64>)> = Vec::new();
+    for family in found.iter().flat_map(|found| &found.families) {
+        let errors = family.errors.iter().copied().filter(|error| error.is_finite());
+        match all.iter_mut().find(|(name, ..)| *name == family.family) {
+            Some((_, shapes, known)) => {
+                *shapes = family.shapes.max(*shapes);
+                known.extend(errors);
+            }
+            None => all.push((family.family, family.shapes, errors.collect())),
+        }
+    }
+    let outcome = |(family, shapes, errors): (&str, usize, Vec<f64>)| FamilyOutcome {
+        family: family.into(),
+        shapes,
+        held_out: Spread::of(&errors),
+    };
+    all.into_iter().map(outcome).collect()
+}
+
+/// The starts of the cell in which the fewest agree.
+fn starts(found: &[SampledFits]) -> Vec<StartOutcome> {
+    let least = found.iter().min_by(|a, b| a.agreeing.unwrap_or(1.0).total_cmp(&b.agreeing.unwrap_or(1.0)));
+    let all = least.map_or(&[][..], |found| &found.starts);
+    let cells = all.chunk_by(|a, b| a.cell == b.cell);
+    // Of the starts that have values, as many as reached the least error agree.
+    let agreeing = |starts: &&[CellStart]| {
+        let errors = || starts.iter().map(|start| start.end.error);
+        let best = errors().fold(f64::INFINITY, f64::min);
+        errors().filter(|error| *error <= best * (1.0 + 1e-3)).count()
+    };
+    let worst = cells.min_by_key(agreeing).filter(|starts| starts.len() > 1).unwrap_or_default();
+    let start = |start: &CellStart| StartOutcome {
+        error: start.end.error,
+        steps: start.end.steps,
+        converged: start.end.converged,
+        distance: start.end.distance,
+    };
+    worst.iter().take(STARTS).map(start).collect()
+}
+
+fn worst(found: &[SampledFits]) -> Vec<WorstShape> {
+    let all = found.iter().enumerate().flat_map(|(block, found)| found.errors.iter().map(move |error| (block, error)));
+    let mut all: Vec<(usize, &ShapeError)> = all.collect();
+    all.sort_by(|(_, a), (_, b)| b.error.total_cmp(&a.error));
+    let shape = |(block, error): (usize, &ShapeError)| WorstShape {
+        block,
+        cell: error.cell,
+        part: error.part.name().into(),
+        family: error.family.into(),
+        shape: error.shape,
+        content: error.content,
+        error: error.error,
+    };
+    all.into_iter().take(WORST).map(shape).collect()
 }
 
 /// A fit with a larger relative error than this does not describe the body.
@@ -77,6 +214,18 @@ impl SampledOutcome {
             let shapes = self.shapes;
             format!("fitted to the first {shapes} of the {listed} shapes of the list that are not held out: all are taken without count")
         });
-        unexplained.into_iter().chain(left_out).chain(loads).chain(agreeing).collect()
+        let reduced = (self.reduced > 0).then(|| {
+            let (reduced, shapes) = (self.reduced, self.shapes);
+            format!(
+                "{reduced} of the {shapes} shapes of an element would have turned it inside out, and have half of their deformation or less"
+            )
+        });
+        let infinite = (self.infinite > 0).then(|| {
+            format!(
+                "in {} of the elements the springs have no finite force at shapes that are held out: their law of force grows beyond all bounds",
+                self.infinite
+            )
+        });
+        unexplained.into_iter().chain(infinite).chain(left_out).chain(loads).chain(agreeing).chain(reduced).collect()
     }
 }

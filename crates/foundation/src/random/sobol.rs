@@ -3,7 +3,7 @@
 //! The direction numbers are those of S. Joe and F. Y. Kuo, *Constructing Sobol sequences with better two-dimensional projections*,
 //! SIAM J. Sci. Comput. 30 (2008), which SciPy and many other programs have.
 
-use crate::analysis::random::Random;
+use super::Random;
 
 /// Bits of a coordinate, and the binary logarithm of the length of the sequence.
 const BITS: usize = 32;
@@ -45,10 +45,11 @@ const ROWS: [(u32, &[u32]); 31] = [
     (0b11010101, &[1, 3, 7, 3, 13, 59, 17]),
 ];
 
-/// The points of a sequence one after the other, each in [0, 1)ᵈ.
+/// The points of a sequence, each in [0, 1)ᵈ.
+#[derive(Debug, Clone)]
 pub struct Sobol {
     directions: Vec<[u32; BITS]>,
-    point: Vec<u32>,
+    shift: Vec<u32>,
     count: u32,
 }
 
@@ -59,19 +60,26 @@ impl Sobol {
         let mut random = seed.map(Random::new);
         let mut shift = |_| random.as_mut().map_or(0, |random| (random.unit() * 2f64.powi(BITS as i32)) as u32);
         let directions = (0..dimensions).map(|d| d.checked_sub(1).map_or_else(first, |row| directions(ROWS[row])));
-        Sobol { directions: directions.collect(), point: (0..dimensions).map(&mut shift).collect(), count: 0 }
+        Sobol { directions: directions.collect(), shift: (0..dimensions).map(&mut shift).collect(), count: 0 }
     }
 
     /// The point that is next.
     pub fn point(&mut self) -> Vec<f64> {
-        let point = self.point.iter().map(|&x| f64::from(x) / 2f64.powi(BITS as i32)).collect();
-        // The Gray code of the next number differs in this bit.
-        let bit = self.count.trailing_ones() as usize;
-        for (x, directions) in self.point.iter_mut().zip(&self.directions) {
-            *x ^= directions[bit.min(BITS - 1)];
-        }
+        let point = (0..self.shift.len()).map(|coordinate| self.at(self.count, coordinate)).collect();
         self.count = self.count.wrapping_add(1);
         point
+    }
+
+    /// A coordinate of the point with this number, from 0.
+    pub fn at(&self, index: u32, coordinate: usize) -> f64 {
+        // The bits of the Gray code of the number choose the directions.
+        let mut left = index ^ (index >> 1);
+        let mut x = self.shift[coordinate];
+        while left != 0 {
+            x ^= self.directions[coordinate][left.trailing_zeros() as usize];
+            left &= left - 1;
+        }
+        f64::from(x) / 2f64.powi(BITS as i32)
     }
 }
 
