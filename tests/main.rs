@@ -100,6 +100,7 @@ mod smooth_fills;
 mod solvers;
 mod springs;
 mod stability;
+mod stretched;
 mod sums;
 mod sweeps;
 mod symbols;

@@ -54,11 +54,11 @@ pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FitEntry, FitFunctions, FitKind, Fitted, FittedKind,
-    FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, ModelError,
-    ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
-    SampledRecipe, SampledRecord, SceneFacts, Sharing, Start, StiffnessOutcome, StiffnessRecord, SupportFrequencies,
-    SupportPart, Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
-    fit_schema,
+    FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads,
+    ModelError, ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference,
+    SampledOutcome, SampledRecipe, SampledRecord, ScaledLoad, SceneFacts, Sharing, Start, StiffnessOutcome,
+    StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome,
+    WholeRecipe, WholeRecord, WorseLoad, fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
