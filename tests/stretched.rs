@@ -322,3 +322,50 @@ fn coarse_networks_follow_two_drawn_bodies_to_large_stretch() {
         assert!(found < 0.2, "seed {seed}: {found}");
     }
 }
+
+/// From displacements that were measured at large deformation, all of them or those of a third of the points, the moduli of the body come back
+/// with their intervals. Where loads are made, errors are relative to the finite elements: no load is worse than with them.
+#[test]
+fn measured_moduli_come_back_at_large_deformation() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |young: f64, keys: &str, measured: bool| {
+        let file =
+            |name: &str| if measured { format!("measured = {{ file = \"{name}.csv\" }}") } else { String::new() };
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"tet4\", size = [2, 1, 1], cells = [3, 2, 2] }}\n[material]\nyoung = {young}\n\
+             poisson = 0.3\nlaw = \"neo-hookean\"\n[[fit]]\nname = \"coarse\"\nobjective = \"whole\"\nstart = \"exact\"\n{keys}\n\
+             [[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [2500, 0, 0]\n{}\n\
+             [[load]]\nname = \"shear\"\ngroup = \"xmax\"\ntraction = [0, 400, 0]\n{}\n",
+            file("pull"),
+            file("shear")
+        );
+        std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+        run(&Scene::load(&folder.path().join("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    let made = scene(1e4, "regularization = 1.0\niterations = 1\nstretch = 0.2", false);
+    let whole = made.fits[0].kind.whole().unwrap();
+    let [held_out] = &whole.held_out[..] else { panic!("{:?}", whole.held_out) };
+    assert!(
+        held_out.worse.is_empty() && held_out.models.iter().any(|m| m.model == "fitted" && m.median.unwrap() < 1e-6)
+    );
+    assert_eq!(whole.stretched.as_ref().unwrap().stretch, 0.2);
+    let found = whole.fitted.iter().map(|load| load.after).fold(0.0, f64::max);
+    assert!(found < 1e-6, "a network with the moduli of the material moves like the finite elements: {found}");
+    for every in [1, 3] {
+        for load in &made.loads {
+            let mut table = String::from("point,ux,uy,uz\n");
+            for (p, u) in load.fem.chunks_exact(3).enumerate().filter(|(p, _)| p % every == 0) {
+                writeln!(table, "{p},{:?},{:?},{:?}", u[0], u[1], u[2]).unwrap();
+            }
+            std::fs::write(folder.path().join(format!("{}.csv", load.name)), table).unwrap();
+        }
+        let found = scene(7e3, "unknowns = \"body-moduli\"\nloads = [\"pull\", \"shear\"]", true);
+        let moduli = &found.fits[0].kind.whole().unwrap().moduli;
+        assert_eq!(moduli.all.len(), 2);
+        for modulus in &moduli.all {
+            let [low, high] = modulus.interval.unwrap();
+            let truth = 1.0 / 0.7;
+            assert!((modulus.factor - truth).abs() < 1e-5 && low < truth + 1e-5 && high > truth - 1e-5, "{modulus:?}");
+        }
+    }
+}

@@ -36,9 +36,9 @@ pub struct ScaledLoad {
 }
 
 impl MadeLoads {
-    /// Adds the loads of one set.
-    pub(super) fn add(&mut self, key: &str, of: &StretchedLoads) {
-        let named = |name: &String| format!("{key}: {name}");
+    /// Adds the loads of one set under one support, in words.
+    pub(super) fn add(&mut self, (set, place): (&str, &str), of: &StretchedLoads) {
+        let named = |name: &String| format!("{set}: {name}{place}");
         self.loads += of.loads.len();
         self.scaled_back
             .extend(of.back.iter().map(|(name, stretch)| ScaledLoad { load: named(name), stretch: *stretch }));

@@ -29,7 +29,7 @@ pub struct WholeRecipe {
     /// The supports under which made loads are fitted, each by the names of the groups that are held; that of the scene if
     /// empty.
     pub supports: Vec<Vec<String>>,
-    /// The stretch that made loads cause at large deformation; `None` stands for [`STRETCH`].
+    /// The stretch that made loads cause at large deformation; `None` stands for 0.3.
     pub stretch: Option<f64>,
     /// The supports under which made loads of the validation act; those of the fit if empty.
     pub validation_supports: Vec<Vec<String>>,

@@ -227,10 +227,11 @@ impl WholeBody<'_> {
         progress: &mut Progress,
     ) -> Result<Vec<Target>> {
         let name = format!("{set} {seed} {:?}", held.groups);
+        let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
         let answers: Answers = match (followed, self.fine, &held.fine) {
             (Some(followed), ..) => {
                 let all = self.stretched(key, held, (make, seed), followed.stretch, name, progress)?;
-                followed.add(set, &all);
+                followed.add((set, &place), &all);
                 Arc::new(all.loads.clone())
             }
             (None, Some(fine), Some(support)) => {
@@ -245,7 +246,6 @@ impl WholeBody<'_> {
                 Arc::new(make(self.mesh, &held.support, seed).into_iter().map(answer).collect::<Result<_>>()?)
             }
         };
-        let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
         let target = |(load, u): &(NodalLoad, Vec<f64>)| {
             let name = format!("{}{place}", load.name);
             // Without it the fit loses the resistance to a change of volume, which the other loads hardly see.
