@@ -106,6 +106,7 @@ mod solvers;
 mod springs;
 mod stability;
 mod statistics;
+mod stretched;
 mod sums;
 mod sweeps;
 mod symbols;

@@ -1,13 +1,13 @@
 //! Fits of a whole object under loads.
 
-use super::inputs::{BRICK, edited};
+use super::inputs::{BRICK, PLATE, edited};
 use super::refusals::Refusals;
 
 const FIT: &str = "objective = \"modal\"";
 const WHOLE: &str = "objective = \"whole\"";
 
 /// The options that follow `objective = "whole"`, the key below `fit[0]`, and words of the problem.
-const OPTIONS: [(&str, &str, &str); 27] = [
+const OPTIONS: [(&str, &str, &str); 32] = [
     ("loads = []", "loads", "found none"),
     ("loads = [\"push\"]", "loads", "(load 1), found \"push\""),
     ("validate = [\"push\"]", "validate", "(load 1), found \"push\""),
@@ -35,6 +35,11 @@ const OPTIONS: [(&str, &str, &str); 27] = [
     ("shear = \"edges\"", "shear", "\"exact\""),
     ("start = \"exact\"\nshear = \"faces\"", "shear", "found \"faces\""),
     ("start = \"exact\"\nshear = \"edges\"\nvolume = \"cells\"", "volume", "found \"cells\""),
+    ("stretch = 0", "stretch", "above 0 and at most 1, found 0"),
+    ("stretch = 1.5", "stretch", "found 1.5"),
+    ("stretch = nan", "stretch", "found NaN"),
+    ("stretch = 0.3", "stretch", "a material with a \"law\", found one without"),
+    ("stretch = 0.3\nloads = [\"load 1\"]\nregularization = 1", "stretch", "belongs to loads = [\"made\"]"),
 ];
 
 #[test]
@@ -64,10 +69,39 @@ fn whole_objects() {
         "found \"edges\" with hex8",
     );
     let whole = edited(BRICK, FIT, WHOLE);
+    // No equilibrium is found in one iteration, under no load.
     refusals.expect_of_scene(
-        &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\""),
-        "scene.toml: fit[0].loads",
-        "found \"made\"",
+        &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\"\n[newton]\niterations = 1"),
+        "scene.toml: fit[0].stretch",
+        "has an equilibrium at half of the stretch 0.3, found none of",
+    );
+    let exact = edited(&whole, WHOLE, &format!("{WHOLE}\nstart = \"exact\""));
+    for (law, words) in [
+        ("yeoh", "where the start is \"exact\", found Yeoh"),
+        ("fibre", "a law without fibres, where moduli are unknown, found \"fibre\""),
+    ] {
+        let scene = edited(&exact, "poisson = 0.3", &format!("poisson = 0.3\nlaw = \"{law}\""));
+        refusals.expect_of_scene(&scene, "scene.toml: fit[0].start", words);
+    }
+    let plate = edited(
+        PLATE,
+        "objective = \"frobenius\"",
+        "objective = \"whole\"\nstart = \"exact\"\nloads = [\"load 1\"]\nregularization = 1",
+    );
+    refusals.expect_of_scene(
+        &edited(&plate, "plane = \"strain\"", "plane = \"stress\"\nlaw = \"stable-neo-hookean\""),
+        "scene.toml: fit[0].unknowns",
+        "not linear in them, found plane stress",
+    );
+    let lost = edited(
+        BRICK,
+        "poisson = 0.3",
+        "poisson = 0.3\nlaw = \"neo-hookean\"\n[newton]\niterations = 1\n[reference]\nrefine = 1",
+    );
+    refusals.expect_of_scene(
+        &lost,
+        "scene.toml: reference",
+        "loads under which the finer body has an equilibrium, found \"load 1\", lost at",
     );
     let free = edited(&whole, "[[fix]]\ngroup = \"zmin\"\n", "");
     let held = "[[load]]\nwhere = \"z < 0.1\"\ndisplacement = [0, 0, 0]";

@@ -331,6 +331,30 @@ group = "xmax"
 traction = [0, 0, 1.0]
 "#;
 
+/// Moduli of an exact network under loads that stretch a body far.
+pub const STRETCHED: &str = r#"
+[mesh]
+box = { element = "tet4", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+law = "stable-neo-hookean"
+[newton]
+steps = 1
+iterations = 20
+[[fit]]
+objective = "whole"
+start = "exact"
+stretch = 0.2
+regularization = 0.01
+iterations = 1
+[[fix]]
+group = "zmin"
+[[load]]
+group = "zmax"
+traction = [0, 0, 1.0]
+"#;
+
 /// A disc in motion: pulled, pushed and damped.
 pub const MOTION: &str = r#"
 [mesh]
@@ -449,7 +473,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 15] = [
+pub const ALL: [(&str, &str); 16] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -462,6 +486,7 @@ pub const ALL: [(&str, &str); 15] = [
     ("cavity", CAVITY),
     ("whole", WHOLE),
     ("coarse", COARSE),
+    ("stretched", STRETCHED),
     ("motion", MOTION),
     ("damped", DAMPED),
     ("explicit", EXPLICIT),

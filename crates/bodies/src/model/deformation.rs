@@ -26,34 +26,38 @@ impl Deformation {
 
     /// The deformation under the displacements u, `[points · dimension]`, m.
     pub fn largest(mesh: &Mesh, u: &[f64]) -> Deformation {
-        let space = mesh.dimension;
         let mut largest = Deformation::default();
-        each_cell(mesh, |cell, nodes, geometry| {
-            let (table, d) = (&mesh.blocks[cell.block].element.tabulation, geometry.dimension);
-            let local: Vec<f64> = dofs(nodes, space).map(|dof| u[dof]).collect();
-            let frame = if d < space {
-                let mut placement = Placement::new(table);
-                let mut x = vec![0.0; nodes.len() * d];
-                placement.place(table, &mesh.points, nodes, &mut x).expect("a mesh holds only cells with tangents");
-                DMatrix::from_row_slice(d, space, &placement.frame)
-            } else {
-                DMatrix::identity(d, d)
-            };
-            for (gradients, ..) in geometry.each_point() {
-                // ∂u_k/∂s_l = Σ_a u_ak ∂N_a/∂s_l
-                let h = DMatrix::from_fn(space, d, |k, l| {
-                    (0..nodes.len()).map(|a| local[a * space + k] * gradients[a * d + l]).sum::<f64>()
-                });
-                let along = &frame * &h;
-                let out = &h - frame.transpose() * &along;
-                let (strain, spin) = ((&along + along.transpose()) * 0.5, (&along - along.transpose()) * 0.5);
-                // ‖spin‖ counts each component of the rotation vector twice.
-                let rotation = (spin.norm_squared() / 2.0 + out.norm_squared()).sqrt();
-                let strain = strain.symmetric_eigenvalues().amax();
-                largest = largest.max(Deformation { strain, rotation });
-            }
+        each_gradient(mesh, u, |frame, h, _| {
+            let along = frame * h;
+            let out = h - frame.transpose() * &along;
+            let (strain, spin) = ((&along + along.transpose()) * 0.5, (&along - along.transpose()) * 0.5);
+            // ‖spin‖ counts each component of the rotation vector twice.
+            let rotation = (spin.norm_squared() / 2.0 + out.norm_squared()).sqrt();
+            let strain = strain.symmetric_eigenvalues().amax();
+            largest = largest.max(Deformation { strain, rotation });
         });
         largest
+    }
+
+    /// The stretch that a share of the body has at least: in so much of its content some principal stretch, a square root of an eigenvalue
+    /// of `Fᵀ F` with `F = I + H`, differs from 1 by this or more. Unlike the largest stretch it does not grow with finer cells at the
+    /// ends of supports.
+    pub fn stretch_of(mesh: &Mesh, u: &[f64], share: f64) -> f64 {
+        let (mut all, mut content) = (Vec::new(), 0.0);
+        each_gradient(mesh, u, |frame, h, volume| {
+            let f = frame.transpose() + h;
+            let squares = (f.transpose() * f).symmetric_eigenvalues();
+            let stretch = squares.iter().map(|square| (square.max(0.0).sqrt() - 1.0).abs()).fold(0.0, f64::max);
+            all.push((if stretch.is_nan() { f64::INFINITY } else { stretch }, volume));
+            content += volume;
+        });
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut above = 0.0;
+        let reached = all.iter().find(|(_, volume)| {
+            above += volume;
+            above >= share * content
+        });
+        reached.map_or(0.0, |(stretch, _)| *stretch)
     }
 
     /// The larger of both strains and of both rotations; NaN counts as infinite.
@@ -66,4 +70,28 @@ impl Deformation {
     pub fn exceeds(self, bound: f64) -> bool {
         self.strain > bound || self.rotation > bound
     }
+}
+
+/// Calls `visit(frame, H, content)` for every quadrature point, with the tangents of the cell as rows of the frame.
+fn each_gradient(mesh: &Mesh, u: &[f64], mut visit: impl FnMut(&DMatrix<f64>, &DMatrix<f64>, f64)) {
+    let space = mesh.dimension;
+    each_cell(mesh, |cell, nodes, geometry| {
+        let (table, d) = (&mesh.blocks[cell.block].element.tabulation, geometry.dimension);
+        let local: Vec<f64> = dofs(nodes, space).map(|dof| u[dof]).collect();
+        let frame = if d < space {
+            let mut placement = Placement::new(table);
+            let mut x = vec![0.0; nodes.len() * d];
+            placement.place(table, &mesh.points, nodes, &mut x).expect("a mesh holds only cells with tangents");
+            DMatrix::from_row_slice(d, space, &placement.frame)
+        } else {
+            DMatrix::identity(d, d)
+        };
+        for (gradients, volume, _) in geometry.each_point() {
+            // ∂u_k/∂s_l = Σ_a u_ak ∂N_a/∂s_l
+            let h = DMatrix::from_fn(space, d, |k, l| {
+                (0..nodes.len()).map(|a| local[a * space + k] * gradients[a * d + l]).sum::<f64>()
+            });
+            visit(&frame, &h, *volume);
+        }
+    });
 }

@@ -139,6 +139,13 @@ impl MeasureSpring {
         }
     }
 
+    /// Makes it pull `factor` times as hard. Of a law the parameters to which the force is proportional are scaled.
+    pub fn scale(&mut self, factor: f64) {
+        self.constant *= factor;
+        let Some(SpringLaw { law, parameters }) = self.law.as_deref_mut() else { return };
+        parameters.iter_mut().zip(law.outer()).filter(|(_, outer)| **outer).for_each(|(p, _)| *p *= factor);
+    }
+
     /// `k g gᵀ + T H` at the points as they are, `[points · d × points · d]`: the slope, the gradient, the force, the second derivatives.
     pub(crate) fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
         let mut x = vec![0.0; self.points.len() * d];
@@ -254,11 +261,7 @@ impl Network {
         let mut network = self.clone();
         let (lengths, others) = factors.split_at(network.lengths.len());
         network.lengths.iter_mut().zip(lengths).for_each(|(s, factor)| s.constant *= factor);
-        for (spring, factor) in network.others.iter_mut().zip(others) {
-            spring.constant *= factor;
-            let Some(SpringLaw { law, parameters }) = spring.law.as_deref_mut() else { continue };
-            parameters.iter_mut().zip(law.outer()).filter(|(_, outer)| **outer).for_each(|(p, _)| *p *= factor);
-        }
+        network.others.iter_mut().zip(others).for_each(|(spring, factor)| spring.scale(*factor));
         network
     }
 

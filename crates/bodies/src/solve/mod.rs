@@ -19,6 +19,7 @@ mod modes;
 mod newton;
 mod ordering;
 mod stability;
+mod stable;
 
 pub use applied::Applied;
 pub(crate) use cholesky::elimination_order;

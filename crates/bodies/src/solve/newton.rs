@@ -261,6 +261,10 @@ impl<'a> Statics<'a> {
         let support = model.support;
         let (mut history, mut form) = (Vec::new(), Form::Position);
         let Some(mut now) = model.at(u, form) else { return Ok((history, ForceBalance::None)) };
+        // Forces at rest within their rounding error are none, and do not act where the load is smaller.
+        if norm(tension) <= now.rounding {
+            tension.fill(0.0);
+        }
         for _ in 0..newton.iterations {
             // The remaining part of the prescribed displacements.
             let moves: Vec<Option<f64>> =

@@ -8,6 +8,7 @@ use crate::fit::{CellFits, DomainSprings, ExactDomains, ExactFit, ShearSprings, 
 use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::{EdgeDomain, MeasureSpring, Network, domain_parts, edge_domains, network_of, patch_springs};
+use crate::springs::Law;
 use crate::stiffness::gather;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -37,8 +38,8 @@ pub(super) enum Part {
 pub(super) enum Carriers {
     /// For each block of cells those of μ and of λ.
     Cells(Vec<[CellFits; 2]>),
-    /// Those of the domains of edges.
-    Domains(Arc<Vec<EdgeDomain>>, Vec<DomainPart>),
+    /// Those of the domains of edges, and the law of their springs on content, if these are not linear.
+    Domains(Arc<Vec<EdgeDomain>>, Vec<DomainPart>, Option<Arc<Law>>),
 }
 
 /// What cells of the same groups give to the springs of a domain.
@@ -51,20 +52,21 @@ pub(super) struct DomainPart {
     pub springs: DomainSprings,
 }
 
-/// The tangent of a part at rest.
-pub(super) struct PartTangent {
+/// The springs of a part, on its own points.
+pub(super) struct PartSprings {
     pub part: Part,
-    /// Its points.
+    /// Its points in the mesh.
     pub nodes: Vec<usize>,
-    /// `[dofs × dofs]`.
-    pub matrix: Vec<f64>,
+    pub springs: Network,
+    /// Their tangent at rest, `[dofs × dofs]`.
+    pub tangent: Vec<f64>,
 }
 
 /// The share of λ that cells keep at the start if patches carry the rest.
 const HALF: f64 = 0.5;
 
 impl Carriers {
-    /// The springs of the body and those of its patches, at small deformation.
+    /// The springs of the body and those of its patches.
     ///
     /// # Errors
     /// The body has no such network.
@@ -83,7 +85,7 @@ impl Carriers {
         let mut patches = if patched { patch_springs(mesh, material.clone(), fit, held)? } else { Vec::new() };
         let carriers = match fit.shear {
             ShearSprings::Cells => {
-                patches.iter_mut().for_each(|patch| patch.constant *= HALF);
+                patches.iter_mut().for_each(|patch| patch.scale(HALF));
                 // Where patches carry λ, cells that carry it too are those with a spring for each cell.
                 let volume = if patched { VolumeSprings::Cells } else { fit.volume };
                 let share = if patched { HALF } else { 1.0 };
@@ -126,6 +128,7 @@ impl Carriers {
     ) -> Result<Carriers> {
         let (block, springs) = domain_parts(mesh, material, fit)?;
         let of_shear = ExactDomains::new(fit, shear.block(0).values())?;
+        let law = springs.law().cloned();
         let is_uniform = matches!(shear, CellMap::Uniform(_));
         let region = |cell: usize| regions.names(CellIndex { block: 0, cell });
         let domains = edge_domains(mesh, block, material);
@@ -148,44 +151,44 @@ impl Carriers {
             parts
         };
         let parts: Vec<Vec<DomainPart>> = domains.par_iter().enumerate().map(of_domain).collect();
-        Ok(Carriers::Domains(Arc::new(domains), parts.concat()))
+        Ok(Carriers::Domains(Arc::new(domains), parts.concat(), law))
     }
 
-    /// The tangents at rest of all parts that have a stiffness.
-    pub fn tangents(&self, mesh: &Mesh) -> Vec<PartTangent> {
-        let found: Vec<Vec<PartTangent>> = match self {
+    /// The springs of all parts that have a stiffness at rest.
+    pub fn parts(&self, mesh: &Mesh) -> Vec<PartSprings> {
+        let found: Vec<Vec<PartSprings>> = match self {
             Carriers::Cells(fits) => {
                 let cells: Vec<CellIndex> = mesh.cell_indices().collect();
                 let of_cell = |index: &CellIndex| {
                     let alone = mesh.of_cell(*index);
                     let fits = fits[index.block].iter().zip([Modulus::Shear, Modulus::Volume]);
                     let part = |(fit, modulus): (&CellFits, Modulus)| {
-                        let network = Network::assemble(&alone, &[fit.of_cells(&[index.cell])]);
-                        let matrix = dense(&network, &alone.points);
-                        PartTangent {
+                        let springs = Network::assemble(&alone, &[fit.of_cells(&[index.cell])]);
+                        PartSprings {
                             part: Part::Cell(modulus, *index),
                             nodes: mesh.cell_nodes(*index).to_vec(),
-                            matrix,
+                            tangent: dense(&springs, &alone.points),
+                            springs,
                         }
                     };
                     fits.map(part).collect()
                 };
                 cells.par_iter().map(of_cell).collect()
             }
-            Carriers::Domains(domains, parts) => {
+            Carriers::Domains(domains, parts, law) => {
                 let of_part = |(index, part): (usize, &DomainPart)| {
                     let own = &domains[part.domain];
                     let mut points = vec![0.0; own.nodes.len() * mesh.dimension];
                     gather(&mesh.points, mesh.dimension, &own.nodes, &mut points);
                     let alone = EdgeDomain { nodes: (0..own.nodes.len()).collect(), ..own.clone() };
-                    let network = network_of(mesh.dimension, std::iter::once((&alone, &part.springs)), None);
-                    let matrix = dense(&network, &points);
-                    vec![PartTangent { part: Part::Domain(index), nodes: own.nodes.clone(), matrix }]
+                    let springs = network_of(mesh.dimension, std::iter::once((&alone, &part.springs)), law.as_ref());
+                    let tangent = dense(&springs, &points);
+                    vec![PartSprings { part: Part::Domain(index), nodes: own.nodes.clone(), springs, tangent }]
                 };
                 parts.par_iter().enumerate().map(of_part).collect()
             }
         };
-        found.into_iter().flatten().filter(|of| of.matrix.iter().any(|k| *k != 0.0)).collect()
+        found.into_iter().flatten().filter(|of| of.tangent.iter().any(|k| *k != 0.0)).collect()
     }
 
     /// Multiplies the springs of a part.
@@ -202,7 +205,7 @@ impl Carriers {
                 fit.constants[cell * m..(cell + 1) * m].iter_mut().for_each(|k| *k *= factor);
                 fit.parameters[cell * p..(cell + 1) * p].iter_mut().for_each(|k| *k *= factor);
             }
-            (Carriers::Domains(_, parts), Part::Domain(index)) => {
+            (Carriers::Domains(_, parts, _), Part::Domain(index)) => {
                 parts[index].springs = parts[index].springs.scaled(factor);
             }
             // A part of the other kind is not one of these.
@@ -225,7 +228,7 @@ impl Carriers {
                 };
                 Network::assemble(mesh, &fits.iter().map(sum).collect::<Vec<_>>())
             }
-            Carriers::Domains(domains, parts) => {
+            Carriers::Domains(domains, parts, law) => {
                 // The parts of a domain follow each other.
                 let of_domains = parts.chunk_by(|a, b| a.domain == b.domain);
                 let sum = |parts: &[DomainPart]| {
@@ -233,7 +236,7 @@ impl Carriers {
                     (&domains[parts[0].domain], sum)
                 };
                 let found: Vec<(&EdgeDomain, DomainSprings)> = of_domains.map(sum).collect();
-                network_of(mesh.dimension, found.iter().map(|(domain, springs)| (*domain, springs)), None)
+                network_of(mesh.dimension, found.iter().map(|(domain, springs)| (*domain, springs)), law.as_ref())
             }
         }
     }

@@ -26,6 +26,8 @@ pub struct Displacements<'a> {
     guesses: Mutex<Vec<Option<Vec<f64>>>>,
 }
 
+/// The displacements under a load, and the tangent there.
+type Reached = (Vec<f64>, Tangent);
 /// The displacements of every load, and the tangents there.
 type Moved = (Vec<Vec<f64>>, Vec<Tangent>);
 /// The residuals of the frequencies, and their derivatives in every factor.
@@ -178,46 +180,45 @@ impl<'a> Displacements<'a> {
         Ok(Some((displacements, tangents)))
     }
 
-    /// Finds the displacements of every load at large displacements, and the tangents there, a separate one for each load.
-    fn large(&self, network: &Network) -> Result<Option<Moved>> {
+    /// The displacements of every load at large displacements, and the tangents there, a separate one for each load; `None` of a load
+    /// without a stable equilibrium.
+    fn equilibria(&self, network: &Network) -> Result<Vec<Option<Reached>>> {
         let newton = self.object.newton.expect("this is called at large displacements only");
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let points = self.object.points;
-        let Some(patterns) = self.patterns(network)? else { return Ok(None) };
-        let one = |(l, target): (usize, &&Target)| -> Result<Option<(Vec<f64>, Tangent)>> {
+        let Some(patterns) = self.patterns(network)? else { return Ok(self.targets.iter().map(|_| None).collect()) };
+        let one = |(l, target): (usize, &&Target)| -> Result<Option<Reached>> {
             let pattern =
                 &patterns[self.groups.iter().position(|group| group.contains(&l)).expect("each load has one")];
-            let near = match &guesses[l] {
-                Some(guess) => newton.settle(network, points, &target.support, &target.forces, guess, Some(pattern))?,
-                None => None,
-            };
-            let u = match near {
-                Some(u) => u,
-                None => {
-                    let found =
-                        newton.solve_with(network, points, &target.support, (&target.forces).into(), Some(pattern))?;
-                    if found.load < 1.0 {
-                        return Ok(None);
-                    }
-                    found.displacement
-                }
-            };
-            let x = displaced(points, &u);
-            let Some(response) = network.respond(&x) else { return Ok(None) };
-            let Some(equations) =
-                Equations::of_system(Arc::new(Newton::equations(pattern, &response.tangent, &target.support)?))?
-            else {
-                return Ok(None);
-            };
-            let forces = self.object.forces_at(&x);
+            // Of a load that is known everywhere the wanted equilibrium is the nearest guess.
+            let known = || target.weights.iter().all(|w| *w > 0.0).then_some(&target.displacement);
+            let guess = guesses[l].as_ref().or_else(known).map(|guess| &guess[..]);
+            let found = newton.reach_stable(network, points, &target.support, &target.forces, guess, pattern)?;
+            let Some((u, equations)) = found else { return Ok(None) };
+            let Some(forces) = self.object.forces_at(&displaced(points, &u)) else { return Ok(None) };
             Ok(Some((u, Tangent { equations, loads: vec![(l, forces)] })))
         };
-        let found: Result<Vec<_>> = self.targets.par_iter().enumerate().map(one).collect();
-        let Some(found) = found?.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
+        self.targets.par_iter().enumerate().map(one).collect()
+    }
+
+    /// The displacements of every load at large displacements, from which the next ones are searched, and the tangents there.
+    fn large(&self, network: &Network) -> Result<Option<Moved>> {
+        let Some(found) = self.equilibria(network)?.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
         let (displacements, tangents): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let mut guesses = self.guesses.lock().expect("nothing panics while it holds the guesses");
         guesses.iter_mut().zip(&displacements).for_each(|(guess, u)| *guess = Some(u.clone()));
         Ok(Some((displacements, tangents)))
+    }
+
+    /// Whether the network has a stable equilibrium under each load at θ. At small displacements it has one under all loads or under none.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn reached(&self, theta: &[f64]) -> Result<Vec<bool>> {
+        match self.object.newton {
+            None => Ok(vec![self.small(theta)?.is_some(); self.targets.len()]),
+            Some(_) => Ok(self.equilibria(&self.object.network(theta))?.iter().map(Option::is_some).collect()),
+        }
     }
 
     /// Equations with the pattern of the tangents under each support, which are analysed once.

@@ -2,7 +2,8 @@
 //!
 //! The stiffness is `Σ_e (c_μe K_μe + c_λe K_λe) + Σ_n c_n K_n`, with the tangents `K_μe`, `K_λe` of the springs of cell or domain e
 //! that carry the moduli and `K_n` of patch n. Each of them is positive semidefinite, or their sum over μ and λ with
-//! equal factors is, and positive factors keep the network in the exact form.
+//! equal factors is, and positive factors keep the network in the exact form. At large deformation the energy is linear in the moduli in
+//! the same way, `Σ_e (c_μe W_μe + c_λe W_λe) + Σ_n c_n W_n`, and the forces of the parts are its derivatives.
 //!
 //! Theory: page *Whole-object fits* of the book.
 
@@ -10,11 +11,11 @@ use super::carriers::{Carriers, Modulus, Part};
 use super::parts::{PartVectors, Places};
 use super::regions::BodyRegions;
 use super::unknowns::Unknowns;
-use crate::error::Result;
-use crate::fit::{ExactFit, ShearSprings, VolumeSprings};
-use crate::material::MaterialMap;
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::ExactFit;
+use crate::material::{MaterialMap, State};
 use crate::mesh::{CellIndex, Mesh};
-use crate::model::{Entries, MeasureSpring, Network, dofs};
+use crate::model::{Elastic, Entries, MeasureSpring, Network, dofs};
 use faer::sparse::Triplet;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -43,6 +44,8 @@ pub struct ModuliParts<'a> {
     places: Arc<Places>,
     /// The tangents of the parts, one after another, each `[dofs × dofs]`.
     tangents: Arc<Vec<f64>>,
+    /// The springs of each part on its own points, if deformations may be large.
+    springs: Option<Arc<Vec<Network>>>,
     /// What the parts are, in their order.
     parts: Vec<Part>,
     /// The factors by which the parts differ from those of the material.
@@ -50,27 +53,38 @@ pub struct ModuliParts<'a> {
 }
 
 impl<'a> ModuliParts<'a> {
-    /// The parts of the exact network of a body at small deformation. With springs for μ on cells and `volume = "patches"` one half
+    /// The parts of an exact network of a body. With springs for μ on cells and `volume = "patches"` one half
     /// of λ is carried by the patches, and the other by the cells. `held` says of each point whether it is held.
     ///
     /// # Errors
-    /// The body has no such network.
+    /// The body has no such network, or its energy at large deformation is not linear in the moduli.
     pub fn new(
         mesh: &'a Mesh,
         material: impl Into<MaterialMap>,
-        (shear, volume): (ShearSprings, VolumeSprings),
+        fit: &ExactFit,
         held: &[bool],
     ) -> Result<ModuliParts<'a>> {
         let material = material.into();
         material.check(&mesh.blocks.iter().map(|block| block.cells().len()).collect::<Vec<_>>())?;
-        let fit = ExactFit { shear, volume, ..ExactFit::default() };
+        let curved = match material.state() {
+            State::PlaneStress { .. } => Some("plane stress"),
+            State::Rod { .. } => Some("rods"),
+            State::PlaneStrain { .. } | State::Solid => None,
+        };
+        if let Some(state) = curved.filter(|_| fit.large) {
+            let expected = "a solid or plane strain, where moduli are unknown at large deformation: without stress across a plane or rod the \
+                            energy is not linear in them";
+            return Err(Error::expected("unknowns", expected, state).of_kind(ErrorKind::Unsupported));
+        }
         let regions = Arc::new(BodyRegions::of(mesh, &material));
-        let (carriers, patches) = Carriers::new(mesh, (&material, &regions), &fit, held)?;
+        let (carriers, patches) = Carriers::new(mesh, (&material, &regions), fit, held)?;
         let (d, mut places, mut tangents, mut parts) = (mesh.dimension, Places::new(), Vec::new(), Vec::new());
-        for of_part in carriers.tangents(mesh) {
+        let mut springs = fit.large.then(Vec::new);
+        for of_part in carriers.parts(mesh) {
             places.push(dofs(&of_part.nodes, d));
-            tangents.extend(of_part.matrix);
+            tangents.extend(of_part.tangent);
             parts.push(of_part.part);
+            springs.iter_mut().for_each(|springs| springs.push(of_part.springs.clone()));
         }
         for (index, patch) in patches.iter().enumerate() {
             let mut tangent = vec![0.0; (patch.points.len() * d).pow(2)];
@@ -78,9 +92,13 @@ impl<'a> ModuliParts<'a> {
             places.push(dofs(&patch.points, d));
             tangents.extend(tangent);
             parts.push(Part::Patch(index));
+            let own = || MeasureSpring { points: (0..patch.points.len()).collect(), ..patch.clone() };
+            let network = || Network { dimension: d, lengths: Vec::new(), others: vec![own()] };
+            springs.iter_mut().for_each(|springs| springs.push(network()));
         }
+        let springs = springs.map(Arc::new);
         let (places, tangents, factors) = (Arc::new(places), Arc::new(tangents), vec![1.0; parts.len()]);
-        Ok(ModuliParts { mesh, regions, carriers, patches, places, tangents, parts, factors })
+        Ok(ModuliParts { mesh, regions, carriers, patches, places, tangents, springs, parts, factors })
     }
 
     /// The unknowns that cells share in this way.
@@ -129,7 +147,7 @@ impl<'a> ModuliParts<'a> {
     fn modulus(&self, part: Part) -> Option<Modulus> {
         match (part, &self.carriers) {
             (Part::Cell(modulus, _), _) => Some(modulus),
-            (Part::Domain(index), Carriers::Domains(_, parts)) => Some(parts[index].modulus),
+            (Part::Domain(index), Carriers::Domains(_, parts, _)) => Some(parts[index].modulus),
             (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
         }
     }
@@ -138,7 +156,9 @@ impl<'a> ModuliParts<'a> {
     fn cell(&self, part: Part) -> Option<CellIndex> {
         match (part, &self.carriers) {
             (Part::Cell(_, cell), _) => Some(cell),
-            (Part::Domain(index), Carriers::Domains(_, parts)) => Some(CellIndex { block: 0, cell: parts[index].cell }),
+            (Part::Domain(index), Carriers::Domains(_, parts, _)) => {
+                Some(CellIndex { block: 0, cell: parts[index].cell })
+            }
             (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
         }
     }
@@ -147,7 +167,7 @@ impl<'a> ModuliParts<'a> {
     fn place(&self, part: Part) -> [usize; 2] {
         match (part, &self.carriers) {
             (Part::Cell(_, CellIndex { block, cell }), _) => [block, cell],
-            (Part::Domain(index), Carriers::Domains(_, parts)) => [0, parts[index].domain],
+            (Part::Domain(index), Carriers::Domains(_, parts, _)) => [0, parts[index].domain],
             (Part::Domain(index), Carriers::Cells(_)) | (Part::Patch(index), _) => [0, index],
         }
     }
@@ -155,7 +175,7 @@ impl<'a> ModuliParts<'a> {
     /// The cell or the patch of a part, counted from 1, or the points of its edge.
     fn place_name(&self, part: Part) -> String {
         match (part, &self.carriers) {
-            (Part::Domain(index), Carriers::Domains(domains, parts)) => {
+            (Part::Domain(index), Carriers::Domains(domains, parts, _)) => {
                 let [a, b] = domains[parts[index].domain].edge;
                 format!("edge {}-{}", a, b)
             }
@@ -201,7 +221,7 @@ impl<'a> ModuliParts<'a> {
         let (mut carriers, mut patches) = (self.carriers.clone(), self.patches.clone());
         for (part, factor) in self.parts.iter().zip(factors) {
             match *part {
-                Part::Patch(index) => patches[index].constant *= factor,
+                Part::Patch(index) => patches[index].scale(*factor),
                 Part::Cell(..) | Part::Domain(_) => carriers.scale(self.mesh, *part, *factor),
             }
         }
@@ -237,6 +257,27 @@ impl<'a> ModuliParts<'a> {
             values.extend(tangent.chunks_exact(dofs.len().max(1)).map(row));
         }
         PartVectors { places: self.places.clone(), values }
+    }
+
+    /// The forces of the parts at factor 1 with the points at x, `[points × dimension]`, m; `None` if only small deformations matter.
+    pub(super) fn forces_at(&self, x: &[f64]) -> Option<PartVectors> {
+        let springs = self.springs.as_ref()?;
+        let (mut values, mut local, mut own) = (Vec::new(), Vec::new(), Vec::new());
+        for ((dofs, network), factor) in self.places.dofs().zip(&**springs).zip(&self.factors) {
+            local.clear();
+            local.extend(dofs.iter().map(|&i| x[i]));
+            own.clear();
+            own.resize(local.len(), 0.0);
+            // Where a part has no force, the network has no equilibrium whose derivatives are asked for.
+            network.forces(&local, &mut own);
+            values.extend(own.iter().map(|f| factor * f));
+        }
+        Some(PartVectors { places: self.places.clone(), values })
+    }
+
+    /// Whether deformations may be large.
+    pub(super) fn is_large(&self) -> bool {
+        self.springs.is_some()
     }
 
     /// The mesh of the body.

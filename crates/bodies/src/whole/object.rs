@@ -83,16 +83,20 @@ impl<'a> Object<'a> {
         Ok(Object { model, points, unknowns, newton, iterations: None })
     }
 
-    /// An exact network at small displacements whose unknowns are moduli.
+    /// An exact network whose unknowns are moduli. `newton` says how loads are applied at large displacements; `None` stands for small
+    /// ones.
     ///
     /// # Errors
-    /// The unknowns are not those of these parts.
-    pub fn of_moduli(parts: ModuliParts<'a>, unknowns: Unknowns) -> Result<Object<'a>> {
+    /// The unknowns are not those of these parts, or the parts are those of small deformations and displacements are large.
+    pub fn of_moduli(parts: ModuliParts<'a>, unknowns: Unknowns, newton: Option<Newton>) -> Result<Object<'a>> {
         if parts.len() != unknowns.springs() {
             return Err(Error::expected("unknowns", format!("those of {} parts", parts.len()), unknowns.springs()));
         }
+        if newton.is_some() && !parts.is_large() {
+            return Err(Error::expected("unknowns", "parts of a network at large deformation", "those of small ones"));
+        }
         let points = &parts.mesh().points;
-        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton: None, iterations: None })
+        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton, iterations: None })
     }
 
     /// The object whose equations at small displacements are solved by iterations, in memory that grows like its springs.
@@ -117,17 +121,14 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// The forces of each part at factor 1 with the points at x.
-    pub(super) fn forces_at(&self, x: &[f64]) -> PartVectors {
+    /// The forces of each part at factor 1 with the points at x; `None` if only small displacements matter.
+    pub(super) fn forces_at(&self, x: &[f64]) -> Option<PartVectors> {
         match &self.model {
             Model::Springs(parts) => {
                 let (gradients, pulls) = SpringGradients::at(&parts.network, x);
-                gradients.forces(pulls.into_iter())
+                Some(gradients.forces(pulls.into_iter()))
             }
-            Model::Moduli(parts) => {
-                let u: Vec<f64> = x.iter().zip(self.points).map(|(x, rest)| x - rest).collect();
-                parts.forces(&u)
-            }
+            Model::Moduli(parts) => parts.forces_at(x),
         }
     }
 

@@ -19,6 +19,8 @@ pub struct Target {
     pub weight: f64,
     /// Whether the weight stays where those of others fall with their errors, see [`Balanced`](super::Balanced).
     pub is_firm: bool,
+    /// Whether the load was made from the mesh, and may be left out where the network has no equilibrium under it.
+    pub is_made: bool,
 }
 
 /// Natural frequencies that the network should have.
@@ -38,7 +40,7 @@ impl Target {
     /// A load with displacements that are known everywhere with equal weight.
     pub fn new(name: String, support: Support, forces: Vec<f64>, displacement: Vec<f64>) -> Target {
         let weights = vec![1.0; displacement.len()];
-        Target { name, support, forces, displacement, weights, weight: 1.0, is_firm: false }
+        Target { name, support, forces, displacement, weights, weight: 1.0, is_firm: false, is_made: false }
     }
 
     /// `√(w_l W)/‖ū_l‖_W`; `None` if no displacement is known that is free to change.

@@ -62,10 +62,11 @@ pub use extent::extent;
 pub use fits::{
     CellMethod, ExactOutcome, ExactRecipe, ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, Fitted,
     FittedKind, FittedLoad, FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection,
-    ModelError, ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference,
-    SampledOutcome, SampledRecipe, SampledRecord, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start,
-    StartOutcome, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome,
-    ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape, fit_schema,
+    MadeLoads, ModelError, ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe,
+    Reference, SampledOutcome, SampledRecipe, SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin,
+    ShapesRecord, Sharing, Start, StartOutcome, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart,
+    Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape,
+    fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};

@@ -3,6 +3,7 @@
 use super::answer::{check_residual, largest_residual};
 use super::case::{Case, FinerSolution};
 use super::cases::{applied_cases, held};
+use super::fine_laws::FineLaws;
 use super::finer::{answers, equations};
 use crate::analysis::metrics::resultant;
 use crate::error::{Error, Result};
@@ -15,7 +16,7 @@ use crate::study::fits::{Answers, Finer, RegionFactors};
 use crate::study::outcome::Standard;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
-use crate::whole::{BodyRegions, NodalLoad};
+use crate::whole::{BodyRegions, MakeLoads, NodalLoad, StretchedLoads};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -30,12 +31,16 @@ pub struct FineBody {
     /// The support of the `[[fix]]` entries.
     support: Support,
     material: MaterialMap,
+    /// Its laws, at large deformation.
+    large: Option<FineLaws>,
     standard: Standard,
     solver: StaticSolver,
     /// The loads of the scene on it.
     cases: OnceLock<Vec<Case>>,
     /// The answers so far, by what was asked.
     known: Mutex<HashMap<String, Answers>>,
+    /// The loads that were made at large deformation so far, by what was asked.
+    stretched: Mutex<HashMap<String, Arc<StretchedLoads>>>,
     /// The squares of the frequencies so far, for each support.
     squares: Mutex<Vec<(Support, Vec<f64>)>>,
     /// The equations under the supports of the last questions.
@@ -81,16 +86,20 @@ impl FineBody {
         }
         let support = held(scene, &fine)?;
         let material = scene.material_of(&fine)?;
+        let laws = scene.laws(&fine, &material)?;
+        let large = laws.map(|laws| FineLaws::of(&fine, laws, scene.newton()).map_err(at)).transpose()?;
         Ok(Some(FineBody {
             mesh: fine,
             embedding,
             sampling,
             support,
             material,
+            large,
             standard: entry.standard(),
             solver: scene.solver(),
             cases: OnceLock::new(),
             known: Mutex::default(),
+            stretched: Mutex::default(),
             squares: Mutex::default(),
             equations: KnownEquations::default(),
         }))
@@ -104,14 +113,19 @@ impl FineBody {
     pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
         let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
         let body = (&self.mesh, &self.material, self.solver);
-        let found = answers(body, &own, &self.equations, "finer body", progress);
+        let found = match &self.large {
+            Some(large) => large.answers(&self.mesh, &own, progress),
+            None => answers(body, &own, &self.equations, "finer body", progress),
+        };
         let found = found.map_err(|e| e.placed(|e| scene.at("reference", e)))?;
         let dimension = self.mesh.dimension;
         for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
             if let Some(note) = other_force(case, own, dimension) {
                 progress(Event::Note(&note));
             }
-            if !case.is_prescribed {
+            // Pressures that follow are those of the sides of the mesh.
+            let follows = self.large.is_some() && case.pressed.is_some();
+            if !case.is_prescribed && !follows {
                 case.forces = self.embedding.restrict(&own.forces);
             }
             if !case.is_measured {
@@ -216,6 +230,30 @@ impl Finer for FineBody {
         let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
         known().insert(name, answers.clone());
         Ok(answers)
+    }
+
+    fn stretched(
+        &self,
+        name: String,
+        support: &Support,
+        make: &MakeLoads,
+        stretch: f64,
+        progress: &mut Progress,
+    ) -> Result<Arc<StretchedLoads>> {
+        let Some(large) = &self.large else { return Ok(Arc::default()) };
+        let known = || self.stretched.lock().expect("nothing panics while it holds the loads");
+        let name = format!("{name} {stretch}");
+        if let Some(loads) = known().get(&name) {
+            return Ok(loads.clone());
+        }
+        progress(Event::stage("finer body", 0, 1));
+        let mut found = large.stretched(&self.mesh, support, make, stretch)?;
+        for (load, u) in &mut found.loads {
+            (load.forces, *u) = (self.embedding.restrict(&load.forces), self.sampling.interpolate(u));
+        }
+        let found = Arc::new(found);
+        known().insert(name, found.clone());
+        Ok(found)
     }
 
     fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {

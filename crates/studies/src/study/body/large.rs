@@ -142,7 +142,7 @@ impl LargeBody {
 ///
 /// # Errors
 /// One is bent at rest, or its law has fibres.
-fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
+pub(super) fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
     let unsupported = |expected: &str, found: String| {
         Err(Error::expected("material.law", expected, found).of_kind(ErrorKind::Unsupported))
     };
@@ -160,7 +160,7 @@ fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
 }
 
 /// The equilibrium of a model under a load, or the last one on the way to it.
-fn reach(newton: &Newton, model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Equilibrium> {
+pub(super) fn reach(newton: &Newton, model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Equilibrium> {
     if let Some(cavity) = &case.cavity {
         return newton.fill(model, &mesh.points, &case.support, cavity);
     }
@@ -175,7 +175,7 @@ fn pattern(model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Option<Syste
     Ok(Some(pattern.placed(&mesh.points, mesh.dimension)))
 }
 
-fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {
+pub(super) fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {
     if case.pressed.is_some() {
         return Some(product(&case.applied().at(points, u), u)).filter(|work| work.is_finite());
     }

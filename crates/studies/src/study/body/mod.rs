@@ -5,6 +5,7 @@ mod case;
 mod cases;
 mod factored;
 mod fine;
+mod fine_laws;
 mod finer;
 mod gauge;
 mod iterated;

@@ -68,7 +68,8 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
     let higher_modes = mesh.blocks.iter().any(|block| block.element.has_higher_modes());
     let every: Vec<String> = mesh.blocks[0].element.springs.iter().map(|group| group.name.clone()).collect();
     let optional = mesh.blocks.len() == 1 && mesh.blocks[0].element.springs.iter().any(|group| group.optional);
-    // Generated loads are linear, and require supports that hold the body without those of the scene.
+    // Made loads require supports that hold the body without those of the scene. At large deformation each step of a fit to them finds an
+    // equilibrium for each load, which takes minutes where the other fits of a comparison take seconds.
     let material = &scene.material_of(&mesh)?;
     let support = applied_cases(scene, &mesh, material).map_err(|e| scene.with_line(e))?.0;
     let controls = Controls::default();

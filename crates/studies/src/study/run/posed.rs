@@ -72,11 +72,16 @@ impl<'a> Posed<'a> {
 
     /// Makes errors relative to quadratic elements where the cells of the mesh lock and the scene does not say what they are relative to.
     pub fn judge_by_truth(&mut self, progress: &mut Progress) {
-        let Some(entry) = self.scene.reference() else {
+        if self.scene.reference().is_none() {
             let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, progress);
             self.of_reference.extend(notes);
-            return;
-        };
+        }
+        self.tell_of_finer_locking();
+    }
+
+    /// Says that a finer body of the same cells locks as they do.
+    fn tell_of_finer_locking(&mut self) {
+        let Some(entry) = self.scene.reference() else { return };
         let is_finer = entry.standard() == Standard::FinerBody && !entry.is_of_cells() && entry.mesh.is_none();
         if is_finer && let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
             self.of_reference.push(format!(
@@ -88,6 +93,10 @@ impl<'a> Posed<'a> {
 
     /// Says that the finite elements which errors at large deformation are relative to lock.
     pub fn tell_of_locking(&mut self) {
+        if self.scene.reference().is_some_and(|entry| !entry.is_of_cells()) {
+            self.tell_of_finer_locking();
+            return;
+        }
         if let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
             self.of_reference.push(format!(
                 "at nu = {poisson} linear cells lock: errors at large deformation are relative to the finite elements of the mesh, which are too stiff"

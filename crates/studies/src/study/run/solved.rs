@@ -160,6 +160,7 @@ impl Solved {
             (None, None) => Vec::new(),
         };
         whole.newton = self.large.as_ref().map(|_| posed.scene.newton());
+        whole.laws = self.large.as_ref().map(|large| &large.laws);
         whole.fine = self.fine.as_ref().map(|fine| fine as &dyn Finer);
         whole.masses = self.masses.as_ref().map(|masses| &masses.values[..]);
         whole.solver = posed.scene.solver();

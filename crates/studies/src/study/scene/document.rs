@@ -16,7 +16,7 @@ use super::regions::material_map;
 use super::setting::Setting;
 use super::source::SceneSource;
 use crate::bound::{self, check_count};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use crate::file;
 use crate::material::{CellMap, EnergyMap, Material, MaterialMap};
 use crate::mesh::{Mesh, Selection};
@@ -135,10 +135,6 @@ impl Scene {
         }
         if let Some(reference) = &entry.reference {
             reference.check().map_err(|e| e.under("reference"))?;
-            if entry.material.first().law.is_some() {
-                let problem = "belongs to small deformation, found a material with a \"law\"";
-                return Err(Error::at("reference", problem).of_kind(ErrorKind::Unsupported));
-            }
         }
         if let Some(sweep) = &entry.sweep {
             sweep.check().map_err(|e| e.under("sweep"))?;

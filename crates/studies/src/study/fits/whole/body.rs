@@ -8,7 +8,7 @@ use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
-use crate::material::MaterialMap;
+use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network, Support, unheld_bodies};
 use crate::solve::{Equations, KnownEquations, Newton, StaticSolver};
@@ -28,6 +28,8 @@ pub struct WholeBody<'a> {
     pub(in crate::study) displacements: Vec<Option<&'a Vec<f64>>>,
     /// How loads are applied at large deformation; `None` at small deformation.
     pub(in crate::study) newton: Option<Newton>,
+    /// The energies of the laws, at large deformation.
+    pub(in crate::study) laws: Option<&'a EnergyMap>,
     /// The masses, `[points]`, kg.
     pub masses: Option<&'a [f64]>,
     /// How linear equations are solved.
@@ -52,8 +54,8 @@ impl<'a> WholeBody<'a> {
         controls: &'a Controls,
     ) -> WholeBody<'a> {
         let material = material.into();
-        let (cases, displacements, newton, masses, solver, fine, known) = Default::default();
-        WholeBody { mesh, material, support, cases, displacements, newton, masses, solver, fine, controls, known }
+        let (cases, displacements, newton, laws, masses, solver, fine, known) = Default::default();
+        WholeBody { mesh, material, support, cases, displacements, newton, laws, masses, solver, fine, controls, known }
     }
 
     /// Tells it equations of the finite elements that are solved already.
@@ -67,17 +69,29 @@ impl<'a> WholeBody<'a> {
     /// A body can move as a rigid body, some motion has no stiffness, or the equations do not fit into memory.
     pub(in crate::study) fn equations(&self, key: &str, support: &Support) -> Result<Equations> {
         self.known.under(support, || {
-            let expected = match support == self.support {
-                true => "supports in [[fix]] that hold every body, whatever the loads hold",
-                false => "supports that hold every body",
-            };
-            if let Some(body) = unheld_bodies(self.mesh, support).first() {
-                let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
-                return Err(Error::expected(key, expected, found));
-            }
+            self.check_held(key, support)?;
             let found = Equations::of_body(self.mesh, &self.material.moduli(), support, (self.solver, LOADS))?;
-            found.ok_or_else(|| Error::expected(key, expected, "motions without stiffness"))
+            found.ok_or_else(|| Error::expected(key, self.holding(support), "motions without stiffness"))
         })
+    }
+
+    /// Checks that a support holds every body; the key of errors is what requires it.
+    ///
+    /// # Errors
+    /// A body can move as a rigid body.
+    pub(super) fn check_held(&self, key: &str, support: &Support) -> Result<()> {
+        let unheld = unheld_bodies(self.mesh, support);
+        let Some(body) = unheld.first() else { return Ok(()) };
+        let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
+        Err(Error::expected(key, self.holding(support), found))
+    }
+
+    /// What a support must be.
+    fn holding(&self, support: &Support) -> &'static str {
+        match support == self.support {
+            true => "supports in [[fix]] that hold every body, whatever the loads hold",
+            false => "supports that hold every body",
+        }
     }
 
     /// How equations of networks are solved: by iterations, or with factors.
@@ -108,7 +122,8 @@ impl<'a> WholeBody<'a> {
         start: Option<(&[CellFits], &Network)>,
         progress: &mut Progress,
     ) -> Result<(Network, WholeOutcome)> {
-        let wanted = self.wanted(recipe, progress)?;
+        let mut followed = self.made_loads(recipe);
+        let mut wanted = self.wanted(recipe, &mut followed, progress)?;
         // The finite elements have the moduli of the scene: they are no reference for a body that was measured.
         let is_measured = self.is_measured(recipe, &wanted)?;
         for (key, count) in [("masses", recipe.masses), ("frequencies", recipe.frequencies)] {
@@ -118,8 +133,12 @@ impl<'a> WholeBody<'a> {
             }
         }
         let mut object = match start {
-            Some((fits, network)) => self.springs(recipe, fits, network)?,
-            None => self.moduli(recipe, held, &wanted)?,
+            Some((fits, network)) => {
+                let object = self.springs(recipe, fits, network)?;
+                self.keep_reached(&object, &mut wanted, &mut followed)?;
+                object
+            }
+            None => self.moduli(recipe, held, &mut wanted, &mut followed)?,
         };
         let settings = super::identity::identity(recipe, springs, self.newton.as_ref());
         let none = vec![0.0; object.unknowns().count()];
@@ -162,8 +181,10 @@ impl<'a> WholeBody<'a> {
             None => (found, wanted, FoundModuli::default()),
         };
         let has_others = self.fine.is_some() || !recipe.supports.is_empty() || !recipe.other_supports.is_empty();
+        let has_others = has_others || self.newton.is_some() && recipe.loads.made;
         let held_out = if has_others && !is_measured {
-            self.held_out((recipe, held), &object.network(&none), &found.network, progress)?
+            let networks = (&object.network(&none), &found.network);
+            self.held_out((recipe, held), networks, &mut followed, progress)?
         } else {
             Vec::new()
         };
@@ -174,7 +195,8 @@ impl<'a> WholeBody<'a> {
         };
         let [guessed, unmeasured] = if is_measured { self.guessed(recipe, &wanted) } else { Default::default() };
         let own = WholeOutcome::of(recipe, &wanted, &found);
-        let outcome = WholeOutcome { is_measured, guessed, unmeasured, moduli, held_out, masses, ..own };
+        let outcome =
+            WholeOutcome { is_measured, guessed, unmeasured, moduli, held_out, masses, stretched: followed, ..own };
         Ok((found.network, outcome))
     }
 }

@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::finer::Finer;
 use super::finer_steps::{FinerPoint, FinerSteps};
 use super::recipe::{Start, ValidationRecipe, WholeRecipe};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::VolumeSprings;
 use crate::study::progress::Progress;
 use crate::whole::{Determination, Displacements, Object, Target, Wanted, WholeFit, fit_whole};
@@ -81,6 +81,10 @@ impl WholeBody<'_> {
         found: WholeFit,
         progress: &mut Progress,
     ) -> Result<Corrected> {
+        if self.newton.is_some() {
+            let expected = "a material without a law, where moduli come from measurements with [reference]";
+            return Err(Error::expected("unknowns", expected, "one with a law").of_kind(ErrorKind::Unsupported));
+        }
         if matches!(recipe.start, Start::Exact(_, VolumeSprings::Patches)) {
             let expected = "\"points\" or \"cells\", where moduli come from measurements with [reference]";
             return Err(Error::expected("volume", expected, "\"patches\""));

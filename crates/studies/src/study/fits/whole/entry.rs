@@ -66,6 +66,10 @@ pub struct WholeEntry {
     /// Another seed gives other random loads.
     #[schemars(extend("default" = SEED))]
     pub seed: Option<u64>,
+    /// Made loads are as large as it takes for a tenth of the body to become longer or shorter by this share, above 0 and at most 1. The key
+    /// belongs to made loads and a material with a law.
+    #[schemars(extend("x-default" = "0.3, with a law"))]
+    pub stretch: Option<f64>,
     /// Made loads are fitted under these supports, each a list of groups that are held, such as `[["left"], ["left", "right"]]`.
     #[schemars(extend("x-default" = "that of `[[fix]]`"))]
     pub supports: Option<Vec<Vec<String>>>,
@@ -169,6 +173,15 @@ impl WholeEntry {
                 return Err(Error::at(key, "belongs to loads = [\"made\"]"));
             }
         }
+        let is_stretched = is_made || is_validated;
+        if let Some(stretch) = self.stretch {
+            if !is_stretched {
+                return Err(Error::at("stretch", "belongs to loads = [\"made\"] or validate = \"made\""));
+            }
+            if !(stretch > 0.0 && stretch <= 1.0) {
+                return Err(Error::expected("stretch", "a number above 0 and at most 1", stretch));
+            }
+        }
         Ok(WholeRecipe {
             start,
             unknowns,
@@ -178,6 +191,7 @@ impl WholeEntry {
             frequencies: self.frequencies.unwrap_or(0),
             masses: self.masses.unwrap_or(0),
             seed: self.seed.unwrap_or(SEED),
+            stretch: self.stretch,
             supports,
             validation_supports,
             other_supports,

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::mesh::Mesh;
 use crate::model::{Moments, Support};
 use crate::study::progress::Progress;
-use crate::whole::NodalLoad;
+use crate::whole::{MakeLoads, NodalLoad, StretchedLoads};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -35,6 +35,20 @@ pub trait Finer {
         loads: &dyn Fn() -> Vec<NodalLoad>,
         progress: &mut Progress,
     ) -> Result<Answers>;
+
+    /// The loads that stretch the finer body so far at large deformation, on the points of the mesh of the scene, and its displacements there.
+    /// `name` says which loads and which support they are, so that no load is followed twice.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    fn stretched(
+        &self,
+        name: String,
+        support: &Support,
+        make: &MakeLoads,
+        stretch: f64,
+        progress: &mut Progress,
+    ) -> Result<Arc<StretchedLoads>>;
 
     /// The squares ω² of the `count` lowest frequencies under a support of the finer mesh, rad²/s².
     ///

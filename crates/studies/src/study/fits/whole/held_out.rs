@@ -1,16 +1,20 @@
 //! The errors of a whole-object fit under loads that it has not seen, beside those of finite elements with the same mesh.
 
 use super::body::WholeBody;
+use super::made_loads::MadeLoads;
 use super::outcome::{HeldOut, ModelError, WorseLoad};
 use super::recipe::WholeRecipe;
+use super::targets::Held;
 use crate::error::{ErrorKind, Result};
-use crate::fit::{ExactFit, ShearSprings, VolumeSprings};
+use crate::fit::{ShearSprings, VolumeSprings};
 use crate::mesh::Mesh;
-use crate::model::{Network, Support, exact_network};
-use crate::solve::Equations;
+use crate::model::{Body, Elastic, Network, Support, exact_network};
+use crate::number::finite;
+use crate::solve::{Equations, Newton};
 use crate::study::fits::exact::spring_words;
 use crate::study::progress::Progress;
 use crate::whole::{Pressure, Target, varied_loads};
+use rayon::prelude::*;
 
 /// The number of loads for each support.
 const LOADS: usize = 30;
@@ -22,6 +26,8 @@ const ROUNDING: f64 = 1e-6;
 const WORSE: f64 = 1.1;
 /// Springs that average the deformation over the cells around edges and nodes.
 const SMOOTHED: (ShearSprings, VolumeSprings) = (ShearSprings::Edges, VolumeSprings::Patches);
+/// The finite elements of the mesh.
+const BODY: &str = "finite elements";
 /// The model after the fit.
 const FITTED: &str = "fitted";
 /// The exact networks beside which a fit is compared.
@@ -43,7 +49,8 @@ impl HeldOut {
         let whole = format!(
             "the fit leaves {share:.2} of the median error of springs on edges with patches without a fit{words}"
         );
-        (smoothed > ROUNDING).then_some(whole)
+        // Springs that are softer than the finite elements gain nothing where these are what errors are relative to.
+        (smoothed > ROUNDING && median(BODY)? > ROUNDING).then_some(whole)
     }
 }
 
@@ -53,8 +60,8 @@ impl WholeBody<'_> {
     pub(super) fn held_out(
         &self,
         (recipe, held): (&WholeRecipe, &[bool]),
-        start: &Network,
-        fitted: &Network,
+        (start, fitted): (&Network, &Network),
+        followed: &mut Option<MadeLoads>,
         progress: &mut Progress,
     ) -> Result<Vec<HeldOut>> {
         let thickness = &self.material.thicknesses();
@@ -64,20 +71,18 @@ impl WholeBody<'_> {
         let mut all = Vec::new();
         for (held, part) in supports {
             let seed = recipe.seed.wrapping_add(SEED);
-            let make = |mesh: &Mesh, support: &Support| {
+            let make = |mesh: &Mesh, support: &Support, seed: u64| {
                 varied_loads(mesh, support, thickness, Pressure::Varying, (LOADS, seed))
             };
-            let targets = self.made("loads", &held, (&make, seed), progress)?;
-            let body = self.equations("supports", &held.support)?;
-            let of_body = load_errors(&body, &targets)?;
-            let mut models = vec![model_error("finite elements", Some((&body, &of_body)), &targets)?];
+            let targets = self.made(("loads", "held out"), &held, (&make, seed), followed, progress)?;
+            let of_body = self.body_answers(&held, &targets)?;
+            let mut models = vec![model_error(BODY, &of_body, &targets)];
             let mut worse = Vec::new();
             for (model, network) in &networks {
-                let equations = self.equations_of(network, &held.support)?;
-                let errors = equations.as_ref().map(|equations| load_errors(equations, &targets)).transpose()?;
-                models.push(model_error(model, equations.as_ref().zip(errors.as_deref()), &targets)?);
+                let answers = self.network_answers(network, &held, &targets)?;
+                models.push(model_error(model, &answers, &targets));
                 // The fitted network is the last.
-                worse = worse_loads(&targets, &of_body, &errors.unwrap_or_default());
+                worse = worse_loads(&targets, &of_body.errors, &answers.errors);
             }
             let seconds_fine = match (self.fine, &held.fine) {
                 (Some(fine), Some(support)) => Some(fine.seconds_per_step(support)?),
@@ -88,7 +93,28 @@ impl WholeBody<'_> {
         Ok(all)
     }
 
-    /// The exact networks that the body has at small deformation, with their names.
+    /// The answers of the finite elements of the mesh.
+    fn body_answers(&self, held: &Held, targets: &[Target]) -> Result<ModelAnswers> {
+        match (self.laws, self.newton) {
+            (Some(laws), Some(newton)) => {
+                followed_answers(&newton, &Body { mesh: self.mesh, laws }, self.mesh, targets)
+            }
+            _ => linear_answers(&self.equations("supports", &held.support)?, targets),
+        }
+    }
+
+    /// The answers of a network.
+    fn network_answers(&self, network: &Network, held: &Held, targets: &[Target]) -> Result<ModelAnswers> {
+        if let Some(newton) = self.newton {
+            return followed_answers(&newton, network, self.mesh, targets);
+        }
+        match self.equations_of(network, &held.support)? {
+            Some(equations) => linear_answers(&equations, targets),
+            None => Ok(ModelAnswers::default()),
+        }
+    }
+
+    /// The exact networks that the body has, with their names.
     fn exact_networks(&self, held: &[bool]) -> Result<Vec<(String, Network)>> {
         let mut networks = Vec::new();
         // A body of other than isotropic materials has none.
@@ -96,8 +122,9 @@ impl WholeBody<'_> {
             return Ok(networks);
         }
         for (shear, volume) in EXACT {
-            let fit = ExactFit { shear, volume, ..ExactFit::default() };
-            match exact_network(self.mesh, &self.material, &fit, held) {
+            let network =
+                self.exact(shear, volume).and_then(|fit| exact_network(self.mesh, &self.material, &fit, held));
+            match network {
                 Ok(network) => networks.push((exact_name(shear, volume), network)),
                 Err(error) if error.kind() == ErrorKind::Unsupported => {}
                 Err(error) => return Err(error),
@@ -111,35 +138,71 @@ fn exact_name(shear: ShearSprings, volume: VolumeSprings) -> String {
     format!("exact{}", spring_words(shear, volume))
 }
 
-/// `‖u − ū‖/‖ū‖` under each load.
-fn load_errors(equations: &Equations, targets: &[Target]) -> Result<Vec<f64>> {
-    let square = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>();
-    let forces: Vec<Vec<f64>> = targets.iter().map(|target| target.forces.clone()).collect();
-    let error = |(target, u): (&Target, &Vec<f64>)| {
-        let difference: Vec<f64> = u.iter().zip(&target.displacement).map(|(a, b)| a - b).collect();
-        (square(&difference) / square(&target.displacement)).sqrt()
-    };
-    Ok(targets.iter().zip(&equations.solve_all(&forces)?).map(error).collect())
+/// What a model answers to the loads.
+#[derive(Default)]
+struct ModelAnswers {
+    /// `‖u − ū‖/‖ū‖` under each load, infinite without an equilibrium; none of a model that is not stable at rest.
+    errors: Vec<f64>,
+    seconds: Option<f64>,
 }
 
-fn model_error(model: &str, found: Option<(&Equations, &[f64])>, targets: &[Target]) -> Result<ModelError> {
-    let model = model.to_string();
-    let mut none = ModelError { model, median: None, worst: None, worst_load: None, seconds_per_step: None };
-    let Some((equations, errors)) = found else { return Ok(none) };
-    none.seconds_per_step = Some(equations.seconds_per_step()?);
-    let known = errors.iter().zip(targets).map(|(error, target)| (*error, target.name.as_str()));
-    let mut errors: Vec<(f64, &str)> = known.filter(|(error, _)| error.is_finite()).collect();
+/// `‖u − ū‖/‖ū‖`.
+fn load_error(target: &Target, u: &[f64]) -> f64 {
+    let square = |u: &[f64]| u.iter().map(|u| u * u).sum::<f64>();
+    let difference: Vec<f64> = u.iter().zip(&target.displacement).map(|(a, b)| a - b).collect();
+    (square(&difference) / square(&target.displacement)).sqrt()
+}
+
+fn linear_answers(equations: &Equations, targets: &[Target]) -> Result<ModelAnswers> {
+    let forces: Vec<Vec<f64>> = targets.iter().map(|target| target.forces.clone()).collect();
+    let found = equations.solve_all(&forces)?;
+    let errors = targets.iter().zip(&found).map(|(target, u)| load_error(target, u)).collect();
+    Ok(ModelAnswers { errors, seconds: Some(equations.seconds_per_step()?) })
+}
+
+/// The answers at large deformation. The displacements of a load are the first guess: the nearest equilibrium is that of the same branch.
+fn followed_answers(
+    newton: &Newton,
+    model: &(dyn Elastic + Sync),
+    mesh: &Mesh,
+    targets: &[Target],
+) -> Result<ModelAnswers> {
+    let (Some(rest), Some(first)) = (model.respond(&mesh.points), targets.first()) else {
+        return Ok(ModelAnswers::default());
+    };
+    let pattern = Newton::pattern(&rest.tangent, &first.support)?.placed(&mesh.points, mesh.dimension);
+    let error = |target: &Target| {
+        let Target { support, forces, displacement, .. } = target;
+        let found = newton.reach_stable(model, &mesh.points, support, forces, Some(displacement), &pattern)?;
+        Ok(found.map_or(f64::INFINITY, |(u, _)| load_error(target, &u)))
+    };
+    Ok(ModelAnswers { errors: targets.par_iter().map(error).collect::<Result<_>>()?, seconds: None })
+}
+
+fn model_error(model: &str, answers: &ModelAnswers, targets: &[Target]) -> ModelError {
+    let known = answers.errors.iter().zip(targets).map(|(error, target)| (*error, target.name.as_str()));
+    let mut errors: Vec<(f64, &str)> = known.filter(|(error, _)| !error.is_nan()).collect();
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((worst, load)) = errors.last() else { return Ok(none) };
-    let (low, high) = (errors[(errors.len() - 1) / 2].0, errors[errors.len() / 2].0);
-    let (median, worst, worst_load) = (Some((low + high) / 2.0), Some(*worst), Some((*load).into()));
-    Ok(ModelError { median, worst, worst_load, ..none })
+    let lost = errors.iter().filter(|(error, _)| error.is_infinite()).count();
+    let median = (!errors.is_empty()).then(|| (errors[(errors.len() - 1) / 2].0 + errors[errors.len() / 2].0) / 2.0);
+    let worst = errors.last().copied();
+    ModelError {
+        model: model.into(),
+        median: median.and_then(finite),
+        worst: worst.and_then(|(worst, _)| finite(worst)),
+        worst_load: worst.map(|(_, load)| load.into()),
+        seconds_per_step: answers.seconds,
+        lost,
+    }
 }
 
 /// The loads whose errors are worse than those of the finite elements of the mesh.
 fn worse_loads(targets: &[Target], of_body: &[f64], errors: &[f64]) -> Vec<WorseLoad> {
     let pairs = targets.iter().zip(of_body.iter().zip(errors));
-    let worse = pairs.filter(|(_, (body, error))| **error > (WORSE * **body).max(ROUNDING));
+    // JSON has no infinity: loads without an equilibrium are counted beside. Without a finer body the finite elements have no error, and each
+    // load would be worse.
+    let known = pairs.filter(|(_, (body, error))| **body > ROUNDING && body.is_finite() && error.is_finite());
+    let worse = known.filter(|(_, (body, error))| **error > (WORSE * **body).max(ROUNDING));
     worse
         .map(|(target, (body, error))| WorseLoad { load: target.name.clone(), finite_elements: *body, fitted: *error })
         .collect()

@@ -35,6 +35,7 @@ pub(super) fn identity(
         ("range", json!(whole.range)),
         ("by_error", json!(whole.weighing == Weighing::ByError)),
         ("newton", json!(newton)),
+        ("stretch", json!(recipe.stretch)),
     ];
     settings.extend(more.map(|(key, value)| (key.to_string(), value)));
     settings

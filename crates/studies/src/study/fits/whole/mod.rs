@@ -13,17 +13,20 @@ mod found_moduli;
 mod frequencies;
 mod held_out;
 mod identity;
+mod made_loads;
 mod moduli;
 mod notes;
 mod objects;
 mod outcome;
 mod recipe;
 mod record;
+mod stretched;
 mod targets;
 
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
 pub use finer::{Answers, Finer, RegionFactors};
+pub use made_loads::{MadeLoads, ScaledLoad};
 pub use moduli::{FoundModuli, FoundModulus, ModuliSearch};
 pub use outcome::{
     FittedLoad, FittedMasses, HeldOut, ModelError, ModelFrequencies, SupportFrequencies, SupportPart, WholeOutcome,

@@ -1,5 +1,6 @@
 //! What a whole-object fit has to say to its reader.
 
+use super::made_loads::MadeLoads;
 use super::outcome::{FittedMasses, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome, WorseLoad};
 
 /// A relative error under a load from which on a fit has not enough unknowns of the right kind.
@@ -59,8 +60,10 @@ impl WholeOutcome {
         let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
         let held_out = self.held_out.iter().map(|held_out| {
             let seen = held_out.part.words();
-            let model =
-                |model: &ModelError| format!("{} {} / {}", model.model, percent(model.median), percent(model.worst));
+            let model = |model: &ModelError| {
+                let lost = if model.lost > 0 { format!(" ({} lost)", model.lost) } else { String::new() };
+                format!("{} {} / {}{lost}", model.model, percent(model.median), percent(model.worst))
+            };
             let models: Vec<String> = held_out.models.iter().map(model).collect();
             let (loads, support) = (held_out.loads, &held_out.support);
             let worse = |load: &WorseLoad| {
@@ -86,6 +89,7 @@ impl WholeOutcome {
             self.loads.join(", ")
         );
         let moduli = self.moduli.notes();
+        let stretched = self.stretched.iter().flat_map(MadeLoads::notes);
         let guessed = (!self.guessed.is_empty()).then(|| {
             format!(
                 "displacements under {} are those of finite elements with the moduli of the scene, a guess where others are measured; \
@@ -99,7 +103,7 @@ impl WholeOutcome {
         });
         let masses = self.masses.iter().flat_map(FittedMasses::notes);
         let rest = [self.capacity(), guessed, unmeasured].into_iter().flatten();
-        std::iter::once(fitted).chain(moduli).chain(held_out).chain(masses).chain(rest).collect()
+        std::iter::once(fitted).chain(moduli).chain(stretched).chain(held_out).chain(masses).chain(rest).collect()
     }
 
     /// What limits a fit that leaves large errors: the springs, or the loads that have chosen ρ.

@@ -1,5 +1,6 @@
 //! The loads of a whole-object fit, and its result.
 
+use super::made_loads::MadeLoads;
 use super::moduli::FoundModuli;
 use super::recipe::{Start, WholeRecipe};
 use crate::material::{CellMap, Hooke, Moduli};
@@ -47,8 +48,11 @@ pub struct WholeOutcome {
     #[serde(flatten)]
     pub moduli: FoundModuli,
     /// Each entry has the errors of a support under loads that were neither fitted nor chose ρ. The list is empty without `[reference]` and
-    /// `supports`, and with measured displacements.
+    /// `supports`, unless made loads are fitted at large deformation, and with measured displacements.
     pub held_out: Vec<HeldOut>,
+    /// `stretched` says how far made loads stretch the body at large deformation; it is null at small deformation and without such loads.
+    #[serde(default)]
+    pub stretched: Option<MadeLoads>,
     /// `relative_errors_of_frequencies` has the relative errors of the frequencies before and after.
     #[serde(rename = "relative_errors_of_frequencies")]
     pub frequencies: FrequencyErrors,
@@ -245,8 +249,11 @@ pub struct ModelError {
     pub worst: Option<f64>,
     /// The largest error is under this load.
     pub worst_load: Option<String>,
-    /// A linear implicit step takes this time in s: one solution with a factor or levels that are there.
+    /// A linear implicit step takes this time in s: one solution with a factor or levels that are there. It is null at large deformation.
     pub seconds_per_step: Option<f64>,
+    /// The model has no equilibrium under this number of the loads. They count as those with the largest errors, which are then null.
+    #[serde(default)]
+    pub lost: usize,
 }
 
 /// The relative error `‖u − ū‖/‖ū‖` under a load, before and after a whole-object fit; null if the network is not stable.
@@ -303,6 +310,7 @@ impl WholeOutcome {
             unmeasured: Vec::new(),
             moduli: FoundModuli::default(),
             held_out: Vec::new(),
+            stretched: None,
             masses: None,
         }
     }

@@ -29,6 +29,8 @@ pub struct WholeRecipe {
     /// The supports under which made loads are fitted, each by the names of the groups that are held; that of the scene if
     /// empty.
     pub supports: Vec<Vec<String>>,
+    /// The stretch that made loads cause at large deformation; `None` stands for 0.3.
+    pub stretch: Option<f64>,
     /// The supports under which made loads of the validation act; those of the fit if empty.
     pub validation_supports: Vec<Vec<String>>,
     /// The supports under which loads neither are fitted nor choose ρ, and errors are reported.
@@ -92,6 +94,8 @@ pub enum ValidationRecipe {
     None,
 }
 
+/// The stretch of made loads at large deformation, where the scene names none.
+pub const STRETCH: f64 = 0.3;
 /// The name of the loads that are generated from the mesh.
 pub const MADE: &str = "made";
 /// The name of the validation that leaves out one load at a time.
@@ -143,21 +147,20 @@ impl WholeRecipe {
         self.unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element)
     }
 
+    /// Whether loads are made from the mesh, for the fit or to choose ρ.
+    pub fn has_made_loads(&self) -> bool {
+        self.loads.made || matches!(&self.validation, ValidationRecipe::Loads(loads) if loads.made)
+    }
+
     /// Checks the settings that depend on the material.
     ///
     /// # Errors
-    /// Loads are generated and displacements are large, or frequencies are fitted without a density.
+    /// Loads have a stretch and displacements are small, or frequencies are fitted without a density.
     pub fn check(&self, law: bool, density: bool) -> Result<()> {
-        let judged = matches!(&self.validation, ValidationRecipe::Loads(loads) if loads.made);
-        for (key, made) in [("loads", self.loads.made), ("validate", judged)] {
-            if law && made {
-                let expected = "loads of the scene, where the material has a law";
-                return Err(Error::expected(key, expected, "\"made\""));
-            }
-        }
-        if law && self.unknowns.moduli().is_some() {
-            let expected = "a material without a law, where the moduli of cells are unknown";
-            return Err(Error::expected("unknowns", expected, format!("\"{}\"", self.unknowns.name())));
+        if self.stretch.is_some() && !law {
+            let problem =
+                "belongs to a material with a \"law\", found one without: at small deformation loads have no size";
+            return Err(Error::at("stretch", problem));
         }
         if self.frequencies > 0 && !density {
             return Err(Error::expected("frequencies", "a density in [material]", "none"));

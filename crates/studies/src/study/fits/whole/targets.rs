@@ -2,6 +2,7 @@
 
 use super::body::WholeBody;
 use super::finer::Answers;
+use super::made_loads::MadeLoads;
 use super::outcome::SupportPart;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, ErrorKind, Result};
@@ -21,8 +22,8 @@ const RANDOM: usize = 4;
 /// many leave the worst loads worse, twice as many gain little.
 const VARIED: usize = 16;
 
-/// Makes loads from a mesh and its support.
-pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support) -> Vec<NodalLoad> + 'a;
+/// Makes loads from a mesh and its support. Those that are drawn at random are others with each seed.
+pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support, u64) -> Vec<NodalLoad> + 'a;
 
 /// A support under which loads are made from the mesh.
 pub(super) struct Held {
@@ -42,19 +43,25 @@ impl Held {
 
 impl WholeBody<'_> {
     /// The targets of a fit.
-    pub(super) fn wanted(&self, recipe: &WholeRecipe, progress: &mut Progress) -> Result<Wanted> {
+    pub(super) fn wanted(
+        &self,
+        recipe: &WholeRecipe,
+        followed: &mut Option<MadeLoads>,
+        progress: &mut Progress,
+    ) -> Result<Wanted> {
         recipe.check(self.newton.is_some(), self.masses.is_some())?;
         let thickness = &self.material.thicknesses();
         let is_varied = self.is_varied(recipe);
         let supports = self.supports("supports", &recipe.supports)?;
-        let make = |mesh: &Mesh, support: &Support| {
+        let make = |mesh: &Mesh, support: &Support, seed: u64| {
             let mut loads = made_loads(mesh, support, thickness);
             if is_varied {
-                loads.extend(varied_loads(mesh, support, thickness, Pressure::Uniform, (VARIED, recipe.seed)));
+                loads.extend(varied_loads(mesh, support, thickness, Pressure::Uniform, (VARIED, seed)));
             }
             loads
         };
-        let mut trained = self.targets("loads", &recipe.loads, &supports, (&make, recipe.seed), progress)?;
+        let made = (&make as &Loads, recipe.seed);
+        let mut trained = self.targets("loads", &recipe.loads, &supports, made, followed, progress)?;
         let validation = match &recipe.validation {
             ValidationRecipe::None => Validation::None,
             ValidationRecipe::LeaveOneOut => Validation::LeaveOneOut,
@@ -64,14 +71,15 @@ impl WholeBody<'_> {
                     [] => supports,
                     others => self.supports("validate_supports", others)?,
                 };
-                let make = |mesh: &Mesh, support: &Support| match is_varied {
+                let make = |mesh: &Mesh, support: &Support, seed: u64| match is_varied {
                     true => {
-                        let drawn = (VARIED, recipe.seed.wrapping_add(1));
+                        let drawn = (VARIED, seed.wrapping_add(1));
                         varied_loads(mesh, support, thickness, Pressure::Varying, drawn)
                     }
-                    false => random_loads(mesh, support, thickness, RANDOM, recipe.seed),
+                    false => random_loads(mesh, support, thickness, RANDOM, seed),
                 };
-                Validation::Loads(self.targets("validate", named, &others, (&make, recipe.seed), progress)?)
+                let made = (&make as &Loads, recipe.seed);
+                Validation::Loads(self.targets("validate", named, &others, made, followed, progress)?)
             }
         };
         let noise = self.weigh(recipe, &mut trained)?;
@@ -165,6 +173,7 @@ impl WholeBody<'_> {
         named: &LoadSelection,
         supports: &[Held],
         made: (&Loads, u64),
+        followed: &mut Option<MadeLoads>,
         progress: &mut Progress,
     ) -> Result<Vec<Target>> {
         let mut targets = Vec::new();
@@ -201,40 +210,47 @@ impl WholeBody<'_> {
         }
         if named.made {
             for held in supports {
-                targets.extend(self.made(key, held, made, progress)?);
+                targets.extend(self.made((key, key), held, made, followed, progress)?);
             }
         }
         Ok(targets)
     }
 
-    /// The loads that are made with a seed from the mesh, or from the finer one, with the displacements of its finite elements.
+    /// The loads that are made with a seed from the mesh, or from the finer one, with the displacements of its finite elements. Errors have the key,
+    /// and `set` says in words what the loads are for.
     pub(super) fn made(
         &self,
-        key: &str,
+        (key, set): (&str, &str),
         held: &Held,
         (make, seed): (&Loads, u64),
+        followed: &mut Option<MadeLoads>,
         progress: &mut Progress,
     ) -> Result<Vec<Target>> {
-        let answers: Answers = match (self.fine, &held.fine) {
-            (Some(fine), Some(support)) => {
-                let name = format!("{key} {seed} {:?}", held.groups);
-                fine.answers(name, support, &|| make(fine.mesh(), support), progress)?
+        let name = format!("{set} {seed} {:?}", held.groups);
+        let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
+        let answers: Answers = match (followed, self.fine, &held.fine) {
+            (Some(followed), ..) => {
+                let all = self.stretched(key, held, (make, seed), followed.stretch, name, progress)?;
+                followed.add((set, &place), &all);
+                Arc::new(all.loads.clone())
             }
-            _ => {
+            (None, Some(fine), Some(support)) => {
+                fine.answers(name, support, &|| make(fine.mesh(), support, seed), progress)?
+            }
+            (None, ..) => {
                 let equations = self.equations(key, &held.support)?;
                 let answer = |load: NodalLoad| {
                     let u = equations.solve(&load.forces)?.0;
                     Ok((load, u))
                 };
-                Arc::new(make(self.mesh, &held.support).into_iter().map(answer).collect::<Result<_>>()?)
+                Arc::new(make(self.mesh, &held.support, seed).into_iter().map(answer).collect::<Result<_>>()?)
             }
         };
-        let place = if held.groups.is_empty() { String::new() } else { format!(", held at {}", held.words()) };
         let target = |(load, u): &(NodalLoad, Vec<f64>)| {
             let name = format!("{}{place}", load.name);
             // Without it the fit loses the resistance to a change of volume, which the other loads hardly see.
             let is_firm = load.name == PRESSURE;
-            Target { is_firm, ..Target::new(name, held.support.clone(), load.forces.clone(), u.clone()) }
+            Target { is_firm, is_made: true, ..Target::new(name, held.support.clone(), load.forces.clone(), u.clone()) }
         };
         Ok(answers.iter().map(target).collect())
     }
