@@ -2,9 +2,10 @@
 
 use crate::coarse::block;
 use crate::whole::compare_with_differences;
-use nalgebra::{DMatrix, Matrix3};
+use nalgebra::{DMatrix, DVector, Matrix3};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
+use springfit::fit::solvers::{Normal, solve_nonnegative};
 use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
 use springfit::material::{Energy, EnergyMap, Material, State};
 use springfit::mesh::{CellIndex, Group, Mesh};
@@ -300,20 +301,23 @@ fn share(outcome: &Outcome, words: &str) -> f64 {
     own / other
 }
 
-/// Under loads at 30 % stretch that it has not seen, a coarse network errs at most a fifth as much as the finite elements of its mesh.
+/// Under loads at 30 % stretch that it has not seen, a coarse network errs at most a fifth as much as the finite elements of its mesh: two
+/// bodies that are drawn from seeds, beside quadratic elements on the same cells.
 #[test]
-fn a_coarse_network_follows_a_finer_body_to_large_stretch() {
-    let folder = tempfile::tempdir().unwrap();
-    let fits = format!("{COARSE}shear = \"edges\"\nvolume = \"patches\"\n");
-    let scene = drawn(folder.path(), 1, ("tet4", [4, 1, 1]), "from = \"quadratic\"", &fits);
-    let found = share(&run(&scene, &mut |_| {}).unwrap(), "seed 1, a small body");
-    assert!(found < 0.2, "{found}");
+fn coarse_networks_follow_finer_bodies_to_large_stretch() {
+    for seed in [1, 2] {
+        let folder = tempfile::tempdir().unwrap();
+        let fits = format!("{COARSE}shear = \"edges\"\nvolume = \"patches\"\n");
+        let scene = drawn(folder.path(), seed, ("tet4", [4, 1, 1]), "from = \"quadratic\"", &fits);
+        let found = share(&run(&scene, &mut |_| {}).unwrap(), &format!("seed {seed}, one cell across"));
+        assert!(found < 0.2, "seed {seed}: {found}");
+    }
 }
 
-/// The same for two bodies beside quadratic elements on cells that are halved: minutes.
+/// The same with two cells across, beside quadratic elements on cells that are halved.
 #[test]
 #[ignore = "takes minutes: .ci/long has it"]
-fn coarse_networks_follow_two_drawn_bodies_to_large_stretch() {
+fn coarse_networks_follow_much_finer_bodies_to_large_stretch() {
     for seed in [7, 8] {
         let folder = tempfile::tempdir().unwrap();
         let fits = format!("{COARSE}shear = \"edges\"\nvolume = \"patches\"\n");
@@ -368,4 +372,52 @@ fn measured_moduli_come_back_at_large_deformation() {
             assert!((modulus.factor - truth).abs() < 1e-5 && low < truth + 1e-5 && high > truth - 1e-5, "{modulus:?}");
         }
     }
+}
+
+/// Why springs with the rest lengths of a mesh do not follow a body to a large stretch, however long they are fitted to one load: forces are
+/// linear in constants, `A k = f` at the positions of the finite elements. Constants of either sign solve it, those that are not negative do not.
+#[test]
+fn a_stretched_body_asks_for_negative_constants() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[mesh]\nbox = { element = \"tet4\", size = [3, 1, 1], cells = [6, 2, 2] }\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+                law = \"stable-neo-hookean\"\n[[fit]]\nobjective = \"whole\"\nstart = [\"offdiag\", \"exact\"]\nloads = [\"pull\"]\n\
+                regularization = 1e-6\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [3500, 0, 0]\n";
+    std::fs::write(folder.path().join("scene.toml"), text).unwrap();
+    let outcome = run(&Scene::load(&folder.path().join("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    let left = |fit: usize| outcome.fits[fit].kind.whole().unwrap().fitted[0].after;
+    let (load, springs) = (&outcome.loads[0], &outcome.fits[0].network.lengths);
+    let x = displaced(&outcome.mesh.points, &load.fem);
+    let free: Vec<usize> = (0..x.len()).filter(|&dof| load.support.prescribed[dof].is_none()).collect();
+    let mut all = DMatrix::zeros(x.len(), springs.len());
+    for (s, spring) in springs.iter().enumerate() {
+        let [a, b] = spring.points;
+        let way: Vec<f64> = (0..3).map(|k| x[3 * b + k] - x[3 * a + k]).collect();
+        let length = way.iter().map(|w| w * w).sum::<f64>().sqrt();
+        for (k, way) in way.iter().enumerate() {
+            let pull = (length - spring.rest) / length * way;
+            (all[(3 * a + k, s)], all[(3 * b + k, s)]) = (-pull, pull);
+        }
+    }
+    let a = all.select_rows(&free);
+    let f = DVector::from_iterator(free.len(), free.iter().map(|&dof| load.forces[dof]));
+    let lack = |k: &DVector<f64>| (&a * k - &f).norm() / f.norm();
+    let signed = a.clone().svd(true, true).solve(&f, 1e-12).unwrap();
+    assert!(lack(&signed) < 1e-9, "{}", lack(&signed));
+    let gram = a.transpose() * &a;
+    let (k, _) = solve_nonnegative(&Normal::new(gram.as_slice().to_vec(), (a.transpose() * &f).as_slice().to_vec()));
+    let k = DVector::from_vec(k);
+    // It is the least: no constant above zero has a slope, and no other would lower the residual if it grew.
+    let slope = a.transpose() * (&a * &k - &f);
+    let size = (a.transpose() * &f).amax();
+    assert!(k.iter().zip(&slope).all(|(k, slope)| *k >= 0.0 && *slope > -1e-8 * size && slope.min(*k) < 1e-8 * size));
+    let negative = signed.iter().filter(|k| **k < 0.0).count();
+    println!(
+        "{} springs, {} equations, {negative} negative, positive ones leave {:.2} % of the forces; the fit leaves {:.2} %, moduli {:.0e}",
+        springs.len(),
+        free.len(),
+        100.0 * lack(&k),
+        100.0 * left(0),
+        left(1)
+    );
+    assert!(negative > 50 && lack(&k) > 0.015 && left(0) > 0.05 && left(1) < 1e-6);
 }
