@@ -71,7 +71,6 @@ fn options_are_named_as_they_are_typed() {
         (&["compare", "tri3", "--poisson", "2"], "--poisson"),
         (&["compare", "tri3", "--stretch", "0.2"], "--stretch"),
         (&["compare", "tri3", "--law", "neo-hookean", "--shapes", "3"], "--shapes"),
-        (&["compare", "tri3", "--explain"], "--explain"),
         (&["compare", "s.toml", "--shapes", "3"], "--shapes"),
         (&["compare", "s.toml", "--poisson", "0.1"], "--poisson"),
         (&["compare", "s.toml", "--law", "neo-hookean"], "--law"),

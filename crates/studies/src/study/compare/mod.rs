@@ -6,6 +6,7 @@ mod entry;
 mod plan;
 mod record;
 mod run;
+mod sets;
 mod usual;
 
 pub use cells::{MethodOutcome, compare_element, measure_recipes};
