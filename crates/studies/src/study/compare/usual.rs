@@ -52,7 +52,7 @@ fn exact_fits(law: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> V
 /// Runs the scene with every objective in place of its own fits, and with the content spring if the elements have one.
 ///
 /// # Errors
-/// Those of [`run`](super::run()); or the scene has no loads.
+/// Those of [`run`](crate::study::run()); or the scene has no loads.
 pub fn compare_scene(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
     let controls = Controls { announce: true, ..Controls::default() };
     run_with(&compared(scene)?, &controls, progress)
