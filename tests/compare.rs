@@ -169,6 +169,16 @@ fn a_file_has_its_files_and_goes_on() {
     let now = cases(&out);
     assert_eq!(now.len(), 12);
     assert!(records.iter().all(|record| now.contains(record)));
+    // With fewer cases the others stay in the file, and no figure has them.
+    fs::write(folder.path().join("c.toml"), more.replace("elements = [\"tri3\", \"quad4\"]", "elements = [\"tri3\"]"))
+        .unwrap();
+    done(folder.path(), &["compare", "c.toml", "--resume"]);
+    assert_eq!(cases(&out).len(), 12);
+    let output = springfit(folder.path(), &["plot", "out/compare-c", "--figure", "ecdf", "--of", "quad4"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("--of: expected an element or a scene of the comparison: tri3, found"), "{said}");
+    fs::write(folder.path().join("c.toml"), &more).unwrap();
+    done(folder.path(), &["compare", "c.toml", "--resume"]);
     fs::write(folder.path().join("c.toml"), more.replace("nonnegative = [true]", "tied = [true]")).unwrap();
     for (arguments, words) in [
         (
@@ -275,6 +285,34 @@ fn scenes_and_laws_are_cases() {
     assert!(svg.starts_with("<svg"));
 }
 
+/// A setting is that of the scene; one pair of figures is too few to tell; and a key of one value has no figure.
+#[test]
+fn settings_few_pairs_and_single_values_are_told() {
+    let folder = folder_with(NORMS);
+    let scene = "[mesh]\nbox = { element = \"tri3\", size = [1, 1], cells = [3, 3] }\n[material]\nyoung = 1e4\npoisson = 0.3\n\
+                 [[fix]]\ngroup = \"ymin\"\n[[load]]\nname = \"pull\"\ngroup = \"ymax\"\ntraction = [0, 100]\n[[fit]]\nobjective = \"exact\"\n";
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let fits = ["--fit", "objective = ['frobenius', 'offdiag']"];
+    let errors = |poisson: &str| {
+        let set = format!("material.poisson={poisson}");
+        let out = format!("o{poisson}");
+        done(folder.path(), &[&["compare", "s.toml", "--set", &set, "--out", &out][..], &fits].concat());
+        cases(&folder.path().join(out))[0].methods[0].values["e_rms"].clone()
+    };
+    assert_ne!(errors("0.1"), errors("0.4"));
+    let pairs = fs::read_to_string(folder.path().join("o0.1/pairs.csv")).unwrap();
+    assert!(pairs.lines().any(|line| line.starts_with("e_rms,") && line.ends_with(",too few pairs")), "{pairs}");
+    for (figure, words) in [
+        ("poisson", "expected cases with several values of poisson, found one"),
+        ("norms", "has no errors in both norms"),
+        ("samples", "has no fits with several numbers of shapes"),
+    ] {
+        let output = springfit(folder.path(), &["plot", "o0.1", "--figure", figure]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && said.contains(words), "{said}");
+    }
+}
+
 /// A published formula that has none for an element has no figures there, and the reason.
 #[test]
 fn what_does_not_serve_a_case_says_why() {
@@ -322,11 +360,33 @@ fn wrong_comparisons_are_refused() {
         ("shapes = {", "laws = [\"neo-hookean\"]\nshapes = {", "compare.shapes: belongs to a comparison without laws"),
         ("shapes = {", "stretch = 0.2\nshapes = {", "compare.stretch: belongs to a comparison with laws"),
         ("shapes = {", "scenes = [\"nowhere.toml\"]\nshapes = {", "nowhere.toml"),
+        (
+            "shapes = {",
+            "scenes = [\"\"]\nshapes = {",
+            "c.toml:5: compare.scenes[0]: expected the path of a file, found \"\"",
+        ),
+        ("\"quad4\"", "\"own.toml\"", "c.toml:3: compare.elements[1]: expected the path of a file, found \"own.toml\""),
+        (
+            "count = 6, distortion = [0.05, 0.2]",
+            "count = [1, 2], seed = [1], aspect = [1.0, 2.0, 2.0]",
+            "expected each case once",
+        ),
         ("title = \"Norms\"", "titel = \"Norms\"", "unknown field \"titel\""),
     ] {
         let found = wrong(from, to);
         assert!(found.contains(words) && !found.contains('\n'), "{to}: {found}");
     }
+    let law = "[compare]\nelements = [\"tri3\"]\nlaws = [\"hookean\"]\n";
+    let found = comparing(law).unwrap_err().to_string();
+    assert!(found.starts_with("c.toml:3: compare.laws[0]: expected one of"), "{found}");
+    // A grid that is too large is refused before it is made.
+    let many = (0..1000).map(|i| i.to_string()).collect::<Vec<_>>().join(", ");
+    let grid = format!(
+        "shapes = {{ count = 1, seed = [{many}], aspect = [{}] }}",
+        (1..1000).map(|i| i.to_string()).collect::<Vec<_>>().join(", ")
+    );
+    let found = wrong("shapes = { count = 6, distortion = [0.05, 0.2] }", &grid);
+    assert!(found.contains("compare.shapes: expected at most 100000 sets of shapes, found 999000"), "{found}");
     // Springs on the content of an element that has none.
     let bars =
         "[compare]\nelements = [\"bar2\"]\n[[compare.fit]]\nobjective = \"frobenius\"\nsprings = \"all + volume\"\n";
@@ -340,6 +400,10 @@ fn wrong_comparisons_are_refused() {
     let folder = folder_with(NORMS);
     for (arguments, words) in [
         (&["compare", "c.toml", "--poisson", "0.3"][..], "--poisson: belongs to an element"),
+        (
+            &["compare", "c.toml", "--set", "compare.poisson=0.3"],
+            "--set: belongs to a scene, found compare.poisson=0.3 with a file",
+        ),
         (&["compare", "c.toml", "tri3"], "found \"tri3\" beside a file with [compare]"),
         (&["compare", "tri3", "--resume"], "--resume: belongs to a file with [compare]"),
         (&["compare", "tri3", "--jobs", "0"], "--jobs: expected a number from 1 to 1024, found 0"),

@@ -63,7 +63,8 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
     assert!(svg.contains("time to fit") && svg.contains("e_rms under shear"));
     // The marks of the chart, without those of the legend, reach over most of it in both directions.
     let tall: f64 = svg.split_once("viewBox=\"0 0 ").unwrap().1.split(['"', ' ']).nth(1).unwrap().parse().unwrap();
-    let heights = numbers(&svg, "circle", "cy");
+    let squares = numbers(&svg, "rect", "y").into_iter().filter(|y| *y > 0.0);
+    let heights: Vec<f64> = numbers(&svg, "circle", "cy").into_iter().chain(squares).collect();
     assert!(heights.iter().any(|y| *y < 0.3 * tall), "{heights:?} of {tall}");
     let motion = folder("membrane.toml");
     let chart = chart_of(Figure::Motion, &RunFolder::at(motion.path()), None);

@@ -79,12 +79,19 @@ fn corrections_ranks_and_verdicts_follow_their_rules() {
     let pair = |first: &[f64], second: &[f64]| Paired::of(first, second).unwrap();
     let found = pair(&half, &a);
     assert!(found.wins == 50 && found.losses == 0 && (found.ratio - 0.5).abs() < 1e-12 && found.p < 1e-8);
-    assert_eq!(found.verdict(found.p), Verdict::First);
-    assert_eq!(pair(&a, &half).verdict(found.p), Verdict::Second);
-    assert_eq!(pair(&a, &a).verdict(1.0), Verdict::Tie);
+    assert_eq!(found.verdict(found.p, 1), Verdict::First);
+    assert_eq!(pair(&a, &half).verdict(found.p, 1), Verdict::Second);
+    assert_eq!(pair(&a, &a).verdict(1.0, 1), Verdict::Tie);
     // Better by chance: half of the cases are better, the others worse by as much.
     let mixed: Vec<f64> = a.iter().enumerate().map(|(i, x)| if i % 2 == 0 { 2.0 * x } else { x / 2.0 }).collect();
     let found = pair(&mixed, &a);
-    assert_eq!(found.verdict(found.p), Verdict::Tie);
+    assert_eq!(found.verdict(found.p, 1), Verdict::Tie);
+    // Five pairs tell nothing at 5 %, six do, and of ten comparisons each needs nine.
+    for (count, made, known) in
+        [(5, 1, Verdict::TooFew), (6, 1, Verdict::First), (8, 10, Verdict::TooFew), (9, 10, Verdict::First)]
+    {
+        let found = pair(&half[..count], &a[..count]);
+        assert_eq!(found.verdict((found.p * made as f64).min(1.0), made), known, "{count} of {made}");
+    }
     assert!(Paired::of(&[0.0], &[1.0]).is_none() && median(&[]).is_nan());
 }

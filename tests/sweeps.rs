@@ -369,3 +369,19 @@ fn the_studies_are_listed_without_running() {
     // Other commands run the scene as it is.
     done(folder.path(), "run s.toml");
 }
+
+/// The figure of a sweep has a curve for each fit over the key that varies, whose points are those of the table.
+#[test]
+fn a_sweep_is_drawn_over_its_key() {
+    let folder = folder_with("[sweep.over]\nmaterial.poisson = [0.0, 0.2, 0.4]\nmaterial.young = [10, 1000]\n");
+    let folder = folder.path();
+    done(folder, "sweep s.toml --out o");
+    for of in ["material.poisson", "material.young"] {
+        let svg = done(folder, &format!("plot o --figure sweep --of {of}"));
+        assert!(svg.contains(of) && svg.contains("frobenius") && svg.contains("spectral"), "{of}");
+    }
+    assert!(done(folder, "plot o --figure sweep").contains("material.poisson"));
+    let words = refused(folder, "plot o --figure sweep --of material.thickness");
+    assert!(words.contains("--of: expected a key with several numbers: material.poisson, material.young"), "{words}");
+    assert!(refused(folder, "plot . --figure sweep").contains("has no studies"));
+}

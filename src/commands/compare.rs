@@ -101,6 +101,7 @@ impl Compare {
         let text = std::fs::read_to_string(first).unwrap_or_default();
         if is_comparison(&text) {
             self.check_alone("a file with [compare], which has its own keys")?;
+            self.settings.expect_none("a file with [compare]")?;
             let comparing = Comparing::load(first)?;
             return self.compare(terminal, &comparing, &folder, true);
         }
@@ -110,11 +111,10 @@ impl Compare {
             return if self.fit.is_empty() {
                 self.scene(terminal, first, &folder)
             } else {
-                self.settings.expect_none()?;
                 self.compare(terminal, &self.comparing("scenes")?, &folder, false)
             };
         }
-        self.settings.expect_none()?;
+        self.settings.expect_none("an element")?;
         match (&self.law[..], &self.what[..], &self.fit[..]) {
             ([law], [element], []) if self.poisson.len() < 2 && !self.explain => {
                 self.stretches(terminal, element, law, &folder)
@@ -166,7 +166,7 @@ impl Compare {
         if !fits.is_empty() {
             keys.insert("fit".into(), Value::Array(fits));
         }
-        Comparing::of_table(keys, Path::new("")).map_err(|e| e.placed(option))
+        Comparing::of_table(keys, Path::new(""), &self.settings.read()?).map_err(|e| e.placed(option))
     }
 
     /// Runs the cases that are left, and writes what was found. A comparison in a file keeps each case when it is done.
@@ -184,26 +184,26 @@ impl Compare {
             let fits = comparing.fit_names();
             let text = || {
                 let fits = if fits.is_empty() { "all objectives".into() } else { fits.join("\n  ") };
-                format!("{title}: {} cases\n  {}\nfits\n  {fits}\n", words.len(), words.join("\n  "))
+                format!("{title}: {}\n  {}\nfits\n  {fits}\n", cases_in_words(words.len()), words.join("\n  "))
             };
             self.output.print_plan(terminal, &words, text)?;
             return Ok(ExitCode::SUCCESS);
         }
         let mut inputs = comparing.inputs();
         inputs.extend(is_file.then(|| PathBuf::from(&self.what[0])));
+        let mut names = COMPARE_FILES.to_vec();
+        names.extend((!is_file).then_some(CASES));
+        let edition = report::open_outputs(folder, &names, &inputs)?;
         let mut lines = match is_file {
             true => Some(StudyLines::of_comparison(folder.join(CASES), self.resume, comparing, folder)?),
             false => None,
         };
-        let mut names = COMPARE_FILES.to_vec();
-        names.extend((!is_file).then_some(CASES));
-        let edition = report::open_outputs(folder, &names, &inputs)?;
         let known = |case: &study::ComparedCase| lines.as_ref().and_then(|lines| lines.of(&case.settings).cloned());
         let mut records: Vec<Option<CaseRecord>> = cases.iter().map(known).collect();
         let places: Vec<usize> = (0..cases.len()).filter(|place| records[*place].is_none()).collect();
         let mut done = cases.len() - places.len();
         if done > 0 {
-            terminal.note(&format!("{done} of {} cases are there already", cases.len()));
+            terminal.note(&format!("{done} of {} are there already", cases_in_words(cases.len())));
         }
         let mut keep = |place: usize, record: CaseRecord| -> Result<()> {
             if let Some(lines) = &mut lines {
@@ -240,7 +240,14 @@ impl Compare {
         self.output.print(terminal, || &summary, || report::compare_tables(&summary), text)?;
         let failed = records.iter().filter(|record| record.error.is_some()).count();
         if failed > 0 {
-            terminal.note(&format!("{failed} of {} cases failed; the tables say why", records.len()));
+            terminal.note(&format!("{failed} of {} failed; the tables say why", cases_in_words(records.len())));
+        }
+        let refused =
+            records.iter().flat_map(|record| &record.methods).filter(|method| method.refused.is_some()).count();
+        if refused > 0 {
+            terminal.note(&format!(
+                "{refused} times a fit has no figures on a case; the column \"why not\" of comparison.csv says why"
+            ));
         }
         // The folder has many files: those that one opens first.
         let paths = paths?;
@@ -358,6 +365,10 @@ impl Compare {
         terminal.written(&paths?)?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+fn cases_in_words(count: usize) -> String {
+    if count == 1 { "1 case".into() } else { format!("{count} cases") }
 }
 
 /// A key of `[compare]` as the option that stands for it.

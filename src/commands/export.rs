@@ -90,7 +90,7 @@ impl Export {
     }
 
     fn read(&self) -> Result<NetworkRecord> {
-        self.settings.expect_none()?;
+        self.settings.expect_none("an element")?;
         if let Some(fit) = &self.fit {
             return Err(Error::at("--fit", format!("belongs to a scene, found \"{fit}\" with a network")));
         }

@@ -40,7 +40,7 @@ impl Groups {
             let scene = self.settings.scene(&self.mesh)?;
             (scene.title().to_string(), scene.build_mesh()?)
         } else {
-            self.settings.expect_none()?;
+            self.settings.expect_none("an element")?;
             (self.mesh.display().to_string(), self.options.mesh(&self.mesh)?)
         };
         let record = MeshRecord::of(name, &mesh);

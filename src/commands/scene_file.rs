@@ -41,18 +41,22 @@ impl Settings {
         Scene::load_with(path, &settings)
     }
 
-    /// That nothing is set where there is no scene.
+    /// That nothing is set where there is no scene, but `what`.
     ///
     /// # Errors
     /// Something is set.
-    pub fn expect_none(&self) -> Result<()> {
+    pub fn expect_none(&self, what: &str) -> Result<()> {
         match self.set.first() {
             None => Ok(()),
-            Some(set) => Err(Error::at("--set", format!("belongs to a scene, found {set} with an element"))),
+            Some(set) => Err(Error::at("--set", format!("belongs to a scene, found {set} with {what}"))),
         }
     }
 
-    fn read(&self) -> Result<Vec<Setting>> {
+    /// What is set.
+    ///
+    /// # Errors
+    /// A setting is no `KEY=VALUE`.
+    pub fn read(&self) -> Result<Vec<Setting>> {
         self.set.iter().map(|text| Setting::parse(text)).collect()
     }
 }

@@ -46,7 +46,7 @@ impl Stability {
                 (open(&scene.inputs())?, study::stability_of_scene(&scene, &mut progress)?)
             }
             _ => {
-                self.settings.expect_none()?;
+                self.settings.expect_none("an element")?;
                 let edition = open(&what.map(PathBuf::from).into_iter().collect::<Vec<_>>())?;
                 (edition, study::stability(what.map(Element::load).transpose()?, &mut progress)?)
             }

@@ -149,7 +149,7 @@ fn compared(run: &RunFolder, drawn: Drawn, of: Option<&str>) -> Result<Chart> {
     let name = folder.file_name().map_or("comparison".into(), |name| name.to_string_lossy());
     let chart = comparison_chart(&name, &records, drawn, of)?;
     match chart.series.iter().all(|series| series.points.is_empty()) {
-        true => Err(Error::new("the comparison has no such figures").in_file(&folder.join(CASES))),
+        true => Err(Error::new(drawn.missing()).in_file(&folder.join(CASES))),
         false => Ok(chart),
     }
 }

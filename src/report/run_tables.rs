@@ -262,7 +262,9 @@ fn costs(report: &Report) -> Table {
     let mut rows: Vec<Vec<Cell>> = report.fits.iter().filter_map(of_fit).collect();
     rows.extend(report.model_times.as_ref().map(|model| row(BODY, Cell::number(None, Fixed(0)), None, model)));
     let title = "Costs: processor time of one thread, in passes that take turns";
-    Table::new("costs", title, columns, rows)
+    let turning = "Linear finite elements do not turn: their matrix is factorised before the first implicit step, that of springs in each one.";
+    let notes = (report.law.is_none() && report.model_times.is_some()).then(|| turning.to_string());
+    Table::new("costs", title, columns, rows).with_notes(notes)
 }
 
 /// All loads of all fits.

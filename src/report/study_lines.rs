@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{create_folder, files_in, read_text};
 use crate::network::Shard;
-use crate::study::{CaseRecord, Comparing};
+use crate::study::{CaseRecord, Comparing, MethodRecord};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -34,6 +34,11 @@ pub trait Line: Serialize + DeserializeOwned {
     /// A sum of all that the study depends on.
     fn inputs(&self) -> &str;
 
+    /// What contradicts itself in the record, if anything does.
+    fn fault(&self) -> Option<&'static str> {
+        None
+    }
+
     /// What tells the study from others, in a word.
     fn mark(&self) -> String {
         mark_of(self.settings())
@@ -57,6 +62,15 @@ impl Line for CaseRecord {
 
     fn inputs(&self) -> &str {
         &self.inputs
+    }
+
+    fn fault(&self) -> Option<&'static str> {
+        let is_odd = |method: &MethodRecord| method.values.values().any(|list| list.len() != method.items.len());
+        match (self.methods.is_empty(), &self.error) {
+            (true, None) => Some("no methods"),
+            (true, Some(_)) => None,
+            (false, _) => self.methods.iter().any(is_odd).then_some("values that are not those of its items"),
+        }
     }
 }
 
@@ -162,6 +176,9 @@ impl<R: Line> StudyLines<R> {
             let fault = |words: String| Error::new(words).on_line(number + 1).in_file(path);
             let record: R = serde_json::from_str(line)
                 .map_err(|e| fault(format!("expected a study of this kind, found something else: {e}")))?;
+            if let Some(found) = record.fault() {
+                return Err(fault(format!("expected a value for each item of a study, found {found}")));
+            }
             let mark = record.mark();
             // Studies that are no longer asked for stay in the file.
             let Some(sum) = expected(&mark) else { continue };

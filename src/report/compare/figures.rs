@@ -23,6 +23,21 @@ pub enum Drawn {
     Samples,
 }
 
+impl Drawn {
+    /// What a comparison lacks that has nothing to draw.
+    pub fn missing(self) -> &'static str {
+        match self {
+            Drawn::Precision(Cost::Fit) => "has no times: time = false leaves them out",
+            Drawn::Precision(_) => "has no such times: cases that are scenes have them",
+            Drawn::Ecdf | Drawn::Over(_) => "has no errors above those of rounding",
+            Drawn::Norms => "has no errors in both norms: cases that are shapes of elements have them",
+            Drawn::Samples => {
+                "has no fits with several numbers of shapes: shapes = { count = [10, 100] } of sampled fits has them"
+            }
+        }
+    }
+}
+
 /// Points of a scatter for each fit at most.
 const MOST: usize = 200;
 /// Errors below this share of the largest are those of rounding.
@@ -37,9 +52,26 @@ pub fn comparison_chart(title: &str, records: &[CaseRecord], drawn: Drawn, of: O
         let name = record.settings.get("element").or(record.settings.get("scene")).and_then(Value::as_str);
         of.is_none_or(|of| name == Some(of))
     };
+    let mut names: Vec<&str> = Vec::new();
+    for record in records {
+        let name =
+            record.settings.get("element").or(record.settings.get("scene")).and_then(Value::as_str).unwrap_or("");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
     let records: Vec<&CaseRecord> = records.iter().filter(named).filter(|record| record.error.is_none()).collect();
     if let (Some(of), true) = (of, records.is_empty()) {
-        return Err(Error::expected("--of", "an element or a scene of the comparison", of));
+        return Err(Error::expected(
+            "--of",
+            format!("an element or a scene of the comparison: {}", names.join(", ")),
+            of,
+        ));
+    }
+    if let Drawn::Over(key) = drawn
+        && !records.iter().any(|record| record.settings.get(key) != records[0].settings.get(key))
+    {
+        return Err(Error::new(format!("expected cases with several values of {key}, found one")));
     }
     let data = Data { quantity: quantity(&records), records };
     let chart = match drawn {

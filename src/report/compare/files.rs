@@ -8,7 +8,7 @@ use super::values::long_table;
 use crate::error::{Error, Result};
 use crate::file::{Edition, read_text, write_whole};
 use crate::report::figure::Columns;
-use crate::report::study_lines::Line;
+use crate::report::study_lines::{Line, mark_of};
 use crate::report::table::Markup;
 use crate::study::CaseRecord;
 use crate::text::printable_lines;
@@ -98,5 +98,11 @@ pub fn read_cases(folder: &Path) -> Result<Vec<CaseRecord>> {
         let wrong = |e| Error::new(format!("expected a case of a comparison, found something else: {e}"));
         serde_json::from_str(line).map_err(|e| wrong(e).on_line(number + 1).in_file(&path))
     };
-    text.lines().enumerate().map(record).collect()
+    let records: Vec<CaseRecord> = text.lines().enumerate().map(record).collect::<Result<_>>()?;
+    // Cases that the last comparison did not have stay in the file.
+    let summary = std::fs::read_to_string(folder.join("summary.json")).ok();
+    let summary: Option<serde_json::Value> = summary.and_then(|text| serde_json::from_str(&text).ok());
+    let Some(cases) = summary.as_ref().and_then(|summary| summary["cases"].as_array()) else { return Ok(records) };
+    let own: Vec<String> = cases.iter().map(|case| case["settings"].to_string()).collect();
+    Ok(records.into_iter().filter(|record| own.contains(&mark_of(&record.settings))).collect())
 }

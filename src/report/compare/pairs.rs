@@ -72,6 +72,7 @@ pub fn pairs(records: &[CaseRecord]) -> Vec<Pair> {
     for quantity in MERITS {
         let found: Vec<((&str, &str), Paired)> =
             couples.iter().filter_map(|pair| Some((*pair, of_values(records, quantity, *pair)?))).collect();
+        let made = found.len();
         let adjusted = adjust(&found.iter().map(|(_, paired)| paired.p).collect::<Vec<_>>());
         all.extend(found.into_iter().zip(adjusted).map(|(((first, second), paired), adjusted)| Pair {
             quantity: quantity.into(),
@@ -79,7 +80,7 @@ pub fn pairs(records: &[CaseRecord]) -> Vec<Pair> {
             second: second.into(),
             paired,
             adjusted: Some(adjusted),
-            verdict: paired.verdict(adjusted),
+            verdict: paired.verdict(adjusted, made),
         }));
     }
     let kinds: BTreeMap<&str, ()> =

@@ -227,6 +227,7 @@ fn title(summary: &Summary, varied: &[&str]) -> String {
         Some(match *key {
             "element" | "scene" | "law" => value,
             "poisson" => format!("nu = {value}"),
+            "count" if value == "1" => "1 shape".into(),
             "count" => format!("{value} shapes"),
             key => format!("{key} {value}"),
         })
@@ -295,12 +296,14 @@ fn pairs(pairs: &[Pair]) -> Table {
                 Verdict::First => pair.first.as_str().into(),
                 Verdict::Second => pair.second.as_str().into(),
                 Verdict::Tie => "tie".into(),
+                Verdict::TooFew => "too few pairs".into(),
             },
         ]
     };
     let notes = [
         "Errors: the median ratio of the first to the second on the same shapes or loads, its bootstrap interval of 95 %, and the probability \
-         of Wilcoxon's signed-rank test after Holm's correction for all pairs of the quantity; a tie where the interval has 1 or that is above 0.05.",
+         of Wilcoxon's signed-rank test after Holm's correction for all pairs of the quantity; a tie where the interval has 1 or that is above 0.05. \
+         Errors below 1e-12 count as 1e-12.",
         "Times: a tie where medians differ by less than 10 % or the interval of their ratio has 1 on some case, or cases disagree.",
     ];
     Table::new("pairs", "Methods in pairs", columns, pairs.iter().map(row)).with_notes(notes.map(String::from))

@@ -1,6 +1,7 @@
 //! A chart in the plane for a paper: axes fitted to the data, marks and lines that differ in colour, form and grey.
 
 use super::axis::{Axis, log_marks, number};
+use super::marks::{FINE, MARK, Mark, THICK, THIN, diamond, mark, open, pane, plus, square};
 use super::palette::{COLORS, DASHES, REFERENCE};
 use super::sheet::{Columns, LETTERS, width};
 use crate::error::{Error, Result};
@@ -62,19 +63,15 @@ pub struct Chart {
     pub series: Vec<Series>,
 }
 
-/// Units of the drawing in a pixel: the drawing library places all at whole units.
-const FINE: i32 = 8;
 /// Units of a line of the legend.
 const LINE: i32 = 15 * FINE;
-/// Units of lines.
-const THICK: u32 = 2 * FINE as u32 - FINE as u32 / 4;
-const THIN: u32 = FINE as u32;
-/// Units from the middle of a mark to its edge.
-const MARK: i32 = 7 * FINE / 2;
 /// Units from the middle of a dot to its edge.
 const DOT: i32 = 3 * FINE / 2;
 /// Units of letters, as the drawing library counts them.
 const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
+
+/// Values that an axis has at most: its marks are counted in powers of ten.
+const LARGEST: f64 = 1e60;
 
 type Fallible = std::result::Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -96,6 +93,12 @@ impl Chart {
         }
         let bars = self.series.iter().any(|series| matches!(series.shape, Shape::Bars(_)));
         let (x, mut y) = (self.x.range(&xs), self.y.range(&ys));
+        for (axis, range) in [(&self.x, &x), (&self.y, &y)] {
+            if !(range.end < LARGEST && range.start > -LARGEST) || axis.is_log && range.start < 1.0 / LARGEST {
+                let words = format!("{} has values beyond {LARGEST:e}", printable(&axis.title));
+                return Err(Error::new(format!("the figure cannot be drawn: {words}")));
+            }
+        }
         if bars {
             y.start = 0.0;
         }
@@ -210,7 +213,7 @@ impl Chart {
             }
             if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
                 for point in &series.points {
-                    match mark(i, series.shape) {
+                    match mark(i, series.shape == Shape::Below) {
                         Mark::Disc => chart.draw_series([Circle::new(*point, MARK, color.filled())])?,
                         Mark::Ring => chart.draw_series([Circle::new(*point, MARK, color.stroke_width(THICK))])?,
                         Mark::Triangle => {
@@ -218,6 +221,10 @@ impl Chart {
                         }
                         Mark::Cross => chart.draw_series([Cross::new(*point, MARK, color.stroke_width(THICK))])?,
                         Mark::Open => chart.draw_series([EmptyElement::at(*point) + open(color)])?,
+                        Mark::Square => chart.draw_series([EmptyElement::at(*point) + square(color)])?,
+                        Mark::Diamond => chart.draw_series([EmptyElement::at(*point) + diamond(color)])?,
+                        Mark::Plus => chart.draw_series([EmptyElement::at(*point) + plus(color)])?,
+                        Mark::Pane => chart.draw_series([EmptyElement::at(*point) + pane(color)])?,
                     };
                 }
             }
@@ -275,12 +282,16 @@ impl Chart {
             Shape::Marks | Shape::Below | Shape::Whiskers => {}
         }
         if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
-            match mark(i, series.shape) {
+            match mark(i, series.shape == Shape::Below) {
                 Mark::Disc => area.draw(&Circle::new(at, MARK, color.filled()))?,
                 Mark::Ring => area.draw(&Circle::new(at, MARK, color.stroke_width(THICK)))?,
                 Mark::Triangle => area.draw(&TriangleMarker::new(at, MARK + FINE, color.filled()))?,
                 Mark::Cross => area.draw(&Cross::new(at, MARK, color.stroke_width(THICK)))?,
                 Mark::Open => area.draw(&(EmptyElement::at(at) + open(color)))?,
+                Mark::Square => area.draw(&(EmptyElement::at(at) + square(color)))?,
+                Mark::Diamond => area.draw(&(EmptyElement::at(at) + diamond(color)))?,
+                Mark::Plus => area.draw(&(EmptyElement::at(at) + plus(color)))?,
+                Mark::Pane => area.draw(&(EmptyElement::at(at) + pane(color)))?,
             }
         }
         area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24 * FINE, top), ("sans-serif", FONT)))?;
@@ -290,32 +301,6 @@ impl Chart {
 
 /// The names of guides have this colour.
 const GUIDE: RGBColor = RGBColor(110, 110, 110);
-
-#[derive(Clone, Copy)]
-enum Mark {
-    Disc,
-    Ring,
-    Triangle,
-    Cross,
-    Open,
-}
-
-/// The mark of a series: those of the same colour differ.
-fn mark(i: usize, shape: Shape) -> Mark {
-    match shape {
-        Shape::Below => Mark::Open,
-        _ => [Mark::Disc, Mark::Triangle, Mark::Cross, Mark::Ring][(i + i / COLORS.len()) % 4],
-    }
-}
-
-/// The outline of a triangle that points down, around the origin. A marker would be filled.
-fn open(color: RGBColor) -> PathElement<(i32, i32)> {
-    let side = MARK + FINE;
-    PathElement::new(
-        vec![(-side, -side / 2), (side, -side / 2), (0, side), (-side, -side / 2)],
-        color.stroke_width(THIN),
-    )
-}
 
 /// Charts one above the other, as one SVG file's text.
 ///

@@ -7,6 +7,7 @@ mod convergence;
 mod converter;
 mod deformation;
 mod format;
+mod marks;
 mod moduli;
 mod palette;
 mod precision;

@@ -38,6 +38,9 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
     };
     let Some(key) = key else {
         let names: Vec<&str> = known.iter().map(|key| key.as_str()).collect();
+        if names.is_empty() {
+            return Err(Error::new("has no key with several numbers to draw errors over").in_file(&folder));
+        }
         return Err(Error::expected(
             "--of",
             format!("a key with several numbers: {}", names.join(", ")),

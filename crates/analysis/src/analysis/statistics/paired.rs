@@ -23,6 +23,8 @@ pub enum Verdict {
     Second,
     /// The difference is not more than their spread.
     Tie,
+    /// So few pairs cannot tell, whatever their differences.
+    TooFew,
 }
 
 /// Two methods on the same cases.
@@ -61,13 +63,21 @@ impl Paired {
         })
     }
 
-    /// The verdict with the probability `adjusted`, which takes account of other comparisons made with this one: a tie where the
+    /// The verdict with the probability `adjusted`, which takes account of the `made` comparisons of which this is one: a tie where the
     /// interval has 1 or where chance explains the differences.
-    pub fn verdict(&self, adjusted: f64) -> Verdict {
-        match self.interval {
-            Interval { low, high } if low <= 1.0 + EQUAL && high >= 1.0 - EQUAL || adjusted > LEVEL => Verdict::Tie,
-            _ if self.ratio < 1.0 => Verdict::First,
-            _ => Verdict::Second,
+    pub fn verdict(&self, adjusted: f64, made: usize) -> Verdict {
+        let Interval { low, high } = self.interval;
+        if low <= 1.0 + EQUAL && high >= 1.0 - EQUAL {
+            return Verdict::Tie;
+        }
+        // All differences have one sign with this probability.
+        if made as f64 * 2.0 * 0.5f64.powi(self.count.min(1000) as i32) > LEVEL {
+            return Verdict::TooFew;
+        }
+        match self.ratio < 1.0 {
+            _ if adjusted > LEVEL => Verdict::Tie,
+            true => Verdict::First,
+            false => Verdict::Second,
         }
     }
 }

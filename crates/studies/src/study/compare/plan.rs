@@ -9,12 +9,12 @@ use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::file::{self, Sum};
 use crate::fit::Solver;
-use crate::material::{Material, Plane};
+use crate::material::{Energy, Material, Plane};
 use crate::springs::Springs;
 use crate::study::fits::law_at;
-use crate::study::scene::{Scene, load_elements};
+use crate::study::scene::{Scene, Setting, load_elements};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,6 +23,8 @@ use std::sync::Arc;
 pub(super) const YOUNG: f64 = 10e3;
 /// Poisson's ratio where none is given.
 const POISSON: f64 = 0.3;
+/// Cases of elements at most.
+const MOST_CASES: f64 = 1e5;
 /// The largest stretch of sampled shapes where no fit is listed.
 const STRETCH: f64 = 0.35;
 
@@ -78,22 +80,26 @@ impl Comparing {
             let file: CompareFile = file::parse_toml(text)?;
             let table: toml::Table = text.parse().map_err(|e| Error::new(format!("is not TOML: {e}")))?;
             let folder = path.parent().unwrap_or(Path::new(""));
-            let comparing = Comparing::of(&file.compare, table.get("compare"), folder);
+            let comparing = Comparing::of(&file.compare, table.get("compare"), (folder, &[]));
             Ok(Comparing { title: file.title, ..comparing.map_err(|e| e.placed(|e| e.under("compare")))? })
         };
         read().map_err(|e: Error| e.placed(|e| file::on_line_of_key(e, text).in_file(path)))
     }
 
-    /// Reads the keys of `[compare]` without a file; paths are relative to `folder`.
+    /// Reads the keys of `[compare]` without a file; paths are relative to `folder`, and scenes have these other values of keys.
     ///
     /// # Errors
     /// A key is wrong, or a file that is named.
-    pub fn of_table(table: toml::Table, folder: &Path) -> Result<Comparing> {
+    pub fn of_table(table: toml::Table, folder: &Path, settings: &[Setting]) -> Result<Comparing> {
         let entry: CompareEntry = file::parse_table(table.clone())?;
-        Comparing::of(&entry, Some(&toml::Value::Table(table)), folder)
+        Comparing::of(&entry, Some(&toml::Value::Table(table)), (folder, settings))
     }
 
-    fn of(entry: &CompareEntry, table: Option<&toml::Value>, folder: &Path) -> Result<Comparing> {
+    fn of(
+        entry: &CompareEntry,
+        table: Option<&toml::Value>,
+        (folder, settings): (&Path, &[Setting]),
+    ) -> Result<Comparing> {
         let fits = varied_fits(&entry.fit, folder)?;
         let iterations = entry.iterations.unwrap_or(Solver::DEFAULT_ITERATIONS);
         check_count("iterations", iterations, 1, bound::SEARCH_ITERATIONS)?;
@@ -108,16 +114,18 @@ impl Comparing {
         }
         let mut cases = element_cases(entry, folder)?;
         for (place, path) in entry.scenes.iter().enumerate() {
-            let at = |e: Error| e.placed(|e| e.at_key(format!("scenes[{place}]")));
-            let scene = Scene::load(&folder.join(path)).map_err(at)?;
+            let key = format!("scenes[{place}]");
+            expect_file(&key, &folder.join(path))?;
+            let at = |e: Error| e.placed(|e| e.at_key(key));
+            let scene = Scene::load_with(&folder.join(path), settings).map_err(at)?;
             let settings = BTreeMap::from([("scene".to_string(), json!(path.to_string_lossy()))]);
             cases.push(Case { settings, subject: Subject::Scene(Box::new(scene)) });
         }
-        if let Some(again) = (1..cases.len()).find(|&i| cases[..i].iter().any(|c| c.settings == cases[i].settings)) {
-            let found = serde_json::to_string(&cases[again].settings).unwrap_or_default();
-            return Err(Error::new(format!("expected each case once, found {found} again")));
+        let mut known = HashSet::new();
+        let is_again = |case: &&Case| !known.insert(serde_json::to_string(&case.settings).unwrap_or_default());
+        if let Some(again) = cases.iter().find(is_again) {
+            return Err(Error::new(format!("expected each case once, found {} again", again.words())));
         }
-        check_count("cases", cases.len() as u64, 1, bound::STUDIES)?;
         for case in &cases {
             case.check(&fits)?;
         }
@@ -180,11 +188,26 @@ fn without_cases(table: &toml::Value) -> Result<String> {
     serde_json::to_string(&table).map_err(|e| Error::new(format!("has a value that JSON has not: {e}")))
 }
 
+/// That a path leads to a file.
+fn expect_file(key: &str, path: &Path) -> Result<()> {
+    match path.is_file() {
+        true => Ok(()),
+        false => Err(Error::expected(key, "the path of a file", format!("\"{}\"", path.display()))),
+    }
+}
+
 /// The cases of all elements.
 fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
+    for (place, name) in entry.elements.iter().enumerate().filter(|(_, name)| name.ends_with(".toml")) {
+        expect_file(&format!("elements[{place}]"), &folder.join(name))?;
+    }
     let elements = load_elements(&entry.elements, folder)?;
     let ratios = numbers("poisson", entry.poisson.as_ref(), POISSON)?;
     let sets = shape_sets(entry.shapes.as_ref())?;
+    let all = elements.len() as f64 * ratios.len() as f64 * (sets.len().max(entry.laws.len())) as f64;
+    if all > MOST_CASES {
+        return Err(Error::expected("elements", format!("at most {MOST_CASES} cases"), format!("{all}")));
+    }
     let mut cases = Vec::new();
     for (name, element) in entry.elements.iter().zip(elements) {
         let d = element.dimension();
@@ -196,7 +219,10 @@ fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
                 let plane = if entry.plane == Some(Plane::Strain) { "strain" } else { "stress" };
                 settings.insert("plane".into(), json!(plane));
             }
-            for law in &entry.laws {
+            for (place, law) in entry.laws.iter().enumerate() {
+                // What is wrong with a law is found before the work.
+                let at = |e: Error| e.placed(|e| Error::at(format!("laws[{place}]"), e.problem()));
+                Energy::load(&law_at(law, folder), material).map_err(at)?;
                 let settings = settings.clone().into_iter().chain([("law".to_string(), json!(law))]).collect();
                 let (element, law) = (element.clone(), law_at(law, folder));
                 cases.push(Case { settings, subject: Subject::Box { element, material, law } });

@@ -166,7 +166,10 @@ fn of_scene(record: MethodRecord, found: &FitOutcome, outcome: &Outcome) -> Meth
         ("spectral", found.spectral().and_then(|spread| finite(spread.mean))),
         ("error_of_c", finite(100.0 * found.as_material.distance)),
     ];
-    let (fit, model) = (found.times.as_ref(), found.model_times.as_ref());
+    // A network that does not stand has no errors, and no steps: its motion grows.
+    let stands = !["indefinite", "mechanism"].contains(&found.status());
+    let (fit, model) = (found.times.as_ref(), found.model_times.as_ref().filter(|_| stands));
+    let values = values.map(|(key, list)| (key, if stands { list } else { vec![None; list.len()] }));
     MethodRecord {
         fitted: outcome.mesh.cell_count() - found.reused,
         copied: found.reused,
@@ -180,10 +183,7 @@ fn of_scene(record: MethodRecord, found: &FitOutcome, outcome: &Outcome) -> Meth
             ("explicit-step", model.and_then(|model| model.explicit_step.as_ref())),
             ("implicit-step", model.and_then(|model| model.implicit_step.as_ref())),
         ]),
-        refused: match found.status() {
-            "stable" | "converged" | "fitted" => None,
-            other => Some(format!("the network is {other}")),
-        },
+        refused: (!stands).then(|| format!("the network is {}", found.status())),
         ..record
     }
 }
@@ -196,6 +196,8 @@ fn of_body(outcome: &Outcome) -> MethodRecord {
     };
     let values = [("e_rms", error(|e| e.rms)), ("e_max", error(|e| e.max)), ("e_tip", error(|e| e.tip))];
     let model = outcome.model_times.as_ref();
+    // Linear finite elements do not turn: their matrix is factorised once, that of springs in each step.
+    let turns = outcome.law.is_some();
     MethodRecord {
         fit: BODY.into(),
         items: outcome.loads.iter().map(|load| load.name.clone()).collect(),
@@ -203,7 +205,7 @@ fn of_body(outcome: &Outcome) -> MethodRecord {
         times: times([
             ("solve", model.and_then(|model| model.solve.as_ref())),
             ("explicit-step", model.and_then(|model| model.explicit_step.as_ref())),
-            ("implicit-step", model.and_then(|model| model.implicit_step.as_ref())),
+            ("implicit-step", model.and_then(|model| model.implicit_step.as_ref()).filter(|_| turns)),
         ]),
         ..MethodRecord::default()
     }

@@ -7,6 +7,9 @@ use crate::error::{Error, Result};
 use crate::study::choice::choice;
 use crate::study::keys::keys;
 
+/// Sets of a table at most.
+const MOST: f64 = 1e5;
+
 /// The sets of shapes of `shapes`: all combinations of the values of each table.
 pub fn shape_sets(shapes: Option<&toml::Value>) -> Result<Vec<ShapeSet>> {
     let tables: Vec<(String, toml::Table)> = match shapes {
@@ -68,6 +71,11 @@ fn sets_of(table: &toml::Table) -> Result<Vec<ShapeSet>> {
     let seeds = whole("seed", usual.seed as usize, 1 << 53)?;
     let (distortions, aspects) =
         (between("distortion", usual.distortion, [0.0, 1.0])?, between("aspect", usual.aspect, [1e-3, 1e3])?);
+    let lists = [families.len(), distortions.len(), aspects.len(), seeds.len(), counts.len()];
+    let all: f64 = lists.iter().map(|list| *list as f64).product();
+    if all > MOST {
+        return Err(Error::new(format!("expected at most {MOST} sets of shapes, found {all}")));
+    }
     let mut sets = Vec::new();
     for &family in &families {
         for &distortion in &distortions {
