@@ -4,7 +4,7 @@
 
 Ten runs of one comparison of six fits of tet4, on a machine that is otherwise idle in every second run and builds a crate in the others. The ratios
 of the medians of processor time to those of the first fit are printed, and it is checked that fits whose medians differ by more than 10 % in some
-run have the same order in all runs in which no tie is told.
+run have the same order in all runs that do not call them a tie.
 """
 
 import itertools

@@ -15,7 +15,7 @@ use springfit::error::{Error, Result};
 use springfit::material::{CellMap, Material, MaterialMap, Plane};
 use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{
-    BodyConstants, Controls, Event, Outcome, Reference, WholeBody, assumed, fit_without_errors,
+    BodyConstants, Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, assumed, fit_without_errors,
     learning_curve as learn, point_masses,
 };
 
@@ -63,6 +63,19 @@ impl Constants {
     }
 }
 
+/// The material of the mesh, and the fit of these keys for it, with functions in place of some of them.
+fn posed(
+    mesh: &springfit::mesh::Mesh,
+    entry: &FitEntry,
+    constants: &Constants,
+    functions: Option<&Functions>,
+) -> Result<(Material, NamedFit)> {
+    entry.check()?;
+    let material = constants.of(mesh)?;
+    let own = functions.map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
+    Ok((material, entry.fits_with(std::path::Path::new(""), &own)?.remove(0)))
+}
+
 /// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene, and `functions` stand for some of them.
 #[pyfunction]
 #[pyo3(signature = (mesh, material, keys, held=None, progress=None, functions=None))]
@@ -82,10 +95,7 @@ pub fn fit(
     let ends = functions.as_ref().map(|functions| functions.ends.clone());
     let mesh = mesh.mesh.clone();
     let work = move |told: &mut dyn FnMut(Event)| {
-        entry.check()?;
-        let material = constants.of(&mesh)?;
-        let own = functions.as_ref().map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
-        let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
+        let (material, named) = posed(&mesh, &entry, &constants, functions.as_ref())?;
         let controls = Controls::default();
         let map = MaterialMap::from(material);
         let whole = match (named.recipe.whole(), &support) {
@@ -129,10 +139,7 @@ pub fn learning_curve(
     let ends = functions.as_ref().map(|functions| functions.ends.clone());
     let mesh = mesh.mesh.clone();
     let work = move |told: &mut dyn FnMut(Event)| {
-        entry.check()?;
-        let material = constants.of(&mesh)?;
-        let own = functions.as_ref().map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
-        let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
+        let (material, named) = posed(&mesh, &entry, &constants, functions.as_ref())?;
         let map = MaterialMap::from(material);
         let points = learn(&mesh, &map, &Reference::default(), &named, &counts, &seeds, told)?;
         serde_json::to_string(&points).map_err(|e| Error::new(e.to_string()))

@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{create_folder, files_in, read_text};
 use crate::network::Shard;
-use crate::study::{CaseRecord, Comparing, MethodRecord};
+use crate::study::{CaseRecord, ComparedCase, Comparing, MethodRecord};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -97,9 +97,9 @@ impl StudyLines<CaseRecord> {
         folder: &Path,
     ) -> Result<StudyLines<CaseRecord>> {
         create_folder(folder)?;
-        let sums: HashMap<String, String> =
-            comparing.cases().iter().map(|case| (mark_of(&case.settings), comparing.sum(case))).collect();
-        StudyLines::open_file(path, &[], resume, &|mark| sums.get(mark).cloned())
+        let cases: HashMap<String, &ComparedCase> =
+            comparing.cases().iter().map(|case| (mark_of(&case.settings), case)).collect();
+        StudyLines::open_file(path, &[], resume, &|mark| cases.get(mark).map(|case| comparing.sum(case)))
     }
 }
 

@@ -48,19 +48,14 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// No case is left, or no method has such figures.
 pub fn comparison_chart(title: &str, records: &[CaseRecord], drawn: Drawn, of: Option<&str>) -> Result<Chart> {
-    let named = |record: &&CaseRecord| {
-        let name = record.settings.get("element").or(record.settings.get("scene")).and_then(Value::as_str);
-        of.is_none_or(|of| name == Some(of))
-    };
     let mut names: Vec<&str> = Vec::new();
     for record in records {
-        let name =
-            record.settings.get("element").or(record.settings.get("scene")).and_then(Value::as_str).unwrap_or("");
-        if !names.contains(&name) {
-            names.push(name);
+        if !names.contains(&record.object()) {
+            names.push(record.object());
         }
     }
-    let records: Vec<&CaseRecord> = records.iter().filter(named).filter(|record| record.error.is_none()).collect();
+    let is_named = |record: &&CaseRecord| of.is_none_or(|of| record.object() == of);
+    let records: Vec<&CaseRecord> = records.iter().filter(is_named).filter(|record| record.error.is_none()).collect();
     if let (Some(of), true) = (of, records.is_empty()) {
         return Err(Error::expected(
             "--of",
@@ -107,8 +102,7 @@ impl Data<'_> {
     }
 
     fn fits(&self) -> Vec<String> {
-        let records: Vec<CaseRecord> = self.records.iter().map(|record| (*record).clone()).collect();
-        fits(&records).into_iter().map(String::from).collect()
+        fits(self.records.iter().copied()).into_iter().map(String::from).collect()
     }
 
     /// All errors of a fit.

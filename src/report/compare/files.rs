@@ -2,7 +2,7 @@
 
 use super::figures::{all, comparison_chart};
 use super::page::page;
-use super::summary::{Summary, summarized};
+use super::summary::{Summary, VERSION, machine};
 use super::tables::compare_tables;
 use super::values::long_table;
 use crate::error::{Error, Result};
@@ -83,8 +83,7 @@ pub fn write_comparison(
 
 /// All values of a comparison in long form: a list of columns, each its name and its values.
 pub fn comparison_values(records: &[CaseRecord]) -> serde_json::Value {
-    let summary = summarized("", &[]);
-    long_table(records, [&summary.version, &summary.machine]).json()
+    long_table(records, [VERSION, &machine()]).json()
 }
 
 /// The cases of a comparison in a folder.

@@ -5,7 +5,7 @@ use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Times that differ by less than this factor are told as ties: what else a machine does changes them by as much.
+/// Two times tie if they differ by less than this factor: other work on the machine changes them by as much.
 const SAME_TIME: f64 = 1.1;
 /// Quantities that are figures of merit: the smaller the better.
 const MERITS: [&str; 3] = ["spectral", "frobenius", "e_rms"];
@@ -44,9 +44,9 @@ pub struct Rank {
 }
 
 /// The names of the fits, in the order in which they appear.
-pub fn fits(records: &[CaseRecord]) -> Vec<&str> {
+pub fn fits<'a>(records: impl IntoIterator<Item = &'a CaseRecord>) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
-    for method in records.iter().flat_map(|record| &record.methods) {
+    for method in records.into_iter().flat_map(|record| &record.methods) {
         if !names.contains(&method.fit.as_str()) {
             names.push(&method.fit);
         }

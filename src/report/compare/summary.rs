@@ -1,4 +1,4 @@
-//! What is told of a comparison: quantiles of every figure, and intervals of their medians.
+//! The summary of a comparison: quantiles of every figure, and intervals of their medians.
 
 use super::pairs::{Pair, Rank, fits, method as method_of, pairs, ranks};
 use crate::study::statistics::{Interval, Quantiles, median, median_interval};
@@ -67,13 +67,13 @@ pub struct MethodSummary {
     pub refused: Option<String>,
     /// Figures of the whole case.
     pub figures: BTreeMap<String, Option<f64>>,
-    /// What is told of each quantity.
+    /// Each quantity has these quantiles.
     pub values: BTreeMap<String, Told>,
-    /// What is told of each processor time, s.
+    /// Each processor time has these quantiles, s.
     pub times: BTreeMap<String, Told>,
 }
 
-/// What is told of a list of figures.
+/// The quantiles of a list of figures, and the interval of their median.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Told {
     /// Quantiles.
@@ -90,8 +90,11 @@ impl Told {
     }
 }
 
+/// The version of the program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 /// The machine in words.
-fn machine() -> String {
+pub fn machine() -> String {
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     format!("{} {}, {processors} processors", std::env::consts::ARCH, std::env::consts::OS)
 }
@@ -100,7 +103,7 @@ fn machine() -> String {
 pub fn summarized(title: &str, records: &[CaseRecord]) -> Summary {
     Summary {
         title: title.into(),
-        version: env!("CARGO_PKG_VERSION").into(),
+        version: VERSION.into(),
         machine: machine(),
         cases: records.iter().map(case).collect(),
         objects: objects(records),
@@ -109,11 +112,10 @@ pub fn summarized(title: &str, records: &[CaseRecord]) -> Summary {
     }
 }
 
-/// The name of the element or scene of a case.
+/// The name of the element of a case, with its law, or of its scene.
 fn object_of(record: &CaseRecord) -> String {
-    let text = |key: &str| record.settings.get(key).and_then(Value::as_str);
-    let name = text("element").or(text("scene")).unwrap_or_default();
-    text("law").map_or(name.into(), |law| format!("{name}, {law}"))
+    let (name, law) = (record.object(), record.settings.get("law").and_then(Value::as_str));
+    law.map_or(name.into(), |law| format!("{name}, {law}"))
 }
 
 fn objects(records: &[CaseRecord]) -> Vec<Object> {

@@ -261,6 +261,7 @@ impl Best {
     }
 }
 
+/// A value without the quotes of a text.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), String::from)
 }

@@ -1,5 +1,6 @@
 //! All values of a comparison in long form: a row for each.
 
+use super::tables::plain;
 use crate::report::table::csv;
 use crate::study::{CaseRecord, MethodRecord};
 use serde_json::Value;
@@ -90,10 +91,6 @@ fn column<'a>(rows: &'a [Row], of: impl Fn(&'a Row) -> Option<&'a Value>) -> Val
         true => Values::Numbers(all.into_iter().map(|value| value.and_then(Value::as_f64)).collect()),
         false => Values::Texts(all.into_iter().map(|value| value.map(plain)).collect()),
     }
-}
-
-fn plain(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), String::from)
 }
 
 impl LongTable {

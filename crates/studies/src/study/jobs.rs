@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
 
-/// Does the work of each of these places, `jobs` at a time, and passes what comes of it to `each` as it becomes ready.
+/// Does the work of each of these places, `jobs` at a time, and passes each result to `each` as soon as it is ready.
 ///
 /// The processors are shared out among the jobs. What comes of a work does not depend on their number.
 ///

@@ -45,7 +45,7 @@ pub fn ratio_interval(a: &[f64], b: &[f64]) -> Interval {
     Interval::of((0..RESAMPLES).map(&mut ratio).collect())
 }
 
-/// As many values, each drawn from all.
+/// Draws as many values as there are, each from all of them.
 fn resampled(values: &[f64], random: &mut Random) -> Vec<f64> {
     let draw = |_| values[((random.unit() * values.len() as f64) as usize).min(values.len() - 1)];
     (0..values.len()).map(draw).collect()

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Figures of two methods that differ by less than this share are the same one, but for rounding.
 const SAME: f64 = 1e-9;
-/// Medians that differ by less than this share are told as ties, whatever the probability.
+/// Two methods tie if their medians differ by less than this share, whatever the probability.
 const EQUAL: f64 = 1e-6;
 /// Pairs of at most this number have an exact probability.
 const EXACT: usize = 25;

@@ -19,7 +19,7 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(&sorted, 0.5)
 }
 
-/// What is told of a sample.
+/// The quantiles of a sample, with its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Quantiles {
     /// The number of values.
@@ -41,7 +41,7 @@ pub struct Quantiles {
 }
 
 impl Quantiles {
-    /// Those of values in any order.
+    /// Computes the quantiles of values in any order.
     pub fn of(values: &[f64]) -> Quantiles {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);

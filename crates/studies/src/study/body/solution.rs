@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
 use crate::solve::{Equations, StaticSolver};
 
-/// That of the finite elements, s; `None` if some motion has no stiffness.
+/// Returns the processor time of a solution with finite elements, s, or `None` if some motion has no stiffness.
 ///
 /// # Errors
 /// The equations do not fit into memory.
@@ -18,7 +18,7 @@ pub fn seconds_of_body(mesh: &Mesh, moduli: &CellMap<Hooke>, case: &Case, solver
     finished(equations, case, start)
 }
 
-/// That of a network, s; `None` if it is not stable.
+/// Returns the processor time of a solution with a network, s, or `None` if the network is not stable.
 ///
 /// # Errors
 /// The equations do not fit into memory.

@@ -95,7 +95,7 @@ pub fn values(key: &str, value: Option<&Value>) -> Result<Vec<Value>> {
     }
 }
 
-/// One number or a list of them; `usual` if none is given.
+/// Reads one number or a list of numbers; without a value it returns `usual` alone.
 ///
 /// # Errors
 /// The list is empty, or an entry is no number.

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// Young's modulus of the elements, Pa; errors do not depend on it.
 pub(super) const YOUNG: f64 = 10e3;
-/// Poisson's ratio where none is given.
+/// Elements have this Poisson's ratio if the comparison gives none.
 const POISSON: f64 = 0.3;
 /// Cases of elements at most.
 const MOST_CASES: f64 = 1e5;

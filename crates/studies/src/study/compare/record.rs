@@ -17,6 +17,14 @@ pub struct CaseRecord {
     pub error: Option<String>,
 }
 
+impl CaseRecord {
+    /// The name of the element or of the scene.
+    pub fn object(&self) -> &str {
+        let named = ["element", "scene"].iter().find_map(|key| self.settings.get(*key)?.as_str());
+        named.unwrap_or_default()
+    }
+}
+
 /// A fit on one case.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MethodRecord {

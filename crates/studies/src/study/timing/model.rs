@@ -34,8 +34,9 @@ pub struct Costed<'a> {
 }
 
 impl<'a> Costed<'a> {
-    /// A solution, and a step of each kind, as works that are timed; `None` of those that the model does not have.
-    fn works(&'a self) -> Result<[Option<TimedWork<'a>>; 3]> {
+    /// A solution, and a step of each kind, as works that are timed; `None` of those that the model does not have. The explicit step depends
+    /// on the longest one.
+    fn works(&'a self, longest: Option<f64>) -> Result<[Option<TimedWork<'a>>; 3]> {
         let solve = match &self.statics {
             Some(statics) => statics()?.map(|_| {
                 let lost = || Error::new("a solution was found once, and then not");
@@ -43,7 +44,9 @@ impl<'a> Costed<'a> {
             }),
             None => None,
         };
-        Ok([solve, self.explicit()?, self.implicit()?])
+        let explicit = longest.map(|longest| self.options(Integrator::SymplecticEuler, SHARE * longest));
+        let explicit = explicit.map(|options| self.steps(options)).transpose()?.flatten();
+        Ok([solve, explicit, self.steps(self.options(Integrator::ImplicitEuler, IMPLICIT_STEP))?])
     }
 
     fn motion(&self) -> Motion<'a> {
@@ -59,15 +62,6 @@ impl<'a> Costed<'a> {
     fn longest_step(&self) -> Option<f64> {
         let tried = self.options(Integrator::SymplecticEuler, f64::MIN_POSITIVE);
         Simulation::new(self.motion(), tried).ok().map(|found| found.longest_step()).filter(|step| step.is_finite())
-    }
-
-    fn explicit(&self) -> Result<Option<TimedWork<'a>>> {
-        let Some(longest) = self.longest_step() else { return Ok(None) };
-        self.steps(self.options(Integrator::SymplecticEuler, SHARE * longest))
-    }
-
-    fn implicit(&self) -> Result<Option<TimedWork<'a>>> {
-        self.steps(self.options(Integrator::ImplicitEuler, IMPLICIT_STEP))
     }
 
     /// Steps from a shape near rest; `None` if the model has no such motion.
@@ -101,16 +95,17 @@ impl<'a> Costed<'a> {
 /// The equations do not fit into memory.
 pub fn model_times(models: &[Costed], has_density: bool) -> Result<Vec<ModelTimes>> {
     let mut works = Vec::new();
-    let mut has = Vec::new();
+    let (mut longest, mut has) = (Vec::new(), Vec::new());
     for model in models {
-        let own = model.works()?;
+        let step = model.longest_step();
+        let own = model.works(step)?;
+        longest.push(step.filter(|_| has_density));
         has.push(own.each_ref().map(Option::is_some));
         works.extend(own.into_iter().flatten());
     }
     let mut found = interleaved(&mut works)?.into_iter();
-    let times = models.iter().zip(has).map(|(model, has)| {
+    let times = longest.into_iter().zip(has).map(|(longest_step, has)| {
         let [solve, explicit_step, implicit_step] = has.map(|has| if has { found.next() } else { None });
-        let longest_step = if has_density { model.longest_step() } else { None };
         ModelTimes { solve, explicit_step, implicit_step, longest_step }
     });
     Ok(times.collect())
