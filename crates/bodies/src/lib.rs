@@ -7,12 +7,14 @@
 //! | [`model`] | the finite element model and the spring network of a mesh; loads, supports, masses |
 //! | [`solve`] | equilibrium, natural vibrations, and whether a network is stable |
 //! | [`dynamics`] | motion in time: integrators, damping, conservation of energy |
+//! | [`engine`] | what a network answers in an engine that ends its iterations early |
 //! | [`positive`] | the nearest network without negative springs to an exact network |
 //! | [`whole`] | spring constants fitted to the displacements of the whole object |
 
 #![forbid(unsafe_code)]
 
 pub mod dynamics;
+pub mod engine;
 pub mod model;
 pub mod positive;
 pub mod solve;

@@ -91,7 +91,7 @@ impl Quantity {
             Quantity::Volume => "a volume such as 3e-5, \"30 ml\" or \"30 cm^3\"",
             Quantity::Pressure => "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\"",
             Quantity::Density => "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\"",
-            Quantity::Time => "a time such as 0.005, \"5 ms\" or \"5e-3 s\"",
+            Quantity::Time => "a time such as 0.005, \"5 ms\" or \"1/60 s\"",
             Quantity::MeshUnit => "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\"",
         }
     }
@@ -102,14 +102,14 @@ impl Quantity {
     /// The text is not a number followed by nothing or by a unit of this quantity.
     pub fn parse(self, text: &str) -> Result<f64> {
         let trimmed = text.trim();
-        if let Ok(value) = trimmed.parse() {
+        if let Some(value) = number(trimmed) {
             return Ok(value);
         }
         let read = |(unit, power): &Unit| {
             let number = trimmed.strip_suffix(unit)?.trim_end();
             let value: f64 = match (self, number) {
                 (Quantity::MeshUnit, "") => 1.0,
-                _ => number.parse().ok()?,
+                _ => self::number(number)?,
             };
             // Dividing by a whole power of ten gives the double that is nearest to the decimal number, as parsing the
             // same number without a unit does.
@@ -121,5 +121,16 @@ impl Quantity {
             let expected = format!("{} (units: {})", self.expected(), units.join(", "));
             Error::new(format!("expected {expected}, found \"{text}\""))
         })
+    }
+}
+
+/// A number, or two with a stroke between them, such as `1/60`.
+fn number(text: &str) -> Option<f64> {
+    match text.split_once('/') {
+        Some((above, below)) => {
+            let (above, below): (f64, f64) = (above.trim_end().parse().ok()?, below.trim_start().parse().ok()?);
+            Some(above / below)
+        }
+        None => text.parse().ok(),
     }
 }

@@ -7,7 +7,7 @@
 pub mod network;
 
 // The layers below, by the same names as everywhere.
-use springfit_bodies::model;
+use springfit_bodies::{engine, model};
 use springfit_foundation::{error, file, symbolic, text};
 use springfit_kernels::{element, springs};
 use springfit_mesh::mesh;

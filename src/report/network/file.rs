@@ -91,6 +91,7 @@ impl<'a> NetworkFile<'a> {
             damping: damping(motion),
             motion: motion.map(drive),
             largest_step: self.largest_step(&support),
+            engine: self.study.and_then(|(_, fit)| fit.fit.engine),
             groups: lists.groups,
             measures: lists.measures,
             notes: self.notes(),

@@ -265,6 +265,12 @@ impl Network {
         network
     }
 
+    /// The points and the constant of each spring, length springs first.
+    pub fn springs(&self) -> impl Iterator<Item = (&[usize], f64)> {
+        let lengths = self.lengths.iter().map(|s| (&s.points[..], s.constant));
+        lengths.chain(self.others.iter().map(|s| (&s.points[..], s.constant)))
+    }
+
     /// The number of springs.
     pub fn len(&self) -> usize {
         self.lengths.len() + self.others.len()
@@ -295,7 +301,6 @@ impl Network {
     }
 
     fn negative_springs(&self) -> impl Iterator<Item = (&[usize], f64)> {
-        let lengths = self.lengths.iter().map(|s| (&s.points[..], s.constant));
-        lengths.chain(self.others.iter().map(|s| (&s.points[..], s.constant))).filter(|(_, k)| *k < 0.0)
+        self.springs().filter(|(_, k)| *k < 0.0)
     }
 }

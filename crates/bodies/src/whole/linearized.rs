@@ -2,9 +2,9 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::Result;
+use crate::model::PartVectors;
 use crate::solve::Equations;
 
 /// A sum of squares that is minimised.

@@ -8,14 +8,13 @@
 //! Theory: page *Whole-object fits* of the book.
 
 use super::carriers::{Carriers, Modulus, Part};
-use super::parts::{PartVectors, Places};
 use super::regions::BodyRegions;
 use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::ExactFit;
 use crate::material::{MaterialMap, State};
 use crate::mesh::{CellIndex, Mesh};
-use crate::model::{Elastic, Entries, MeasureSpring, Network, dofs};
+use crate::model::{Elastic, Entries, MeasureSpring, Network, PartVectors, Places, dofs};
 use faer::sparse::Triplet;
 use std::collections::BTreeMap;
 use std::sync::Arc;

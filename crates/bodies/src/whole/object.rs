@@ -1,12 +1,10 @@
 //! A network on its points, with the unknowns of a fit.
 
-use super::gradients::SpringGradients;
 use super::moduli::{ModuliParts, ModuliSharing};
-use super::parts::PartVectors;
 use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
-use crate::model::{Entries, Network};
+use crate::model::{Entries, Network, PartVectors, SpringGradients};
 use crate::solve::{Newton, StaticSolver};
 use crate::springs::{Force, distance};
 use std::collections::BTreeMap;

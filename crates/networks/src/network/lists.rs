@@ -88,6 +88,7 @@ impl<'a> ListedRecord<'a> {
             damping: self.damping,
             motion: self.motion,
             largest_step: self.largest_step,
+            engine: self.engine,
             groups: self.groups,
             measures: self.measures,
             notes: self.notes,

@@ -1,5 +1,6 @@
 //! The record of a network: the keys of its JSON file, for writing, for reading and for the schema.
 
+use crate::engine::Setting;
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -53,6 +54,10 @@ pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
     pub motion: Option<DriveRecord>,
     /// Symplectic Euler without damping is stable below this step in s, `2/ω` of the fastest motion at rest; it is null without masses.
     pub largest_step: Option<f64>,
+    /// The constants belong to these settings of an engine, which ends its sweeps early: a body with other settings has another stiffness.
+    /// It is null of constants that answer like the body where equations are solved to the end.
+    #[serde(default)]
+    pub engine: Option<Setting>,
     /// Each entry is a group of springs of an element, from which springs come.
     pub groups: Vec<OriginRecord>,
     /// Each entry is something that springs measure.

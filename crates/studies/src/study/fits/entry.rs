@@ -1,5 +1,6 @@
 //! A `[[fit]]` of a scene file.
 
+use super::engine::EngineEntry;
 use super::exact::{ExactEntry, without_groups};
 use super::named::NamedFit;
 use super::published::PublishedEntry;
@@ -28,11 +29,13 @@ pub struct FitEntry {
     pub objective: String,
     /// The spring groups; all that are not optional, if absent.
     pub springs: Option<Vec<String>>,
+    /// The settings of the engine that the constants are for.
+    pub engine: Option<EngineEntry>,
     keys: Table,
 }
 
 /// The keys that all fits have.
-pub(super) const COMMON: [&str; 3] = ["name", "objective", "springs"];
+pub(super) const COMMON: [&str; 4] = ["name", "objective", "springs", "engine"];
 
 fn json_text(value: &Value) -> String {
     serde_json::to_string(value).expect("keys are text")
@@ -101,8 +104,8 @@ impl Kind {
 impl FitEntry {
     /// An entry with this objective and no other keys.
     pub fn new(objective: impl Into<String>) -> FitEntry {
-        let (name, springs, keys) = Default::default();
-        FitEntry { name, objective: objective.into(), springs, keys }
+        let (name, springs, engine, keys) = Default::default();
+        FitEntry { name, objective: objective.into(), springs, engine, keys }
     }
 
     /// What is set, as `key = value` with values in JSON, sorted by the keys: what tells one fit from another on disk.
@@ -110,8 +113,10 @@ impl FitEntry {
         let springs = self.springs.as_ref().map(|names| Value::from(names.clone()));
         let common = [("objective", Some(Value::from(self.objective.clone()))), ("springs", springs)];
         let common = common.into_iter().filter_map(|(key, value)| Some((key.to_string(), value?)));
+        let engine = self.engine.as_ref().map(EngineEntry::identity);
         let mut set: Vec<String> =
             common.chain(self.keys.clone()).map(|(key, value)| format!("{key} = {}", json_text(&value))).collect();
+        set.extend(engine);
         set.sort();
         set
     }
@@ -162,6 +167,12 @@ impl FitEntry {
     /// # Errors
     /// Those of [`FitEntry::fits`]; or a function stands for a key that is there as well, or that the objective does not have.
     pub fn fits_with(&self, folder: &Path, functions: &FitFunctions) -> Result<Vec<NamedFit>> {
+        let engine = self.engine.as_ref().map(|entry| entry.setting().map_err(|e| e.under("engine"))).transpose()?;
+        let fits = self.fits_of_kind(folder, functions)?;
+        Ok(fits.into_iter().map(|fit| fit.in_engine(engine)).collect())
+    }
+
+    fn fits_of_kind(&self, folder: &Path, functions: &FitFunctions) -> Result<Vec<NamedFit>> {
         let kind = Kind::of(&self.objective)?;
         self.check_owners(kind)?;
         if let Some(springs) = &self.springs {
@@ -290,6 +301,7 @@ impl<'de> Visitor<'de> for EntryVisitor {
                 "name" => entry.name = Some(map.next_value()?),
                 "objective" => objective = Some(map.next_value()?),
                 "springs" => entry.springs = Some(map.next_value::<Groups>()?.0),
+                "engine" => entry.engine = Some(map.next_value()?),
                 _ => {
                     let value = map.next_value()?;
                     entry.keys.insert(key, value);

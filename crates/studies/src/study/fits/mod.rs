@@ -1,5 +1,6 @@
 //! The kinds of fits, one folder for each: what a scene file says of it, how it is computed, and what is reported.
 
+mod engine;
 mod entry;
 mod exact;
 mod facts;

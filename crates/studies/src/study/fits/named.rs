@@ -1,6 +1,7 @@
 //! A fit of a scene with its name.
 
 use super::recipe::Recipe;
+use crate::engine::Setting;
 use crate::fit::Fit;
 
 /// A fit, its name in reports, and its spring groups.
@@ -12,6 +13,8 @@ pub struct NamedFit {
     pub recipe: Recipe,
     /// The spring groups; all that are not optional, if absent.
     pub springs: Option<Vec<String>>,
+    /// The settings of the engine that the constants are for; `None` where equations are solved to the end.
+    pub engine: Option<Setting>,
     /// The number of its `[[fit]]` in the scene file.
     entry: Option<usize>,
 }
@@ -29,7 +32,13 @@ impl NamedFit {
 
     /// A fit by this recipe, under the given name.
     pub fn named(name: impl Into<String>, recipe: Recipe, springs: Option<Vec<String>>) -> NamedFit {
-        NamedFit { name: name.into(), recipe, springs, entry: None }
+        NamedFit { name: name.into(), recipe, springs, engine: None, entry: None }
+    }
+
+    /// The fit for the settings of an engine.
+    #[must_use]
+    pub fn in_engine(self, engine: Option<Setting>) -> NamedFit {
+        NamedFit { engine, ..self }
     }
 
     /// Marks the fit as that of the `[[fit]]` with this number, from 0.

@@ -1,5 +1,6 @@
 //! The JSON Schema of a `[[fit]]`: one alternative for each kind, which its objective tells.
 
+use super::engine::EngineEntry;
 use super::entry::{COMMON, FitEntry, Kind};
 use super::exact::ExactEntry;
 use super::published::PublishedEntry;
@@ -43,7 +44,7 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
         Kind::Published => keys::<PublishedEntry>(generator),
         Kind::Exact => keys::<ExactEntry>(generator),
     });
-    properties.extend(common(kind));
+    properties.extend(common(kind, generator));
     json!({
         "title": kind.name(),
         "type": "object",
@@ -54,8 +55,8 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
 }
 
 /// The keys that all fits have.
-fn common(kind: Kind) -> [(String, Value); COMMON.len()] {
-    let [name, objective, springs] = COMMON.map(String::from);
+fn common(kind: Kind, generator: &mut SchemaGenerator) -> [(String, Value); COMMON.len()] {
+    let [name, objective, springs, engine] = COMMON.map(String::from);
     let names = json!({
         "type": "string",
         "description": "Tables and files call the fit by this name. No two fits have the same name, and no fit is called `finite elements`.",
@@ -74,7 +75,12 @@ fn common(kind: Kind) -> [(String, Value); COMMON.len()] {
                         and volumes (`all + volume`).",
         "x-default": "all that are not optional",
     });
-    [(name, names), (objective, objectives), (springs, groups)]
+    let mut settings = generator.subschema_for::<EngineEntry>().to_value();
+    settings["description"] = "The constants are for an engine that ends its sweeps early: at these settings the network answers like the \
+                               body. A whole-object fit finds its constants so; others are multiplied by one factor for springs on lengths \
+                               and one for those on contents. It needs a density."
+        .into();
+    [(name, names), (objective, objectives), (springs, groups), (engine, settings)]
 }
 
 /// The properties of the keys that a kind has.

@@ -22,7 +22,7 @@ mod reference;
 mod regions;
 mod setting;
 mod source;
-mod value;
+pub(in crate::study) mod value;
 mod variants;
 
 pub use document::Scene;

@@ -2,7 +2,7 @@
 
 /// The degrees of freedom of each part.
 #[derive(Debug, PartialEq)]
-pub(super) struct Places {
+pub(crate) struct Places {
     /// The index at which each part begins in `dofs`, `[parts + 1]`.
     starts: Vec<usize>,
     dofs: Vec<usize>,
@@ -38,7 +38,7 @@ impl Default for Places {
 
 /// The vectors of all parts, for example the forces `F_s = ∂F/∂c_s` of each part at factor 1.
 #[derive(Debug, Clone)]
-pub(super) struct PartVectors {
+pub(crate) struct PartVectors {
     pub places: std::sync::Arc<Places>,
     pub values: Vec<f64>,
 }

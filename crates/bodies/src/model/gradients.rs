@@ -1,14 +1,14 @@
 //! The gradients of the measures of all springs at given positions.
 
+use super::network::Network;
 use super::parts::{PartVectors, Places};
-use crate::model::Network;
 use crate::springs::Measure;
 use crate::stiffness::gather;
 use std::sync::Arc;
 
 /// `∇c_s` of every spring at given positions, on the degrees of freedom of the spring.
 #[derive(Debug)]
-pub(super) struct SpringGradients(PartVectors);
+pub(crate) struct SpringGradients(PartVectors);
 
 impl SpringGradients {
     /// The gradients at the positions `x`, `[points × dimension]`, m; and the force of each spring there, in N if it
@@ -28,6 +28,11 @@ impl SpringGradients {
         pulls.extend(network.lengths.iter().map(|s| add(&Measure::Length, &s.points, &|c| s.pull(c))));
         pulls.extend(network.others.iter().map(|s| add(&s.measure, &s.points, &|c| s.pull(c))));
         (SpringGradients(PartVectors { places: Arc::new(places), values }), pulls)
+    }
+
+    /// The degrees of freedom of every spring, and its gradient there.
+    pub fn each(&self) -> impl Iterator<Item = (&[usize], &[f64])> {
+        self.0.places.each(&self.0.values)
     }
 
     /// `∇c_s·v` of every spring.

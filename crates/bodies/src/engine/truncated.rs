@@ -1,0 +1,377 @@
+//! The effective stiffness of a network in an engine: products, solutions, and how they change with the constants.
+//!
+//! Theory: page *Networks in engines* of the book.
+
+use super::constraints::Constraints;
+use super::descents::Descents;
+use super::krylov::gmres;
+use super::lanes::{Block, LANES, block, vectors};
+use super::setting::Setting;
+use crate::error::{Error, ErrorKind, Result};
+use crate::model::{LengthSpring, MeasureSpring, Network, Support};
+use crate::solve::Equations;
+use crate::springs::{Measure, distance};
+use crate::stiffness::gather;
+use faer::Mat;
+use faer::linalg::solvers::{PartialPivLu, Solve};
+use rayon::prelude::*;
+
+/// A network on its points with masses, as an engine holds it.
+#[derive(Debug, Clone, Copy)]
+pub struct TruncatedModel<'a> {
+    /// The springs.
+    pub network: &'a Network,
+    /// The positions at rest, `[points × dimension]`, m.
+    pub points: &'a [f64],
+    /// The masses, `[points]`, kg.
+    pub masses: &'a [f64],
+}
+
+/// The effective stiffness `K_N` of a network under a support, with what solves its equations.
+#[derive(Debug)]
+pub struct Truncated {
+    sweeps: Sweeps,
+    /// W, `[dofs]`, 1/kg; zero where points are held.
+    inverse: Vec<f64>,
+    /// The degrees of freedom that are free.
+    free: Vec<usize>,
+    /// h, s.
+    substep: f64,
+    solver: Solver,
+}
+
+#[derive(Debug)]
+enum Sweeps {
+    Springs(Constraints),
+    Points(Descents),
+}
+
+#[derive(Debug)]
+enum Solver {
+    /// The factors of the whole matrix.
+    Dense(PartialPivLu<f64>),
+    /// GMRES with the factor of the stiffness of the network.
+    Krylov(Equations),
+}
+
+/// What the changes of a product `K_N y` depend on.
+#[derive(Debug)]
+pub(super) struct History {
+    /// What the sweeps begin with.
+    pub start: Block,
+    /// What each sweep has found, by springs or by points.
+    pub sweeps: Vec<Block>,
+    /// The number of degrees of freedom.
+    pub size: usize,
+}
+
+/// Up to this number of free degrees of freedom the whole matrix costs less than iterations for the loads of a fit; it has 128 MB.
+const DENSE: usize = 4000;
+/// The relative residual of iterations.
+const RESIDUAL: f64 = 1e-10;
+
+impl Truncated {
+    /// The effective stiffness at a setting; `None` if some motion has no stiffness.
+    ///
+    /// # Errors
+    /// The engine does not hold the springs, or a point has no mass: kind `Unsupported`; or the equations do not fit into memory.
+    pub fn new(model: TruncatedModel, support: &Support, setting: &Setting) -> Result<Option<Truncated>> {
+        Truncated::prepare(model, support, setting, (false, DENSE))
+    }
+
+    /// The same with the equations solved by iterations, whatever their number.
+    ///
+    /// # Errors
+    /// Those of [`Truncated::new`].
+    pub fn iterated(model: TruncatedModel, support: &Support, setting: &Setting) -> Result<Option<Truncated>> {
+        Truncated::prepare(model, support, setting, (false, 0))
+    }
+
+    /// The largest effective stiffness of a setting, that of springs without compliance; `None` if some motion has no stiffness. Vertex block
+    /// descent has none.
+    ///
+    /// # Errors
+    /// Those of [`Truncated::new`].
+    pub fn rigid(model: TruncatedModel, support: &Support, setting: &Setting) -> Result<Option<Truncated>> {
+        Truncated::prepare(model, support, setting, (true, DENSE))
+    }
+
+    fn prepare(
+        model: TruncatedModel,
+        support: &Support,
+        setting: &Setting,
+        (is_rigid, dense): (bool, usize),
+    ) -> Result<Option<Truncated>> {
+        check(model, support)?;
+        let TruncatedModel { network, points, masses } = model;
+        let d = network.dimension;
+        let inverse: Vec<f64> =
+            (0..points.len()).map(|dof| if support.is_fixed(dof) { 0.0 } else { 1.0 / masses[dof / d] }).collect();
+        let free: Vec<usize> = (0..points.len()).filter(|&dof| !support.is_fixed(dof)).collect();
+        let held = Equations::factored(&network.stiffness(points), support, points, d)?;
+        let Some(equations) = held else { return Ok(None) };
+        let sweeps = match setting.is_by_points() {
+            true => Sweeps::Points(Descents::new(network, (points, &inverse), setting)),
+            false => Sweeps::Springs(Constraints::new(network, (points, &inverse), setting, is_rigid)),
+        };
+        let substep = setting.substep();
+        let solver = Solver::Krylov(equations);
+        let found = Truncated { sweeps, inverse, free, substep, solver };
+        if found.free.len() > dense {
+            return Ok(Some(found));
+        }
+        let matrix = found.matrix();
+        let is_finite = matrix.col_iter().all(|column| column.iter().all(|k| k.is_finite()));
+        Ok(is_finite.then(|| Truncated { solver: Solver::Dense(matrix.partial_piv_lu()), ..found }))
+    }
+
+    /// `K_N` on the degrees of freedom that are free.
+    fn matrix(&self) -> Mat<f64> {
+        let n = self.free.len();
+        let columns = |chunk: &[usize]| {
+            let mut unit = vec![[0.0; LANES]; self.inverse.len()];
+            chunk.iter().enumerate().for_each(|(lane, &dof)| unit[dof][lane] = 1.0);
+            let found = self.apply(&unit);
+            vectors(&found, chunk.len())
+        };
+        let columns: Vec<Vec<f64>> = self.free.par_chunks(LANES).flat_map_iter(columns).collect();
+        Mat::from_fn(n, n, |i, j| columns[j][self.free[i]])
+    }
+
+    fn apply(&self, y: &Block) -> Block {
+        self.freed(match &self.sweeps {
+            Sweeps::Springs(constraints) => constraints.apply(y),
+            Sweeps::Points(descents) => descents.apply(y),
+        })
+    }
+
+    fn apply_transposed(&self, z: &Block) -> Block {
+        self.freed(match &self.sweeps {
+            Sweeps::Springs(constraints) => constraints.apply_transposed(z),
+            Sweeps::Points(descents) => descents.apply_transposed(z),
+        })
+    }
+
+    /// The vectors with zero where points are held.
+    fn freed(&self, mut block: Block) -> Block {
+        block.iter_mut().zip(&self.inverse).filter(|(_, w)| **w == 0.0).for_each(|(all, _)| *all = [0.0; LANES]);
+        block
+    }
+
+    /// `K_N⁻¹ f` of each f, or `K_N⁻ᵀ f`, zero where points are held.
+    fn solve(&self, forces: &[Vec<f64>], is_transposed: bool) -> Result<Vec<Vec<f64>>> {
+        let size = self.inverse.len();
+        match &self.solver {
+            Solver::Dense(factors) => {
+                let right = Mat::from_fn(self.free.len(), forces.len(), |i, load| forces[load][self.free[i]]);
+                let found = if is_transposed { factors.solve_transpose(&right) } else { factors.solve(&right) };
+                let one = |load: usize| {
+                    let mut all = vec![0.0; size];
+                    self.free.iter().enumerate().for_each(|(i, &dof)| all[dof] = found[(i, load)]);
+                    all
+                };
+                Ok((0..forces.len()).map(one).collect())
+            }
+            Solver::Krylov(equations) => {
+                let one = |chunk: &[Vec<f64>]| {
+                    let right = self.freed(block(chunk, size));
+                    let precondition = |v: &Block| {
+                        let found = equations.respond_all(&vectors(v, LANES), 0.0).ok()?;
+                        Some(block(&found, size))
+                    };
+                    let apply = |v: &Block| if is_transposed { self.apply_transposed(v) } else { self.apply(v) };
+                    let found = gmres(apply, precondition, &right, RESIDUAL).ok_or_else(|| {
+                        let problem =
+                            "iterations for the body in the engine stall: its sweeps are far from the equilibrium";
+                        Error::at("engine", problem).of_kind(ErrorKind::Limit)
+                    })?;
+                    Ok(vectors(&found, chunk.len()))
+                };
+                let found: Result<Vec<Vec<Vec<f64>>>> = forces.par_chunks(LANES).map(one).collect();
+                Ok(found?.concat())
+            }
+        }
+    }
+
+    /// The predictions `y = K_N⁻¹ f` at rest under each of several nodal forces, `[points · dimension]`, N.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn predictions(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
+        self.solve(forces, false)
+    }
+
+    /// The displacements `u = y − h² W f`.
+    pub fn displacement(&self, prediction: &[f64], force: &[f64]) -> Vec<f64> {
+        let square = self.substep.powi(2);
+        prediction.iter().zip(force).zip(&self.inverse).map(|((y, f), w)| y - square * w * f).collect()
+    }
+
+    /// The displacements at rest under each of several nodal forces, `[points · dimension]`, N.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn answers(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
+        let predictions = self.predictions(forces)?;
+        Ok(predictions.iter().zip(forces).map(|(y, f)| self.displacement(y, f)).collect())
+    }
+
+    fn trace(&self, y: &Block) -> History {
+        match &self.sweeps {
+            Sweeps::Springs(constraints) => constraints.trace(y),
+            Sweeps::Points(descents) => descents.trace(y),
+        }
+    }
+
+    /// The changes of the displacements, `−K_N⁻¹ δK_N y`, where the logarithms of the constants change by `changes`, `[springs]`.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn changes(&self, predictions: &[Vec<f64>], changes: &[f64]) -> Result<Vec<Vec<f64>>> {
+        let one = |chunk: &[Vec<f64>]| {
+            let history = self.trace(&block(chunk, self.inverse.len()));
+            let mut change = self.freed(match &self.sweeps {
+                Sweeps::Springs(constraints) => constraints.change(&history, changes),
+                Sweeps::Points(descents) => descents.change(&history, changes),
+            });
+            change.iter_mut().flatten().for_each(|f| *f = -*f);
+            vectors(&change, chunk.len())
+        };
+        let forces: Vec<Vec<Vec<f64>>> = predictions.par_chunks(LANES).map(one).collect();
+        self.solve(&forces.concat(), false)
+    }
+
+    /// `Σ_l w_l·∂u_l/∂ ln k_s` of each spring, `[springs]`, for the weights w_l of the displacements of each load: with `K_Nᵀ z = w` it is
+    /// `−zᵀ (∂K_N/∂ ln k_s) y`.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn gradient(&self, predictions: &[Vec<f64>], weights: &[Vec<f64>]) -> Result<Vec<f64>> {
+        let size = self.inverse.len();
+        let adjoints = self.solve(weights, true)?;
+        let one = |(predictions, adjoints): (&[Vec<f64>], &[Vec<f64>])| {
+            let (history, z) = (self.trace(&block(predictions, size)), block(adjoints, size));
+            match &self.sweeps {
+                Sweeps::Springs(constraints) => constraints.sensitivities(&history, &z),
+                Sweeps::Points(descents) => descents.sensitivities(&history, &z),
+            }
+        };
+        let chunks = predictions.par_chunks(LANES).zip(adjoints.par_chunks(LANES));
+        let parts: Vec<Vec<f64>> = chunks.map(one).collect();
+        let mut total = vec![0.0; parts.first().map_or(0, Vec::len)];
+        for part in &parts {
+            total.iter_mut().zip(part).for_each(|(t, own)| *t -= own);
+        }
+        Ok(total)
+    }
+
+    /// The lowest natural vibration in the engine, found by inverse iteration; `None` if it is not found.
+    ///
+    /// Without forces `x_{n+1} = (I − h² W K_N) (2 x_n − x_{n−1})`. A motion with the eigenvalue κ of `W K_N` has the complex factor
+    /// `ρ e^{iφ}` in a substep, with `ρ² = 1 − h² κ` and `cos φ = ρ`: the angular frequency φ/h and the damping ratio `ln(1/ρ)/φ` of the
+    /// truncation and of the implicit steps.
+    ///
+    /// # Errors
+    /// Iterations stall: kind `Limit`.
+    pub fn lowest_vibration(&self) -> Result<Option<Vibration>> {
+        // No symmetric body has this direction as that of another mode.
+        let mut shape: Vec<f64> = (0..self.inverse.len()).map(|dof| 1.0 + 0.3 * (1.7 * dof as f64).sin()).collect();
+        let mut before = f64::NAN;
+        for _ in 0..VIBRATIONS {
+            let inertia: Vec<f64> =
+                shape.iter().zip(&self.inverse).map(|(x, w)| if *w > 0.0 { x / w } else { 0.0 }).collect();
+            let Some(next) = self.solve(&[inertia.clone()], false)?.pop() else { return Ok(None) };
+            let (own, both): (f64, f64) = inertia
+                .iter()
+                .zip(&next)
+                .zip(&self.inverse)
+                .filter(|(_, w)| **w > 0.0)
+                .fold((0.0, 0.0), |(own, both), ((m, x), w)| (own + m * m * w, both + m * x));
+            // κ = (M x)·x/(M x)·(K_N⁻¹ M x).
+            let kappa = own / both;
+            if !(kappa > 0.0 && kappa.is_finite()) {
+                return Ok(None);
+            }
+            let size = next.iter().map(|x| x * x).sum::<f64>().sqrt();
+            shape = next.iter().map(|x| x / size).collect();
+            if (kappa - before).abs() <= 1e-9 * kappa {
+                return Ok(Vibration::of(kappa, self.substep));
+            }
+            before = kappa;
+        }
+        Ok(None)
+    }
+}
+
+/// Inverse iterations at most.
+const VIBRATIONS: usize = 500;
+
+/// A natural vibration in an engine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vibration {
+    /// The frequency, Hz.
+    pub frequency: f64,
+    /// The damping ratio.
+    pub damping: f64,
+}
+
+impl Vibration {
+    /// That with the eigenvalue κ of `W K_N`, 1/s², in substeps of h; `None` if it is no vibration.
+    fn of(kappa: f64, substep: f64) -> Option<Vibration> {
+        let square = 1.0 - substep * substep * kappa;
+        if !(square > 0.0) {
+            return None;
+        }
+        let factor = square.sqrt();
+        let angle = factor.acos();
+        Some(Vibration { frequency: angle / (substep * std::f64::consts::TAU), damping: -factor.ln() / angle })
+    }
+}
+
+/// Checks that engines hold the springs, and that each free point has a mass.
+fn check(model: TruncatedModel, support: &Support) -> Result<()> {
+    let TruncatedModel { network, points, masses } = model;
+    let unsupported = |key: &str, expected: &str, found: String| {
+        Err(Error::expected(key, expected, found).of_kind(ErrorKind::Unsupported))
+    };
+    let d = network.dimension;
+    if let Some(p) = (0..masses.len()).find(|&p| !(masses[p] > 0.0)) {
+        return unsupported("masses", "masses above zero", format!("{:e} kg at point {p}", masses[p]));
+    }
+    if masses.len() * d != points.len() {
+        return unsupported("masses", "a mass of each point", format!("{}", masses.len()));
+    }
+    if support.prescribed.iter().flatten().any(|u| *u != 0.0) {
+        return unsupported("engine", "supports at rest", "a support that moves".into());
+    }
+    if let Some((_, constant)) = network.springs().find(|(_, constant)| !(*constant > 0.0)) {
+        let expected = "springs with constants above zero, which engines hold; nonnegative = true has no negative ones";
+        return unsupported("engine", expected, format!("{constant:e}"));
+    }
+    let is_simplex =
+        |spring: &MeasureSpring| matches!(spring.measure, Measure::Content(_)) && spring.points.len() == d + 1;
+    if network.others.iter().any(|spring| spring.law.is_some() || !is_simplex(spring)) {
+        let expected = "springs on lengths and on the contents of simplices with linear forces, which engines hold";
+        return unsupported("engine", expected, "others".into());
+    }
+    let slack = |rest: f64, now: f64| (rest / now - 1.0).abs() <= SLACK;
+    let length = |spring: &LengthSpring| {
+        let [a, b] = spring.points.map(|p| &points[p * d..(p + 1) * d]);
+        distance(a, b)
+    };
+    let is_slack = network.lengths.iter().all(|spring| slack(spring.rest, length(spring)))
+        && network.others.iter().all(|spring| {
+            let mut own = vec![0.0; spring.points.len() * d];
+            gather(points, d, &spring.points, &mut own);
+            slack(spring.rest, spring.measure.value(&own, d))
+        });
+    if !is_slack {
+        let expected =
+            "springs that do not pull at rest: an engine that ends its sweeps early leaves their sum out of balance";
+        return unsupported("engine", expected, "rest measures that differ from those of the mesh".into());
+    }
+    Ok(())
+}
+
+/// A relative difference of a measure from its rest value that is rounding.
+const SLACK: f64 = 1e-9;
