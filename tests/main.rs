@@ -112,6 +112,7 @@ mod sweeps;
 mod symbols;
 mod symmetry;
 mod texts;
+mod truncated;
 mod typeset;
 mod voxel_cells;
 mod voxels;

@@ -6,7 +6,8 @@ use crate::fit::published::Unmet;
 use crate::number::finite;
 use crate::positive::PositiveOutcome;
 use crate::study::{
-    FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, SampledOutcome, TensionOutcome, WholeOutcome,
+    EngineOutcome, FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, SampledOutcome, TensionOutcome,
+    WholeOutcome,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -77,6 +78,8 @@ pub struct FitRecord {
     pub zener: Option<f64>,
     /// Each entry has the errors under a load.
     pub loads: Vec<LoadRecord>,
+    /// `engine` has what the network answers in the engine that its constants are for; it is null where equations are solved to the end.
+    pub engine: Option<EngineOutcome>,
     /// `unmet` has the assumptions of a published formula that the body violates; it is null with others.
     pub unmet: Option<Unmet>,
     /// `whole` has the outcome of a whole-object fit; it is null with others.
@@ -122,6 +125,7 @@ impl FitRecord {
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
             loads: outcome.loads.iter().map(LoadRecord::from).collect(),
+            engine: outcome.engine.clone(),
             unmet: outcome.kind.published().map(|published| published.unmet),
             whole: outcome.kind.whole().cloned(),
             sampled: outcome.kind.sampled().cloned(),

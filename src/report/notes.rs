@@ -9,7 +9,7 @@ use super::quality::quality_lines;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
+use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, extent, spurious_modes};
 
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
@@ -133,6 +133,15 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
     }
     let own = fit.kind.notes(outcome.mesh.cell_count(), &outcome.material);
     notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
+    if let Some(engine) = &fit.engine {
+        let of_engine = engine.notes(extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
+        notes.extend(of_engine.into_iter().map(|note| format!("{name}: {note}")));
+        if outcome.motion.is_some() {
+            notes.push(format!(
+                "{name}: the motion is that of equations which are solved to the end, not that in the engine"
+            ));
+        }
+    }
     notes.extend(material_note(outcome, fit));
     if let Some(m) = &fit.moduli {
         let (of, unit) = match outcome.material.thicknesses().uniform() {

@@ -3,8 +3,8 @@
 //! Theory: page *Networks in engines* of the book.
 
 use super::lanes::{Block, LANES, Lanes, add};
-use super::order::sweep_order;
-use super::setting::{Setting, Sweep};
+use super::order::Sequence;
+use super::setting::{Engine, Setting, Sweep};
 use super::truncated::History;
 use crate::model::{Network, SpringGradients};
 
@@ -28,7 +28,8 @@ pub(super) struct Constraints {
     /// The spring that each constraint is, by its index in the network.
     springs: Vec<usize>,
     sweep: Sweep,
-    relaxation: f64,
+    /// ω, `[constraints]`.
+    relaxation: Vec<f64>,
     iterations: usize,
     /// h².
     square: f64,
@@ -36,6 +37,9 @@ pub(super) struct Constraints {
 
 /// What a sweep adds to the residuals: changes of the softness, and what each is multiplied by.
 type Source<'a> = Option<(&'a [f64], &'a Block)>;
+
+/// Steps of the power method.
+const POWERS: usize = 200;
 
 impl Constraints {
     /// The springs of a network with the inverse masses `inverse`, `[dofs]`, 1/kg, zero where points are held. With `is_rigid` all
@@ -49,8 +53,9 @@ impl Constraints {
         let (gradients, _) = SpringGradients::at(network, points);
         let rows: Vec<(&[usize], &[f64])> = gradients.each().collect();
         let sets: Vec<&[usize]> = network.springs().map(|(points, _)| points).collect();
-        let count = points.len() / network.dimension.max(1);
-        let order = sweep_order(setting.order, &sets, network.lengths.len(), count);
+        let (dimension, lengths) = (network.dimension, network.lengths.len());
+        let held: Vec<bool> = inverse.chunks_exact(dimension.max(1)).map(|w| w.iter().all(|w| *w == 0.0)).collect();
+        let order = Sequence { springs: &sets, lengths, points, dimension, held: &held }.order(setting.order);
         let constants: Vec<f64> = network.springs().map(|(_, constant)| constant).collect();
         let square = setting.substep().powi(2);
         let mut all = Constraints {
@@ -62,7 +67,7 @@ impl Constraints {
             softness: Vec::new(),
             springs: order.clone(),
             sweep: setting.sweep,
-            relaxation: setting.relaxation,
+            relaxation: Vec::new(),
             iterations: setting.iterations,
             square,
         };
@@ -76,6 +81,8 @@ impl Constraints {
             let stiff: f64 = dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum();
             all.diagonal.push(if stiff > 0.0 { stiff + softness } else { 0.0 });
             all.softness.push(softness);
+            let is_relaxed = setting.engine != Engine::NewtonXpbd || spring >= lengths;
+            all.relaxation.push(if is_relaxed { setting.relaxation } else { 1.0 });
         }
         all
     }
@@ -120,7 +127,7 @@ impl Constraints {
         for at in 0..n {
             let row = if is_reversed { n - 1 - at } else { at };
             let (whole, dofs) = self.step(row, x, &multipliers[row], source);
-            let step = whole.map(|w| self.relaxation * w);
+            let step = whole.map(|w| self.relaxation[row] * w);
             let mut reached = multipliers[row];
             add(&mut reached, &whole, 1.0);
             visit(row, reached, &step);
@@ -148,6 +155,26 @@ impl Constraints {
             }
         }
         forces
+    }
+
+    /// The largest eigenvalue of `ω D⁻¹ A`, by the power method: sweeps that take all springs at once grow without bound from 2 on.
+    pub fn growth(&self, size: usize) -> f64 {
+        let mut multipliers: Block = (0..self.len()).map(|row| [(1.0 + 1.3 * row as f64).sin(); LANES]).collect();
+        let mut growth = 0.0;
+        for _ in 0..POWERS {
+            let mut x = vec![[0.0; LANES]; size];
+            for (row, multiplier) in multipliers.iter().enumerate() {
+                self.move_by(multiplier, self.starts[row]..self.starts[row + 1], &mut x);
+            }
+            let next = |row: usize| self.step(row, &x, &multipliers[row], None).0.map(|s| -self.relaxation[row] * s);
+            let next: Block = (0..self.len()).map(next).collect();
+            growth = next.iter().map(|m| m[0] * m[0]).sum::<f64>().sqrt();
+            if growth == 0.0 {
+                break;
+            }
+            multipliers = next.into_iter().map(|m| m.map(|m| m / growth)).collect();
+        }
+        growth
     }
 
     /// `K_N y`.

@@ -4,8 +4,9 @@
 
 use super::lanes::{Block, LANES, Lanes, add};
 use super::order::point_order;
-use super::setting::Setting;
+use super::setting::{Engine, Setting};
 use super::truncated::History;
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Network, SpringGradients};
 use nalgebra::DMatrix;
 
@@ -51,9 +52,15 @@ struct State {
     measures: Block,
 }
 
+/// The solver of Newton leaves points where they are whose block has no larger determinant.
+const LEAST: f64 = 1e-8;
+
 impl Descents {
     /// The springs of a network with the inverse masses `inverse`, `[dofs]`, 1/kg, zero where points are held.
-    pub fn new(network: &Network, (at, inverse): (&[f64], &[f64]), setting: &Setting) -> Descents {
+    ///
+    /// # Errors
+    /// Newton does not move a point: kind `Unsupported`.
+    pub fn new(network: &Network, (at, inverse): (&[f64], &[f64]), setting: &Setting) -> Result<Descents> {
         let d = network.dimension;
         let (gradients, _) = SpringGradients::at(network, at);
         let constants = network.springs().map(|(_, constant)| constant);
@@ -80,7 +87,7 @@ impl Descents {
             if inverse[first..first + d].iter().all(|w| *w == 0.0) {
                 continue;
             }
-            let mut block = DMatrix::zeros(d, d);
+            let mut block = DMatrix::<f64>::zeros(d, d);
             for &(s, start) in &own {
                 let g = &springs[s].gradient[start..start + d];
                 for (a, b) in (0..d).flat_map(|a| (0..d).map(move |b| (a, b))) {
@@ -90,20 +97,24 @@ impl Descents {
             for a in 0..d {
                 block[(a, a)] += if inertia[first + a] > 0.0 { inertia[first + a] } else { 1.0 };
             }
+            if setting.engine == Engine::NewtonVbd && !(block.determinant().abs() > LEAST) {
+                let expected = format!(
+                    "points whose block of the stiffness has a determinant above {LEAST:e} (N/m)³, which Newton moves"
+                );
+                let found = format!("{:.1e} at point {p}", block.determinant());
+                let advice = "; a stiffer or denser body, or shorter substeps, have such points";
+                return Err(Error::expected("engine", expected, found)
+                    .followed_by(advice)
+                    .of_kind(ErrorKind::Unsupported));
+            }
             // It is positive definite: springs pull back, and inertia is above zero.
             let Some(inverse) = block.try_inverse() else { continue };
             let count = own.len();
             points.push(Point { first, inverse: inverse.as_slice().to_vec(), springs: own, place });
             place += count;
         }
-        Descents {
-            points,
-            springs,
-            inertia,
-            dimension: d,
-            relaxation: setting.relaxation,
-            iterations: setting.iterations,
-        }
+        let (relaxation, iterations) = (setting.relaxation, setting.iterations);
+        Ok(Descents { points, springs, inertia, dimension: d, relaxation, iterations })
     }
 
     fn places(&self) -> usize {

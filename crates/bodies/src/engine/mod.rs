@@ -16,6 +16,7 @@
 //! |---|---|
 //! | `setting` | the settings of an engine, and those of engines by name |
 //! | `order` | the order in which a sweep takes the springs or the points |
+//! | `jolt` | the order of Jolt |
 //! | `lanes` | displacements under several loads, which are swept together |
 //! | `constraints` | XPBD: sweeps over the springs, and their derivatives |
 //! | `descents` | VBD: sweeps over the points, and their derivatives |
@@ -28,6 +29,7 @@
 mod ceiling;
 mod constraints;
 mod descents;
+mod jolt;
 mod krylov;
 mod lanes;
 mod order;
@@ -35,6 +37,6 @@ mod setting;
 mod truncated;
 
 pub use ceiling::{Ceiling, least_substeps};
-pub use order::{colours, sweep_order};
+pub use order::{Sequence, colours};
 pub use setting::{Engine, Order, Precision, Setting, Sweep};
 pub use truncated::{Truncated, TruncatedModel, Vibration};

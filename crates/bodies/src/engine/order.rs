@@ -1,5 +1,6 @@
 //! The order in which a sweep takes the springs or the points.
 
+use super::jolt;
 use super::setting::Order;
 
 /// The colour of each of these sets: the least that no earlier set has with which it shares a member. Sets of a colour share none.
@@ -29,19 +30,39 @@ fn by_colour<S: AsRef<[usize]>>(sets: &[S], members: usize) -> Vec<usize> {
     order
 }
 
-/// The springs in the order of a sweep: their points are given, those on lengths, `lengths` in number, before those on contents.
-pub fn sweep_order<S: AsRef<[usize]>>(order: Order, springs: &[S], lengths: usize, points: usize) -> Vec<usize> {
-    match order {
-        Order::Colours => by_colour(springs, points),
-        Order::Given => (0..springs.len()).collect(),
-        Order::ContentsFirst => (lengths..springs.len()).chain(0..lengths).collect(),
+/// Springs whose order is sought.
+#[derive(Debug, Clone, Copy)]
+pub struct Sequence<'a, S> {
+    /// Their points; those on lengths come first.
+    pub springs: &'a [S],
+    /// The number of those on lengths.
+    pub lengths: usize,
+    /// The points at rest, `[points × dimension]`, m.
+    pub points: &'a [f64],
+    /// The number of coordinates of a point.
+    pub dimension: usize,
+    /// Whether each point is held, `[points]`.
+    pub held: &'a [bool],
+}
+
+impl<S: AsRef<[usize]>> Sequence<'_, S> {
+    /// The springs in the order of a sweep.
+    pub fn order(&self, order: Order) -> Vec<usize> {
+        match order {
+            Order::Colours => by_colour(self.springs, self.held.len()),
+            Order::Given => (0..self.springs.len()).collect(),
+            Order::Jolt => {
+                let Sequence { springs, lengths, points, dimension, held } = *self;
+                jolt::Body { springs, lengths, points, dimension, held }.order()
+            }
+        }
     }
 }
 
 /// The points in the order of a sweep of vertex block descent. Points of a colour are in no spring together.
 pub(super) fn point_order<S: AsRef<[usize]>>(order: Order, springs: &[S], points: usize) -> Vec<usize> {
     match order {
-        Order::Given | Order::ContentsFirst => (0..points).collect(),
+        Order::Given | Order::Jolt => (0..points).collect(),
         Order::Colours => {
             // Two points of a spring must differ: the sets of a point are the springs that it is in.
             let mut of_point: Vec<Vec<usize>> = vec![Vec::new(); points];

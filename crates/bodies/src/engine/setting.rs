@@ -48,11 +48,11 @@ pub enum Order {
     Colours,
     /// As they are in the network: springs on lengths by their points, then those on contents.
     Given,
-    /// Those on contents before those on lengths, each as in the network.
-    ContentsFirst,
+    /// As Jolt takes them: those on contents before those on lengths, and each from the held points outwards.
+    Jolt,
 }
 
-crate::named!(Order { "colours" => Colours, "given" => Given, "contents-first" => ContentsFirst });
+crate::named!(Order { "colours" => Colours, "given" => Given, "jolt" => Jolt });
 
 /// The numbers with which positions are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -81,7 +81,7 @@ pub struct Setting {
     pub iterations: usize,
     /// A sweep takes springs or points one after the other or all at once.
     pub sweep: Sweep,
-    /// A correction is multiplied by this factor.
+    /// A correction is multiplied by this factor; in Newton's XPBD that of a spring on a content alone.
     pub relaxation: f64,
     /// A sweep takes the springs, or the points of `vbd`, in this order.
     pub order: Order,
@@ -106,7 +106,7 @@ impl Setting {
             Engine::NewtonVbd => (10, 10),
         };
         let order = match engine {
-            Engine::Jolt => Order::ContentsFirst,
+            Engine::Jolt => Order::Jolt,
             Engine::Xpbd | Engine::Vbd | Engine::NewtonXpbd | Engine::NewtonVbd => Order::Colours,
         };
         let sweep = if engine == Engine::NewtonXpbd { Sweep::Jacobi } else { Sweep::GaussSeidel };
@@ -153,6 +153,7 @@ impl Setting {
         };
         match self.engine {
             Engine::Xpbd => Ok(()),
+            Engine::Vbd if self.order == Order::Jolt => own("order", usual.order.name(), self.order.name()),
             Engine::Vbd if self.sweep == Sweep::Jacobi => own("sweep", usual.sweep.name(), self.sweep.name()),
             Engine::Vbd => Ok(()),
             _ if self.sweep != usual.sweep => own("sweep", usual.sweep.name(), self.sweep.name()),

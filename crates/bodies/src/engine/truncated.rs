@@ -6,7 +6,7 @@ use super::constraints::Constraints;
 use super::descents::Descents;
 use super::krylov::gmres;
 use super::lanes::{Block, LANES, block, vectors};
-use super::setting::Setting;
+use super::setting::{Setting, Sweep};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{LengthSpring, MeasureSpring, Network, Support};
 use crate::solve::Equations;
@@ -111,8 +111,14 @@ impl Truncated {
         let held = Equations::factored(&network.stiffness(points), support, points, d)?;
         let Some(equations) = held else { return Ok(None) };
         let sweeps = match setting.is_by_points() {
-            true => Sweeps::Points(Descents::new(network, (points, &inverse), setting)),
-            false => Sweeps::Springs(Constraints::new(network, (points, &inverse), setting, is_rigid)),
+            true => Sweeps::Points(Descents::new(network, (points, &inverse), setting)?),
+            false => {
+                let constraints = Constraints::new(network, (points, &inverse), setting, is_rigid);
+                if setting.sweep == Sweep::Jacobi && !is_rigid {
+                    check_growth(&constraints, (network, points, &inverse), setting)?;
+                }
+                Sweeps::Springs(constraints)
+            }
         };
         let substep = setting.substep();
         let solver = Solver::Krylov(equations);
@@ -348,8 +354,9 @@ fn check(model: TruncatedModel, support: &Support) -> Result<()> {
         let expected = "springs with constants above zero, which engines hold; nonnegative = true has no negative ones";
         return unsupported("engine", expected, format!("{constant:e}"));
     }
-    let is_simplex =
-        |spring: &MeasureSpring| matches!(spring.measure, Measure::Content(_)) && spring.points.len() == d + 1;
+    let is_simplex = |spring: &MeasureSpring| {
+        matches!(spring.measure, Measure::Content(_) | Measure::Span(_)) && spring.points.len() == d + 1
+    };
     if network.others.iter().any(|spring| spring.law.is_some() || !is_simplex(spring)) {
         let expected = "springs on lengths and on the contents of simplices with linear forces, which engines hold";
         return unsupported("engine", expected, "others".into());
@@ -372,6 +379,42 @@ fn check(model: TruncatedModel, support: &Support) -> Result<()> {
     }
     Ok(())
 }
+
+/// Checks that sweeps which take all springs at once come to an end.
+fn check_growth(
+    constraints: &Constraints,
+    (network, points, inverse): (&Network, &[f64], &[f64]),
+    setting: &Setting,
+) -> Result<()> {
+    let growth = constraints.growth(points.len());
+    if growth < STABLE {
+        return Ok(());
+    }
+    let is_stable = |substeps: usize| {
+        let setting = setting.with_substeps(substeps);
+        Constraints::new(network, (points, inverse), &setting, false).growth(points.len()) < STABLE
+    };
+    let (mut below, mut above) = (setting.substeps, 2 * setting.substeps);
+    while !is_stable(above) && above < LARGE {
+        (below, above) = (above, 2 * above);
+    }
+    while above - below > 1 + below / 100 {
+        let middle = (below + above) / 2;
+        if is_stable(middle) { above = middle } else { below = middle }
+    }
+    let expected = format!(
+        "{above} substeps or more of a step of {:.3e} s: sweeps that take all springs at once grow without bound with longer ones",
+        setting.step
+    );
+    let found = format!("{}", setting.substeps);
+    let advice = "; there they are nearly converged, so that constants for this engine are those of other fits";
+    Err(Error::expected("engine.substeps", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
+}
+
+/// The largest eigenvalue of `ω D⁻¹ A` with which sweeps end, below 2 by what the power method may miss.
+const STABLE: f64 = 1.98;
+/// More substeps than are looked for.
+const LARGE: usize = 1 << 24;
 
 /// A relative difference of a measure from its rest value that is rounding.
 const SLACK: f64 = 1e-9;

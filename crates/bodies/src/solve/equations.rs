@@ -139,16 +139,20 @@ impl Equations {
         }
     }
 
+    /// The number of degrees of freedom, those that are held included.
+    pub fn degrees(&self) -> usize {
+        match self {
+            Equations::Factored(system, _) => system.degrees(),
+            Equations::Iterated(levels, _) => levels.degrees(),
+        }
+    }
+
     /// Seconds of a linear implicit step: one change of the displacements for a change of the forces; the least of three.
     ///
     /// # Errors
     /// Iterations stall: kind `Limit`.
     pub fn seconds_per_step(&self) -> Result<f64> {
-        let size = match self {
-            Equations::Factored(system, _) => system.degrees(),
-            Equations::Iterated(levels, _) => levels.degrees(),
-        };
-        let forces = [(0..size).map(|i| (1.0 + i as f64).sin()).collect::<Vec<f64>>()];
+        let forces = [(0..self.degrees()).map(|i| (1.0 + i as f64).sin()).collect::<Vec<f64>>()];
         let mut least = f64::INFINITY;
         for _ in 0..3 {
             let start = Clock::start();

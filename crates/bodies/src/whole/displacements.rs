@@ -1,8 +1,10 @@
 //! The differences between the network's displacements and frequencies and the targets.
 
-use super::linearized::{LeastSquares, Linearized, Tangent};
+use super::linearized::{LeastSquares, Linearized};
 use super::object::Object;
+use super::tangent::Tangent;
 use super::target::{Frequencies, Target};
+use crate::engine::{Truncated, TruncatedModel};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{BlockStiffness, Elastic, Network, Support, displaced};
 use crate::solve::{Equations, Newton, System};
@@ -159,6 +161,9 @@ impl<'a> Displacements<'a> {
 
     /// The displacements of every load, and the tangents there.
     fn small(&self, theta: &[f64]) -> Result<Option<Moved>> {
+        if self.object.engine.is_some() {
+            return self.in_engine(theta);
+        }
         let mut displacements = vec![Vec::new(); self.targets.len()];
         let mut tangents = Vec::new();
         let supports = self.groups.iter().enumerate().map(|(i, group)| (i, &self.targets[group[0]].support));
@@ -175,7 +180,29 @@ impl<'a> Displacements<'a> {
                 loads.push((l, self.object.forces(&u)));
                 displacements[l] = u;
             }
-            tangents.push(Tangent { equations, loads });
+            tangents.push(Tangent::Equilibrium { equations, loads });
+        }
+        Ok(Some((displacements, tangents)))
+    }
+
+    /// The displacements of every load in an engine, and the tangents there.
+    fn in_engine(&self, theta: &[f64]) -> Result<Option<Moved>> {
+        let object = self.object;
+        let Some((setting, masses)) = object.engine else { return Ok(None) };
+        let (network, factors) = (object.network(theta), object.unknowns.factors(theta));
+        let mut displacements = vec![Vec::new(); self.targets.len()];
+        let mut tangents = Vec::new();
+        for group in &self.groups {
+            let model = TruncatedModel { network: &network, points: object.points, masses };
+            let support = &self.targets[group[0]].support;
+            let Some(truncated) = Truncated::new(model, support, &setting)? else { return Ok(None) };
+            let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
+            let predictions = truncated.predictions(&forces)?;
+            for ((&l, prediction), force) in group.iter().zip(&predictions).zip(&forces) {
+                displacements[l] = truncated.displacement(prediction, force);
+            }
+            let (loads, factors) = (group.clone(), factors.clone());
+            tangents.push(Tangent::Engine { truncated, loads, predictions, factors });
         }
         Ok(Some((displacements, tangents)))
     }
@@ -196,7 +223,7 @@ impl<'a> Displacements<'a> {
             let found = newton.reach_stable(network, points, &target.support, &target.forces, guess, pattern)?;
             let Some((u, equations)) = found else { return Ok(None) };
             let Some(forces) = self.object.forces_at(&displaced(points, &u)) else { return Ok(None) };
-            Ok(Some((u, Tangent { equations, loads: vec![(l, forces)] })))
+            Ok(Some((u, Tangent::Equilibrium { equations, loads: vec![(l, forces)] })))
         };
         self.targets.par_iter().enumerate().map(one).collect()
     }

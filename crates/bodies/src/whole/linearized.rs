@@ -2,10 +2,9 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
+use super::tangent::Tangent;
 use super::unknowns::Unknowns;
 use crate::error::Result;
-use crate::model::PartVectors;
-use crate::solve::Equations;
 
 /// A sum of squares that is minimised.
 pub trait LeastSquares {
@@ -35,14 +34,6 @@ pub struct Linearized<'a> {
     pub(super) rows: Vec<Vec<f64>>,
 }
 
-/// The loads that share a factorisation.
-#[derive(Debug)]
-pub(super) struct Tangent {
-    pub equations: Equations,
-    /// The index of each load, and its F_sl.
-    pub loads: Vec<(usize, PartVectors)>,
-}
-
 /// The relative error of gradients and of columns of J where equations are solved by iterations.
 pub(super) const PRODUCT: f64 = 1e-5;
 
@@ -60,13 +51,10 @@ impl Linearized<'_> {
         let change = self.unknowns.forward(&self.theta, v);
         let mut all: Vec<Vec<f64>> = self.residuals.iter().map(|_| Vec::new()).collect();
         for tangent in &self.tangents {
-            let force =
-                |(load, forces): &(usize, PartVectors)| forces.sum(change.iter().map(|c| -c), self.scales[*load].len());
-            let forces: Vec<Vec<f64>> = tangent.loads.iter().map(force).collect();
-            let moves = tangent.equations.respond_all(&forces, tolerance)?;
-            for ((load, _), mut u) in tangent.loads.iter().zip(moves) {
-                u.iter_mut().zip(&self.scales[*load]).for_each(|(u, s)| *u *= s);
-                all[*load] = u;
+            let moves = tangent.moves(&change, tolerance)?;
+            for (load, mut u) in tangent.loads().zip(moves) {
+                u.iter_mut().zip(&self.scales[load]).for_each(|(u, s)| *u *= s);
+                all[load] = u;
             }
         }
         if let Some(last) = all.last_mut().filter(|_| !self.rows.is_empty()) {
@@ -82,14 +70,9 @@ impl Linearized<'_> {
     pub fn adjoint(&self, w: &[Vec<f64>], tolerance: f64) -> Result<Vec<f64>> {
         let mut total = vec![0.0; self.unknowns.springs()];
         for tangent in &self.tangents {
-            let pull = |(load, _): &(usize, PartVectors)| {
-                w[*load].iter().zip(&self.scales[*load]).map(|(w, s)| w * s).collect()
-            };
-            let pulls: Vec<Vec<f64>> = tangent.loads.iter().map(pull).collect();
-            let adjoints = tangent.equations.respond_all(&pulls, tolerance)?;
-            for ((_, forces), adjoint) in tangent.loads.iter().zip(&adjoints) {
-                total.iter_mut().zip(forces.along(adjoint)).for_each(|(t, along)| *t -= along);
-            }
+            let pull = |load: usize| w[load].iter().zip(&self.scales[load]).map(|(w, s)| w * s).collect();
+            let pulls: Vec<Vec<f64>> = tangent.loads().map(pull).collect();
+            total.iter_mut().zip(tangent.pulled(&pulls, tolerance)?).for_each(|(t, own)| *t += own);
         }
         for (row, w) in self.rows.iter().zip(w.last().into_iter().flatten()) {
             total.iter_mut().zip(row).for_each(|(t, a)| *t += a * w);

@@ -26,6 +26,7 @@ mod regions;
 mod settings;
 mod stretched;
 mod student;
+mod tangent;
 mod target;
 mod unknowns;
 

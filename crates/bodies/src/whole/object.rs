@@ -2,6 +2,7 @@
 
 use super::moduli::{ModuliParts, ModuliSharing};
 use super::unknowns::Unknowns;
+use crate::engine::Setting;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
 use crate::model::{Entries, Network, PartVectors, SpringGradients};
@@ -20,6 +21,8 @@ pub struct Object<'a> {
     pub(super) newton: Option<Newton>,
     /// How equations are solved by iterations; `None` stands for factors.
     pub(super) iterations: Option<StaticSolver>,
+    /// The engine that moves the network, and the masses, `[points]`, kg; `None` where equations are solved to the end.
+    pub(super) engine: Option<(Setting, &'a [f64])>,
 }
 
 /// The parts that the unknowns multiply, at θ = 0.
@@ -78,7 +81,7 @@ impl<'a> Object<'a> {
             return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));
         }
         let model = Model::Springs(SpringParts { network, gradients, pulls_at_rest });
-        Ok(Object { model, points, unknowns, newton, iterations: None })
+        Ok(Object { model, points, unknowns, newton, iterations: None, engine: None })
     }
 
     /// An exact network whose unknowns are moduli. `newton` says how loads are applied at large displacements; `None` stands for small
@@ -94,13 +97,19 @@ impl<'a> Object<'a> {
             return Err(Error::expected("unknowns", "parts of a network at large deformation", "those of small ones"));
         }
         let points = &parts.mesh().points;
-        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton, iterations: None })
+        Ok(Object { model: Model::Moduli(parts), points, unknowns, newton, iterations: None, engine: None })
     }
 
     /// The object whose equations at small displacements are solved by iterations, in memory that grows like its springs.
     #[must_use]
     pub fn iterated(self, iterations: Option<StaticSolver>) -> Object<'a> {
         Object { iterations, ..self }
+    }
+
+    /// The object as an engine moves it at small displacements, with these masses, `[points]`, kg.
+    #[must_use]
+    pub fn in_engine(self, engine: Option<(Setting, &'a [f64])>) -> Object<'a> {
+        Object { engine, ..self }
     }
 
     /// The unknowns.

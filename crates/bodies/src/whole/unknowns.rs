@@ -27,6 +27,12 @@ impl Unknowns {
         Unknowns { starts: (0..=own.len()).collect(), shares: own.into_iter().map(|p| (p, 1.0)).collect(), count }
     }
 
+    /// One unknown for all springs on lengths, and one for all others.
+    pub fn per_kind(network: &Network) -> Unknowns {
+        let lengths = network.lengths.len();
+        Unknowns::one_for_each((0..network.len()).map(|s| usize::from(lengths > 0 && s >= lengths)).collect())
+    }
+
     /// One unknown for each spring of the network.
     pub fn per_spring(network: &Network) -> Unknowns {
         let count = network.len();

@@ -4,7 +4,7 @@ use super::fits::{NamedFit, Reference, Task};
 use super::outcome::{FitOutcome, MatrixErrors};
 use super::progress::Progress;
 use crate::analysis::tensor::network_material;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::{CellFits, SpreadSum, each_element_errors};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
@@ -41,7 +41,11 @@ pub fn fit_without_errors(
     progress: &mut Progress,
 ) -> Result<(FitOutcome, Vec<CellFits>)> {
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
-    let fitted = named.recipe.kind().fit(&task, progress)?;
+    let mut fitted = named.recipe.kind().fit(&task, progress)?;
+    let missing = || Error::at("engine", "belongs to a scene with supports");
+    let in_engine =
+        |setting| reference.whole.ok_or_else(missing)?.in_engine((&named.name, setting), &mut fitted, progress);
+    let engine = named.engine.map(in_engine).transpose()?;
     let as_material = network_material(mesh, material, fitted.owners(), &fitted.network);
     let outcome = FitOutcome {
         fit: named.clone(),
@@ -60,6 +64,7 @@ pub fn fit_without_errors(
         stability: None,
         loose_points: Vec::new(),
         loads: Vec::new(),
+        engine,
         kind: fitted.kind,
     };
     let is_of_cells = outcome.kind.is_of_cells();

@@ -4,6 +4,7 @@ use super::answer::{BodyAnswer, NetworkAnswer, shared};
 use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
+use crate::engine::{Setting, Truncated, TruncatedModel};
 use crate::error::{ErrorKind, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
@@ -118,7 +119,7 @@ impl LinearBody {
         })
     }
 
-    /// Solves every load with the network. Its energies are compared with those of finite elements with the moduli
+    /// Solves every load with the network, or moves it to rest in an engine with its masses, `[points]`, kg. Its energies are compared with those of finite elements with the moduli
     /// `compared`.
     ///
     /// # Errors
@@ -127,7 +128,7 @@ impl LinearBody {
         &self,
         mesh: &Mesh,
         cases: &[Case],
-        network: &Network,
+        (network, engine): (&Network, Option<(Setting, &[f64])>),
         compared: &CellMap<Hooke>,
         progress: &mut Progress,
     ) -> Result<NetworkAnswers> {
@@ -144,15 +145,48 @@ impl LinearBody {
                 progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));
                 let solver = StaticSolver { method: StaticMethod::Cholesky, ..self.solver };
                 let body = LinearBody::factorize(mesh, &self.moduli, cases, solver, progress)?;
-                return body.compare(mesh, cases, network, compared, progress);
+                return body.compare(mesh, cases, (network, engine), compared, progress);
             }
             other => other?,
+        };
+        let answers = match engine {
+            Some(engine) => in_engine(mesh, cases, (network, engine), answers)?,
+            None => answers,
         };
         let loads = self.answers.iter().zip(answers).zip(cases);
         let loads = loads.map(|((body, network), case)| outcome(body, network, case, mesh.dimension)).collect();
         let loose_points = moving_points(&cases[0].support, &stability, mesh);
         Ok(NetworkAnswers { loads, stability: Some(stability), loose_points })
     }
+}
+
+/// The answers with the displacements of the network at rest in an engine.
+fn in_engine(
+    mesh: &Mesh,
+    cases: &[Case],
+    (network, (setting, masses)): (&Network, (Setting, &[f64])),
+    answers: Vec<NetworkAnswer>,
+) -> Result<Vec<NetworkAnswer>> {
+    let model = TruncatedModel { network, points: &mesh.points, masses };
+    let mut known: Vec<(&Support, Option<Truncated>)> = Vec::new();
+    let mut all = Vec::new();
+    for (case, answer) in cases.iter().zip(answers) {
+        if case.is_prescribed {
+            let unsolved = Some("supports that move are not solved in an engine".into());
+            all.push(NetworkAnswer { displacement: None, work: None, unsolved, ..answer });
+            continue;
+        }
+        if known.iter().all(|(support, _)| **support != case.support) {
+            known.push((&case.support, Truncated::new(model, &case.support, &setting)?));
+        }
+        let truncated =
+            known.iter().find(|(support, _)| **support == case.support).and_then(|(_, found)| found.as_ref());
+        let found = truncated.map(|truncated| truncated.answers(std::slice::from_ref(&case.forces))).transpose()?;
+        let displacement = found.and_then(|mut found| found.pop());
+        let work = displacement.as_ref().and_then(|u| case.work(u, || None));
+        all.push(NetworkAnswer { displacement, work, ..answer });
+    }
+    Ok(all)
 }
 
 /// The answer of a network to a load beside that of the finite elements.

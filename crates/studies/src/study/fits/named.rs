@@ -37,7 +37,10 @@ impl NamedFit {
 
     /// The fit for the settings of an engine.
     #[must_use]
-    pub fn in_engine(self, engine: Option<Setting>) -> NamedFit {
+    pub fn in_engine(mut self, engine: Option<Setting>) -> NamedFit {
+        if let Recipe::Whole(recipe) = &mut self.recipe {
+            recipe.engine = engine;
+        }
         NamedFit { engine, ..self }
     }
 

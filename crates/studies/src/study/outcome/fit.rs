@@ -7,7 +7,7 @@ use crate::fit::Spread;
 use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
 use crate::springs::Springs;
-use crate::study::fits::{FittedKind, NamedFit};
+use crate::study::fits::{EngineOutcome, FittedKind, NamedFit};
 use crate::study::timing::{FitTimes, ModelTimes};
 use std::sync::OnceLock;
 
@@ -51,6 +51,8 @@ pub struct FitOutcome {
     /// The moduli of the whole network under linear displacements of its boundary, in plane strain those of the solid, if the scene
     /// requests them.
     pub moduli: Option<EffectiveModuli>,
+    /// What the network answers in the engine that its constants are for; `None` where equations are solved to the end.
+    pub engine: Option<EngineOutcome>,
     /// The results that only the kind of the fit has.
     pub kind: FittedKind,
     /// The stability with the support of the first load; `None` without loads.

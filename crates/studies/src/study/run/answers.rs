@@ -44,7 +44,7 @@ impl Answers {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
                 // After the fits, which are to the finite elements of the mesh.
                 posed.judge_by_truth(progress);
-                at_small(posed, &body, fits, progress)?;
+                at_small(posed, (&body, masses.as_ref()), fits, progress)?;
                 let (displacements, works) = body.into_answers();
                 (displacements, works, vec![None; posed.cases.len()], None)
             }
@@ -117,12 +117,18 @@ fn at_large(posed: &Posed, body: &LargeBody, fits: &mut [FitOutcome], progress: 
 }
 
 /// The answers of the networks at small deformation, and how they stand.
-fn at_small(posed: &Posed, body: &LinearBody, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<()> {
+fn at_small(
+    posed: &Posed,
+    (body, masses): (&LinearBody, Option<&PointMasses>),
+    fits: &mut [FitOutcome],
+    progress: &mut Progress,
+) -> Result<()> {
     let count = fits.len();
     for (done, fit) in fits.iter_mut().enumerate() {
         progress(Event::stage("networks", done, count));
         let compared = fit.kind.compared(posed.material.moduli());
-        let answers = body.compare(&posed.mesh, &posed.cases, &fit.network, &compared, progress);
+        let engine = fit.fit.engine.zip(masses.map(|masses| &masses.values[..]));
+        let answers = body.compare(&posed.mesh, &posed.cases, (&fit.network, engine), &compared, progress);
         let answers = answers.map_err(|e| posed.in_scene(e))?;
         (fit.loads, fit.stability, fit.loose_points) = (answers.loads, answers.stability, answers.loose_points);
     }

@@ -44,7 +44,7 @@ impl Solved {
         let masses = posed.material.density().map(|density| point_masses(&posed.mesh, density, &posed.material));
         let masses = masses.transpose().map_err(|e| scene.at("material", e))?;
         // Only fits to the whole object need the displacements of the body.
-        let fits_whole = scene.fits().iter().any(|fit| fit.recipe.whole().is_some());
+        let fits_whole = scene.fits().iter().any(|fit| fit.recipe.whole().is_some() || fit.engine.is_some());
         let linear = match large.is_none() && fits_whole {
             true => Some(solve_linear(posed, progress)?),
             false => None,

@@ -134,9 +134,17 @@ impl<'a> WholeBody<'a> {
         }
         let mut object = match start {
             Some((fits, network)) => {
-                let object = self.springs(recipe, fits, network)?;
+                let mut object = self.springs(recipe, fits, network)?;
+                if let Some(setting) = recipe.engine {
+                    self.check_engine(recipe, &setting, network, &wanted)?;
+                    object = object.in_engine(Some((setting, self.engine_masses()?)));
+                }
                 self.keep_reached(&object, &mut wanted, &mut followed)?;
                 object
+            }
+            None if recipe.engine.is_some() => {
+                let expected = "a start with springs above zero that do not pull at rest, which engines hold";
+                return Err(Error::expected("start", expected, "\"exact\" in an engine"));
             }
             None => self.moduli(recipe, held, &mut wanted, &mut followed)?,
         };
@@ -181,7 +189,7 @@ impl<'a> WholeBody<'a> {
             None => (found, wanted, FoundModuli::default()),
         };
         let has_others = self.fine.is_some() || !recipe.supports.is_empty() || !recipe.other_supports.is_empty();
-        let has_others = has_others || self.newton.is_some() && recipe.loads.made;
+        let has_others = has_others || (self.newton.is_some() || recipe.engine.is_some()) && recipe.loads.made;
         let held_out = if has_others && !is_measured {
             let networks = (&object.network(&none), &found.network);
             self.held_out((recipe, held), networks, &mut followed, progress)?

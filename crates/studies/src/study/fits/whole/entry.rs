@@ -17,7 +17,7 @@ use std::fmt;
 /// The default seed of the random loads.
 const SEED: u64 = 2010;
 /// ρ where few unknowns are found from measured displacements: too small to move what they see, large enough to hold what they do not.
-const FEW: f64 = 1e-9;
+pub(super) const FEW: f64 = 1e-9;
 
 /// The keys. Those of sampled fits are allowed as well if the fit starts from one.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
@@ -184,6 +184,7 @@ impl WholeEntry {
         }
         Ok(WholeRecipe {
             start,
+            engine: None,
             unknowns,
             loads: LoadSelection::new(loads),
             validation,

@@ -5,6 +5,7 @@ use super::made_loads::MadeLoads;
 use super::outcome::{HeldOut, ModelError, WorseLoad};
 use super::recipe::WholeRecipe;
 use super::targets::Held;
+use crate::engine::{Setting, Truncated, TruncatedModel};
 use crate::error::{ErrorKind, Result};
 use crate::fit::{ShearSprings, VolumeSprings};
 use crate::mesh::Mesh;
@@ -79,7 +80,9 @@ impl WholeBody<'_> {
             let mut models = vec![model_error(BODY, &of_body, &targets)];
             let mut worse = Vec::new();
             for (model, network) in &networks {
-                let answers = self.network_answers(network, &held, &targets)?;
+                // The exact networks are what equations that are solved to the end give.
+                let engine = recipe.engine.filter(|_| ["start", FITTED].contains(&&model[..]));
+                let answers = self.network_answers((network, engine), &held, &targets)?;
                 models.push(model_error(model, &answers, &targets));
                 // The fitted network is the last.
                 worse = worse_loads(&targets, &of_body.errors, &answers.errors);
@@ -104,7 +107,22 @@ impl WholeBody<'_> {
     }
 
     /// The answers of a network.
-    fn network_answers(&self, network: &Network, held: &Held, targets: &[Target]) -> Result<ModelAnswers> {
+    fn network_answers(
+        &self,
+        (network, engine): (&Network, Option<Setting>),
+        held: &Held,
+        targets: &[Target],
+    ) -> Result<ModelAnswers> {
+        if let Some(setting) = engine {
+            let model = TruncatedModel { network, points: &self.mesh.points, masses: self.engine_masses()? };
+            let Some(truncated) = Truncated::new(model, &held.support, &setting)? else {
+                return Ok(ModelAnswers::default());
+            };
+            let forces: Vec<Vec<f64>> = targets.iter().map(|target| target.forces.clone()).collect();
+            let found = truncated.answers(&forces)?;
+            let errors = targets.iter().zip(&found).map(|(target, u)| load_error(target, u)).collect();
+            return Ok(ModelAnswers { errors, seconds: None });
+        }
         if let Some(newton) = self.newton {
             return followed_answers(&newton, network, self.mesh, targets);
         }

@@ -36,6 +36,7 @@ pub(super) fn identity(
         ("by_error", json!(whole.weighing == Weighing::ByError)),
         ("newton", json!(newton)),
         ("stretch", json!(recipe.stretch)),
+        ("engine", json!(recipe.engine)),
     ];
     settings.extend(more.map(|(key, value)| (key.to_string(), value)));
     settings

@@ -4,6 +4,7 @@
 
 mod body;
 mod corrected;
+mod engine;
 mod entry;
 mod evidence;
 mod finer;

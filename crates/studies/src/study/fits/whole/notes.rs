@@ -120,6 +120,10 @@ impl WholeOutcome {
                 100.0 * left,
                 100.0 * error
             )),
+            _ if self.is_for_engine => Some(format!(
+                "errors of up to {:.0} % are left: what this engine leaves, more substeps or springs on volumes as well may mend",
+                100.0 * left
+            )),
             _ => Some(format!(
                 "errors of up to {:.0} % are left: springs with the rest lengths of the mesh cannot do better here; start = \"exact\" has \
                  the capacity",

@@ -70,6 +70,9 @@ pub struct WholeOutcome {
     /// Whether the fit started from the exact network.
     #[serde(skip)]
     pub is_exact: bool,
+    /// Whether the constants are for an engine.
+    #[serde(skip)]
+    pub is_for_engine: bool,
     /// Whether the displacements were measured, so that the moduli of the scene are a guess.
     #[serde(skip)]
     pub is_measured: bool,
@@ -305,6 +308,7 @@ impl WholeOutcome {
             stands: found.stands,
             cancelled: found.cancelled,
             is_exact: matches!(recipe.start, Start::Exact(..)),
+            is_for_engine: recipe.engine.is_some(),
             is_measured: false,
             guessed: Vec::new(),
             unmeasured: Vec::new(),

@@ -1,5 +1,6 @@
 //! A whole-object fit, before the mesh is known.
 
+use crate::engine::Setting;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, ShearSprings, VolumeSprings};
 use crate::study::fits::exact::spring_words;
@@ -12,6 +13,8 @@ use crate::whole::{ModuliSharing, WholeSettings};
 pub struct WholeRecipe {
     /// The constants from which it starts.
     pub start: Start,
+    /// The engine in which the network is to answer like the body; `None` where equations are solved to the end.
+    pub engine: Option<Setting>,
     /// Which springs share an unknown factor.
     pub unknowns: Sharing,
     /// The loads that are fitted: those of the scene by name, and whether those generated from the mesh are used.

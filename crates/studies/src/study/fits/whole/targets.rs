@@ -22,6 +22,9 @@ const RANDOM: usize = 4;
 /// many leave the worst loads worse, twice as many gain little.
 const VARIED: usize = 16;
 
+/// The least range of constants that a fit for an engine may use.
+const BOUNDED: f64 = 1e8;
+
 /// Makes loads from a mesh and its support. Those that are drawn at random are others with each seed.
 pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support, u64) -> Vec<NodalLoad> + 'a;
 
@@ -122,12 +125,18 @@ impl WholeBody<'_> {
             true => Weighing::ByError,
             false => Weighing::Equal,
         };
-        WholeSettings { weighing, ..recipe.settings.clone() }
+        let settings = recipe.settings.clone();
+        // A spring without compliance is as good as one with little: what sweeps reach is bounded.
+        let range = if recipe.engine.is_some() { settings.range.max(BOUNDED) } else { settings.range };
+        WholeSettings { weighing, range, ..settings }
     }
 
     /// Whether made loads are more than one of each kind.
     fn is_varied(&self, recipe: &WholeRecipe) -> bool {
-        self.fine.is_some() || !recipe.supports.is_empty() || !recipe.validation_supports.is_empty()
+        self.fine.is_some()
+            || recipe.engine.is_some()
+            || !recipe.supports.is_empty()
+            || !recipe.validation_supports.is_empty()
     }
 
     /// The supports with these groups, or that of the scene.

@@ -63,7 +63,7 @@ impl EngineEntry {
     }
 
     /// What is set, as `engine = {…}`: what tells one fit from another on disk.
-    pub(super) fn identity(&self) -> String {
+    pub fn identity(&self) -> String {
         format!("engine = {}", serde_json::to_string(self).expect("keys are text"))
     }
 }

@@ -1,0 +1,9 @@
+//! Constants for an engine that ends its sweeps early: the key `engine` of a `[[fit]]`.
+//!
+//! Theory: page *Networks in engines* of the book.
+
+mod entry;
+mod outcome;
+
+pub(super) use entry::EngineEntry;
+pub use outcome::{EngineErrors, EngineOutcome, EngineVibration};

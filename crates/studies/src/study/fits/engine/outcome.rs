@@ -1,0 +1,106 @@
+//! What a network answers in an engine, before and after its constants are fitted for it.
+
+use crate::engine::{Precision, Setting, Vibration};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What a network answers in an engine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct EngineOutcome {
+    /// The constants are for these settings.
+    pub setting: Setting,
+    /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd`, which reaches any
+    /// stiffness.
+    pub ceiling: Option<f64>,
+    /// The body can be represented with this number of substeps or more; it is null of `vbd`.
+    pub least_substeps: Option<usize>,
+    /// The constants of springs on lengths, and those of springs on contents, were multiplied by these factors; the list is null of a
+    /// whole-object fit, which finds each constant.
+    pub factors: Option<Vec<f64>>,
+    /// The displacements in the engine under the loads of the fit have these errors before the constants are fitted for it.
+    pub before: EngineErrors,
+    /// The displacements in the engine under the loads of the fit have these errors afterwards.
+    pub after: EngineErrors,
+    /// `vibration` has the first natural vibration of the network in the engine; it is null where there is none.
+    pub vibration: Option<EngineVibration>,
+    /// The finite elements have this first frequency in Hz, with the masses of the network.
+    pub frequency: f64,
+}
+
+/// The relative errors `‖u − ū‖/‖ū‖` under some loads.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EngineErrors {
+    /// The errors have this mean.
+    pub mean: f64,
+    /// The largest error is this.
+    pub largest: f64,
+}
+
+/// A natural vibration in an engine.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EngineVibration {
+    /// The frequency is in Hz.
+    pub frequency: f64,
+    /// The sweeps and the implicit steps damp the vibration with this ratio.
+    pub damping: f64,
+}
+
+impl From<Vibration> for EngineVibration {
+    fn from(vibration: Vibration) -> EngineVibration {
+        EngineVibration { frequency: vibration.frequency, damping: vibration.damping }
+    }
+}
+
+impl EngineErrors {
+    /// Those of a list; `None` of none.
+    pub fn of(errors: &[f64]) -> Option<EngineErrors> {
+        let largest = errors.iter().copied().reduce(f64::max)?;
+        Some(EngineErrors { mean: errors.iter().sum::<f64>() / errors.len() as f64, largest })
+    }
+}
+
+/// A move within a substep, relative to the extent of the body, that single precision rounds by a tenth and more.
+const COARSE: f64 = 10.0 * f32::EPSILON as f64;
+/// The acceleration by which a substep is judged, m/s².
+const GRAVITY: f64 = 9.81;
+
+impl EngineOutcome {
+    /// Notes for the reader, one sentence each; `extent` is that of the body in m.
+    pub fn notes(&self, extent: f64) -> Vec<String> {
+        let percent =
+            |errors: EngineErrors| format!("{:.1} (largest {:.1}) %", 100.0 * errors.mean, 100.0 * errors.largest);
+        let mut notes = vec![format!(
+            "for {}: displacements in the engine under the loads of the fit are {} off, with the constants as they were {}",
+            self.setting.words(),
+            percent(self.after),
+            percent(self.before)
+        )];
+        if let (Some(ceiling), Some(substeps)) = (self.ceiling, self.least_substeps) {
+            notes.push(format!(
+                "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine; {substeps} substeps are the least for \
+                 this body"
+            ));
+        }
+        if let Some(factors) = &self.factors {
+            let kinds = ["lengths", "contents"].iter().zip(factors);
+            let words: Vec<String> = kinds.map(|(kind, factor)| format!("on {kind} by {factor:.4}")).collect();
+            notes.push(format!("constants of springs {} are multiplied for the engine", words.join(", ")));
+        }
+        if let Some(EngineVibration { frequency, damping }) = self.vibration {
+            notes.push(format!(
+                "the first frequency in the engine is {frequency:.3} Hz, that of the finite elements {:.3} Hz; its sweeps damp that motion with \
+                 the ratio {damping:.3}, which no constants change: other damping is less by that much",
+                self.frequency
+            ));
+        }
+        let moved = GRAVITY * self.setting.substep().powi(2);
+        if self.setting.precision == Precision::Single && moved < COARSE * extent {
+            notes.push(format!(
+                "a substep moves points by {moved:.1e} m under gravity, which single precision rounds by a tenth and more: fewer substeps with \
+                 more sweeps are more accurate"
+            ));
+        }
+        notes
+    }
+}

@@ -1,0 +1,159 @@
+//! The body in an engine: what its networks reach there, and factors on constants that make them answer like the body.
+//!
+//! Theory: page *Networks in engines* of the book.
+
+use super::body::WholeBody;
+use super::entry::FEW;
+use super::recipe::{ValidationRecipe, WholeRecipe};
+use crate::engine::{Ceiling, Setting, Truncated, TruncatedModel, least_substeps};
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::CellFits;
+use crate::model::Network;
+use crate::study::fits::engine::{EngineErrors, EngineOutcome};
+use crate::study::fits::fitted::{Fitted, FittedKind};
+use crate::study::progress::{Event, Progress};
+use crate::whole::{DescentMethod, Displacements, GaussNewton, Object, Target, Unknowns, Wanted, fit_whole};
+
+impl WholeBody<'_> {
+    /// The masses that an engine needs.
+    ///
+    /// # Errors
+    /// The material has a law, or no density.
+    pub(super) fn engine_masses(&self) -> Result<&[f64]> {
+        if self.newton.is_some() {
+            let expected = "a material without a \"law\": constants for an engine are fitted at small deformation";
+            return Err(Error::expected("engine", expected, "one with a law"));
+        }
+        self.masses.ok_or_else(|| {
+            let expected = "a density in [material] or --density: what an engine reaches depends on the masses";
+            Error::expected("engine", expected, "none")
+        })
+    }
+
+    /// Checks that a whole-object fit goes with an engine, and that the body is below its ceiling.
+    ///
+    /// # Errors
+    /// Frequencies or masses are fitted as well, or those of [`WholeBody::check_ceiling`].
+    pub(super) fn check_engine(
+        &self,
+        recipe: &WholeRecipe,
+        setting: &Setting,
+        network: &Network,
+        wanted: &Wanted,
+    ) -> Result<()> {
+        for (key, count) in [("frequencies", recipe.frequencies), ("masses", recipe.masses)] {
+            if count > 0 {
+                let expected = "none with an \"engine\": frequencies are those of equations that are solved to the end";
+                return Err(Error::expected(key, expected, count));
+            }
+        }
+        self.check_ceiling(setting, network, &wanted.trained).map(|_| ())
+    }
+
+    /// How stiff a body the engine can hold, and the least substeps for this one.
+    ///
+    /// # Errors
+    /// The body is above the ceiling, or the engine does not hold its springs.
+    pub(super) fn check_ceiling(
+        &self,
+        setting: &Setting,
+        network: &Network,
+        targets: &[Target],
+    ) -> Result<(Option<f64>, Option<usize>)> {
+        let model = TruncatedModel { network, points: &self.mesh.points, masses: self.engine_masses()? };
+        let loads: Vec<_> =
+            targets.iter().map(|target| (&target.support, &target.forces[..], &target.displacement[..])).collect();
+        let Some(Ceiling { factor }) = Ceiling::of(model, &loads, setting)? else { return Ok((None, None)) };
+        let least = least_substeps(model, &loads, setting)?;
+        if factor < 1.0 {
+            let words = least.map_or("thousands of substeps".into(), |least| format!("at least {least} substeps"));
+            let expected = format!("{words} for a body of this stiffness, mass and size");
+            let found =
+                format!("{}, with which springs without compliance reach {factor:.3} of its modulus", setting.substeps);
+            return Err(Error::expected("engine.substeps", expected, found).of_kind(ErrorKind::Infeasible));
+        }
+        Ok((Some(factor), least))
+    }
+
+    /// Measures what a network answers in an engine. The constants of a fit that does not know of the engine are multiplied by one factor for
+    /// springs on lengths and one for those on contents.
+    ///
+    /// # Errors
+    /// The engine does not hold the network, or the body is above its ceiling.
+    pub(in crate::study) fn in_engine(
+        &self,
+        (name, setting): (&str, Setting),
+        fitted: &mut Fitted,
+        progress: &mut Progress,
+    ) -> Result<EngineOutcome> {
+        progress(Event::stage(&format!("{name}: engine"), 0, 1));
+        let masses = self.engine_masses()?;
+        let recipe = few(setting);
+        let wanted = self.wanted(&recipe, &mut None, progress)?;
+        let (ceiling, least_substeps) = self.check_ceiling(&setting, &fitted.network, &wanted.trained)?;
+        let (before, after, factors) = match &fitted.kind {
+            FittedKind::Whole(outcome) => {
+                let before: Vec<f64> = outcome.fitted.iter().map(|load| load.before).collect();
+                (before, self.errors_in_engine(setting, &fitted.network, &wanted)?, None)
+            }
+            _ => {
+                let unknowns = Unknowns::per_kind(&fitted.network);
+                let object = Object::new(&fitted.network, &self.mesh.points, unknowns, None)?;
+                let object = object.in_engine(Some((setting, masses)));
+                let found =
+                    fit_whole(&object, &wanted, &self.settings(&recipe), None, &mut |_| !self.controls.cancelled())?;
+                let factors: Vec<f64> = found.theta.iter().map(|theta| theta.exp()).collect();
+                scale(&mut fitted.cells, &factors);
+                fitted.network = found.network;
+                let [before, after] = found.trained.map(|errors| errors.loads);
+                (before, after, Some(factors))
+            }
+        };
+        let unknown = || {
+            let problem = "the network is not stable in the engine under each of the loads that are made for the fit";
+            Error::at("engine", problem).of_kind(ErrorKind::Infeasible)
+        };
+        let model = TruncatedModel { network: &fitted.network, points: &self.mesh.points, masses };
+        let truncated = Truncated::new(model, self.support, &setting)?.ok_or_else(unknown)?;
+        let modes = self.equations("engine", self.support)?.lowest_modes(masses, self.mesh.dimension, 1)?;
+        Ok(EngineOutcome {
+            setting,
+            ceiling,
+            least_substeps,
+            factors,
+            before: EngineErrors::of(&before).ok_or_else(unknown)?,
+            after: EngineErrors::of(&after).ok_or_else(unknown)?,
+            vibration: truncated.lowest_vibration()?.map(Into::into),
+            frequency: modes.squares.first().map_or(f64::NAN, |square| square.sqrt() / std::f64::consts::TAU),
+        })
+    }
+
+    /// The errors of a network in an engine under the loads of a fit.
+    fn errors_in_engine(&self, setting: Setting, network: &Network, wanted: &Wanted) -> Result<Vec<f64>> {
+        let object = Object::new(network, &self.mesh.points, Unknowns::per_kind(network), None)?;
+        let object = object.in_engine(Some((setting, self.engine_masses()?)));
+        let problem = Displacements::new(&object, wanted.trained.iter().collect(), None)?;
+        let none = vec![0.0; object.unknowns().count()];
+        Ok(problem.errors(&none)?.map_or(Vec::new(), |errors| errors.loads))
+    }
+}
+
+/// A fit with few unknowns under loads that are made from the mesh.
+fn few(setting: Setting) -> WholeRecipe {
+    let (engine, validation) = (Some(setting), ValidationRecipe::None);
+    let mut recipe = WholeRecipe { engine, validation, ..WholeRecipe::default() };
+    recipe.settings.regularizations = vec![FEW];
+    recipe.settings.method = DescentMethod::GaussNewton(GaussNewton::PRECISE);
+    recipe
+}
+
+/// Multiplies the constants of the cells by the factors for springs on lengths and on contents.
+fn scale(cells: &mut [CellFits], factors: &[f64]) {
+    for fit in cells {
+        let (pairs, count) = (fit.springs.pairs().len(), fit.springs.len().max(1));
+        for (place, constant) in fit.constants.iter_mut().enumerate() {
+            let kind = usize::from(place % count >= pairs);
+            *constant *= factors.get(kind).copied().unwrap_or(1.0);
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Networks in engines that end their sweeps early, against loops that make the steps one after the other.
+
+use crate::shapes::Random;
+use crate::shapes::bodies::{grid, mapped};
+use springfit::engine::{Ceiling, Engine, Order, Sequence, Setting, Sweep, Truncated, TruncatedModel, colours};
+use springfit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit::material::Material;
+use springfit::mesh::Mesh;
+use springfit::model::{Network, Support, masses};
+use springfit::springs::Springs;
+use springfit::whole::{Displacements, LeastSquares, Object, Target, Unknowns};
+
+/// A bent and distorted bar of tetrahedra that is held at one end, with springs on lengths and on volumes.
+struct Bar {
+    mesh: Mesh,
+    network: Network,
+    masses: Vec<f64>,
+    support: Support,
+}
+
+impl Bar {
+    fn new(seed: u64) -> Bar {
+        let mesh = mapped(grid("tet4", &[0.06, 0.02, 0.02], &[3, 2, 1]), |x| {
+            let phase = seed as f64 + 300.0 * x[0] + 700.0 * x[1] + 1100.0 * x[2];
+            let shake = [1.0, 2.0, 3.0].map(|k: f64| 6e-4 * (k * phase).sin());
+            vec![x[0] + shake[0], x[1] + shake[1] + 4.0 * x[0] * x[0], x[2] + shake[2]]
+        });
+        let material = Material::for_body(3, 1e4, 0.35, None, None).unwrap();
+        let element = &mesh.blocks[0].element;
+        let groups: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
+        let springs = Springs::select(element, Some(&groups)).unwrap();
+        let fit = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(Weight::OffDiagonal)) };
+        let cells = &mesh.blocks[0].connectivity;
+        let fits = fit_cells(element, &springs, &mesh.points, cells, material.moduli(), &fit, &mut |_| {}).unwrap();
+        let network = Network::assemble(&mesh, &[fits]);
+        // Fits leave some constants at zero, which no compliance has.
+        let mut network = network;
+        let mean = network.lengths.iter().map(|s| s.constant).sum::<f64>() / network.lengths.len() as f64;
+        network.lengths.iter_mut().for_each(|s| s.constant = s.constant.max(0.05 * mean));
+        network.others.retain(|s| s.constant > 0.0);
+        let masses = masses(&mesh, 1000.0, 1.0);
+        let mut support = Support::free(&mesh);
+        let held: Vec<usize> = (0..mesh.points.len() / 3).filter(|&p| mesh.points[3 * p] < 2e-3).collect();
+        support.fix(&held, &[0, 1, 2], 3);
+        Bar { mesh, network, masses, support }
+    }
+
+    fn model(&self) -> TruncatedModel<'_> {
+        TruncatedModel { network: &self.network, points: &self.mesh.points, masses: &self.masses }
+    }
+
+    fn force(&self, seed: u64) -> Vec<f64> {
+        let mut random = Random(seed);
+        let free = |dof: usize| !self.support.is_fixed(dof);
+        (0..self.mesh.points.len()).map(|dof| if free(dof) { 5e-5 * random.next() } else { 0.0 }).collect()
+    }
+
+    /// The points, the gradient at rest and the constant of each spring, by formulas of lengths and volumes.
+    fn rows(&self) -> Vec<(Vec<usize>, Vec<f64>, f64)> {
+        let at = |p: usize| [0, 1, 2].map(|k| self.mesh.points[3 * p + k]);
+        let minus = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+        };
+        let mut rows = Vec::new();
+        for spring in &self.network.lengths {
+            let [i, j] = spring.points;
+            let along = minus(at(j), at(i));
+            let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let g = along.iter().map(|x| -x / length).chain(along.iter().map(|x| x / length)).collect();
+            rows.push((vec![i, j], g, spring.constant));
+        }
+        for spring in &self.network.others {
+            let p = spring.points.to_vec();
+            let [u, v, w] = [1, 2, 3].map(|a| minus(at(p[a]), at(p[0])));
+            let [g1, g2, g3] = [cross(v, w), cross(w, u), cross(u, v)].map(|g| g.map(|g| g / 6.0));
+            let g0 = [0, 1, 2].map(|k| -g1[k] - g2[k] - g3[k]);
+            rows.push((p, [g0, g1, g2, g3].concat(), spring.constant));
+        }
+        rows
+    }
+}
+
+/// The displacements at rest of a plain loop over linear springs: predictions, sweeps, velocities; velocities are damped between substeps,
+/// which does not move the rest.
+fn settled(bar: &Bar, setting: &Setting, force: &[f64]) -> Vec<f64> {
+    let rows = bar.rows();
+    let size = force.len();
+    let weight = |dof: usize| if bar.support.is_fixed(dof) { 0.0 } else { 1.0 / bar.masses[dof / 3] };
+    let all: Vec<Vec<usize>> =
+        rows.iter().map(|(points, ..)| points.iter().flat_map(|p| 3 * p..3 * p + 3).collect()).collect();
+    let along = |row: usize, u: &[f64]| all[row].iter().zip(&rows[row].1).map(|(&dof, g)| u[dof] * g).sum::<f64>();
+    let of_point: Vec<Vec<(usize, usize)>> = (0..size / 3)
+        .map(|p| (0..rows.len()).filter_map(|r| Some((r, rows[r].0.iter().position(|q| *q == p)?))).collect())
+        .collect();
+    let h = setting.step / setting.substeps as f64;
+    let order = match setting.order {
+        Order::Given => (0..rows.len()).collect::<Vec<usize>>(),
+        Order::Colours => {
+            let sets: Vec<&[usize]> = rows.iter().map(|(points, ..)| &points[..]).collect();
+            let colours = colours(&sets, size / 3);
+            let mut order: Vec<usize> = (0..rows.len()).collect();
+            order.sort_by_key(|&row| (colours[row], row));
+            order
+        }
+        Order::Jolt => unreachable!("it has a test of its own"),
+    };
+    let (mut u, mut v) = (vec![0.0; size], vec![0.0; size]);
+    for _ in 0..30_000 {
+        let before = u.clone();
+        for dof in 0..size {
+            v[dof] += h * weight(dof) * force[dof];
+            if weight(dof) > 0.0 {
+                u[dof] += h * v[dof];
+            }
+        }
+        match setting.engine {
+            Engine::Vbd => {
+                let predicted = u.clone();
+                for _ in 0..setting.iterations {
+                    for p in (0..size / 3).filter(|p| weight(3 * p) > 0.0) {
+                        let mut block = nalgebra::Matrix3::<f64>::identity() * (bar.masses[p] / (h * h));
+                        let mut pull = nalgebra::Vector3::from_fn(|k, _| {
+                            bar.masses[p] / (h * h) * (predicted[3 * p + k] - u[3 * p + k])
+                        });
+                        for &(row, own) in &of_point[p] {
+                            let (_, g, k) = &rows[row];
+                            let g = nalgebra::Vector3::from_column_slice(&g[3 * own..3 * own + 3]);
+                            block += *k * g * g.transpose();
+                            pull -= *k * along(row, &u) * g;
+                        }
+                        let step = setting.relaxation * (block.try_inverse().unwrap() * pull);
+                        (0..3).for_each(|k| u[3 * p + k] += step[k]);
+                    }
+                }
+            }
+            _ => {
+                let mut multipliers = vec![0.0; rows.len()];
+                for _ in 0..setting.iterations {
+                    let start = u.clone();
+                    for &row in &order {
+                        let (_, g, k) = &rows[row];
+                        let stretch = along(row, if setting.sweep == Sweep::Jacobi { &start } else { &u });
+                        let soft = 1.0 / (k * h * h);
+                        let stiff: f64 = all[row].iter().zip(g).map(|(&dof, g)| weight(dof) * g * g).sum();
+                        if stiff == 0.0 {
+                            continue;
+                        }
+                        let step = -setting.relaxation * (stretch + soft * multipliers[row]) / (stiff + soft);
+                        multipliers[row] += step;
+                        all[row].iter().zip(g).for_each(|(&dof, g)| u[dof] += weight(dof) * g * step);
+                    }
+                }
+            }
+        }
+        let mut largest = 0.0_f64;
+        for dof in 0..size {
+            v[dof] = 0.98 * (u[dof] - before[dof]) / h;
+            largest = largest.max((u[dof] - before[dof]).abs());
+        }
+        if largest < 3e-14 * u.iter().fold(0.0, |a: f64, u| a.max(u.abs())) {
+            break;
+        }
+    }
+    u
+}
+
+fn settings() -> Vec<Setting> {
+    let xpbd = Setting::usual(Engine::Xpbd);
+    let vbd = Setting { order: Order::Given, ..Setting::usual(Engine::Vbd) };
+    vec![
+        xpbd,
+        Setting { substeps: 4, iterations: 3, order: Order::Given, ..xpbd },
+        Setting { substeps: 3, iterations: 2, relaxation: 1.3, ..xpbd },
+        Setting { substeps: 40, iterations: 4, sweep: Sweep::Jacobi, relaxation: 0.25, ..xpbd },
+        Setting { substeps: 4, iterations: 3, ..vbd },
+        Setting { substeps: 8, iterations: 2, relaxation: 0.8, ..vbd },
+    ]
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let square = |x: f64, y: f64| (x - y) * (x - y);
+    let size: f64 = b.iter().map(|b| b * b).sum();
+    (a.iter().zip(b).map(|(a, b)| square(*a, *b)).sum::<f64>() / size).sqrt()
+}
+
+#[test]
+fn the_effective_stiffness_is_where_the_loop_comes_to_rest() {
+    let bar = Bar::new(1);
+    for setting in settings() {
+        let truncated = Truncated::new(bar.model(), &bar.support, &setting).unwrap().unwrap();
+        let iterated = Truncated::iterated(bar.model(), &bar.support, &setting).unwrap().unwrap();
+        for seed in [3, 4] {
+            let force = bar.force(seed);
+            let wanted = settled(&bar, &setting, &force);
+            let found = truncated.answers(std::slice::from_ref(&force)).unwrap().remove(0);
+            assert!(distance(&found, &wanted) < 1e-10, "{}: {}", setting.words(), distance(&found, &wanted));
+            let found = iterated.answers(&[force]).unwrap().remove(0);
+            assert!(
+                distance(&found, &wanted) < 1e-9,
+                "{} by iterations: {}",
+                setting.words(),
+                distance(&found, &wanted)
+            );
+        }
+    }
+}
+
+/// The gradient and the products with the Jacobian are those of differences, for springs one by one and for shared factors.
+#[test]
+fn derivatives_are_those_of_differences() {
+    let bar = Bar::new(2);
+    let mut random = Random(5);
+    let targets: Vec<Target> = (0..11)
+        .map(|seed| {
+            let wanted: Vec<f64> = bar.force(100 + seed).iter().map(|f| 10.0 * f).collect();
+            Target::new(format!("{seed}"), bar.support.clone(), bar.force(seed), wanted)
+        })
+        .collect();
+    for setting in settings() {
+        let unknowns = Unknowns::per_spring(&bar.network);
+        let object = Object::new(&bar.network, &bar.mesh.points, unknowns, None).unwrap();
+        let object = object.in_engine(Some((setting, &bar.masses)));
+        let problem = Displacements::new(&object, targets.iter().collect(), None).unwrap();
+        let theta: Vec<f64> = (0..bar.network.len()).map(|_| 0.2 * random.next()).collect();
+        let direction: Vec<f64> = theta.iter().map(|_| random.next()).collect();
+        let moved = |t: f64| -> Vec<f64> { theta.iter().zip(&direction).map(|(a, b)| a + t * b).collect() };
+        let at = |t: f64| problem.at(&moved(t)).unwrap().unwrap();
+        let h = 1e-4;
+        let (value, gradient) = at(0.0).objective(0.0).unwrap();
+        let slope: f64 = gradient.iter().zip(&direction).map(|(g, d)| g * d).sum();
+        // Differences of fourth order.
+        let f = |t: f64| at(t).square();
+        let wanted = (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h);
+        assert!((slope - wanted).abs() < 1e-6 * slope.abs().max(1e-3 * value), "{}: {slope} {wanted}", setting.words());
+        let forward = at(0.0).forward(&direction, 0.0).unwrap().concat();
+        let (plus, minus) = (at(h).residuals.concat(), at(-h).residuals.concat());
+        let wanted: Vec<f64> = plus.iter().zip(&minus).map(|(a, b)| (a - b) / (2.0 * h)).collect();
+        assert!(distance(&forward, &wanted) < 1e-6, "{}: {}", setting.words(), distance(&forward, &wanted));
+    }
+}
+
+/// With many sweeps the effective stiffness is that of the network; with few the body is softer.
+#[test]
+fn many_sweeps_answer_like_the_equations() {
+    let bar = Bar::new(3);
+    let force = bar.force(7);
+    let entries = bar.network.stiffness(&bar.mesh.points);
+    let equations =
+        springfit::solve::Equations::factored(&entries, &bar.support, &bar.mesh.points, 3).unwrap().unwrap();
+    let (exact, _) = equations.solve(&force).unwrap();
+    for (engine, few) in [(Engine::Xpbd, 10), (Engine::Vbd, 1)] {
+        let usual = Setting::usual(engine);
+        let error = |substeps: usize, iterations: usize| {
+            let setting = Setting { substeps, iterations, ..usual };
+            let truncated = Truncated::new(bar.model(), &bar.support, &setting).unwrap().unwrap();
+            distance(&truncated.answers(std::slice::from_ref(&force)).unwrap()[0], &exact)
+        };
+        assert!(error(few, 1) > 0.05, "{}", error(few, 1));
+        assert!(error(20, 4000) < 1e-8, "{}", error(20, 4000));
+    }
+}
+
+/// A ceiling is what springs without compliance reach; VBD has none.
+#[test]
+fn ceilings_are_those_of_springs_without_compliance() {
+    let bar = Bar::new(4);
+    let force = bar.force(2);
+    let setting = Setting { substeps: 6, ..Setting::usual(Engine::Xpbd) };
+    let network = bar.network.scaled(&vec![1e12; bar.network.len()]);
+    let stiff = Bar { network, ..Bar::new(4) };
+    let u = settled(&stiff, &setting, &force);
+    let ceiling = Ceiling::of(bar.model(), &[(&bar.support, &force, &u)], &setting).unwrap().unwrap();
+    assert!((ceiling.factor - 1.0).abs() < 1e-4, "{}", ceiling.factor);
+    let vbd = Setting::usual(Engine::Vbd);
+    assert_eq!(Ceiling::of(bar.model(), &[(&bar.support, &force, &u)], &vbd).unwrap(), None);
+}
+
+/// Springs of one colour share no point, and the order of Jolt begins with the contents.
+#[test]
+fn orders_are_of_all_springs() {
+    let bar = Bar::new(6);
+    let sets: Vec<&[usize]> = bar.network.springs().map(|(points, _)| points).collect();
+    let colours = colours(&sets, bar.masses.len());
+    for (i, a) in sets.iter().enumerate() {
+        for (j, b) in sets.iter().enumerate().filter(|(j, _)| *j > i) {
+            assert!(colours[i] != colours[j] || !a.iter().any(|p| b.contains(p)));
+        }
+    }
+    let held: Vec<bool> = (0..bar.masses.len()).map(|p| bar.support.is_fixed(3 * p)).collect();
+    let lengths = bar.network.lengths.len();
+    let sequence = Sequence { springs: &sets, lengths, points: &bar.mesh.points, dimension: 3, held: &held };
+    for order in Order::all() {
+        let mut found = sequence.order(order);
+        assert!(order != Order::Jolt || found[0] >= lengths);
+        found.sort_unstable();
+        assert!(found.into_iter().eq(0..sets.len()), "{}", order.name());
+    }
+}
+
+/// Sweeps that take all springs at once and would grow are refused, with the substeps that end.
+#[test]
+fn sweeps_that_grow_are_refused() {
+    let bar = Bar::new(8);
+    let setting = Setting { substeps: 2, ..Setting::usual(Engine::NewtonXpbd) };
+    let error = Truncated::new(bar.model(), &bar.support, &setting).unwrap_err().to_string();
+    let least: usize = error.split("expected ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!(Truncated::new(bar.model(), &bar.support, &setting.with_substeps(least)).unwrap().is_some(), "{error}");
+}
