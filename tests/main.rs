@@ -116,3 +116,4 @@ mod typeset;
 mod voxel_cells;
 mod voxels;
 mod whole;
+mod xpbd;

@@ -169,15 +169,24 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// The area of a triangle in the plane, or the volume of a tetrahedron.
+    fn content(&self, points: &[usize]) -> f64 {
+        match *points {
+            [a, b, c] => {
+                let [a, b, c] = [a, b, c].map(|p| self.place(p));
+                ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+            }
+            _ => volume_by_edges(std::array::from_fn(|i| self.place(points[i]))).0,
+        }
+    }
+
     fn check_slack(&self, program: &str) -> Result<()> {
         let lengths = self.parts.lengths.iter().map(|spring| {
             let length = distance(self.place(spring.points[0]), self.place(spring.points[1]));
             (&spring.points[..], spring.rest / length)
         });
-        let contents = self.parts.contents.iter().map(|part| {
-            let (volume, _) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
-            (&part.points[..], part.rest / volume)
-        });
+        let contents =
+            self.parts.contents.iter().map(|part| (&part.points[..], part.rest / self.content(&part.points)));
         let Some((points, share)) = lengths.chain(contents).find(|(_, share)| !((share - 1.0).abs() <= BALANCED))
         else {
             return Ok(());
