@@ -57,7 +57,7 @@ ORGANS = [
     ("mujoco", "exact", 1e4, None),
     ("newton", "exact", 5e4, 0.5),
     ("jolt", "classical", 5e4, 10.0),
-    ("xpbd", "classical", 5e4, 0.5),
+    ("xpbd", "classical", 5e4, 0.1),
 ]
 # What programs do not hold, and a word of the line that says so.
 REFUSED = [

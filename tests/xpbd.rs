@@ -115,11 +115,10 @@ fn settings() -> Vec<Setting> {
 
 #[test]
 fn the_loop_in_c_rests_where_the_theory_says() {
-    for text in [
-        SCENE.to_string(),
-        plane(),
-        SCENE.replace("group = \"zmin\"", "group = \"zmin\"\naxes = [\"z\"]\n[[fix]]\ngroup = \"xmin\""),
-    ] {
+    // A corner that is held along some axes.
+    let corner = SCENE.split("[[load]]\nname = \"turn\"").next().unwrap();
+    let corner = corner.replace("\"zmin\"", "\"zmin\"\naxes = [\"z\"]\n[[fix]]\ngroup = \"xmin\"");
+    for text in [SCENE.to_string(), plane(), corner] {
         let outcome = outcome(&text);
         for setting in settings() {
             let network = record(&outcome, Some(setting));

@@ -22,7 +22,7 @@ const HOLDS: Holds = Holds {
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "xpbd",
-    title: "constraints in the order of a sweep, and the loop of XPBD in C and NumPy, for your own engine",
+    title: "constraints of XPBD in order, and their loop in C and NumPy, for your own engine",
     command: "cc -O2 -o run run.c -lm && ./run",
     leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
     has_loads: true,
