@@ -136,7 +136,9 @@ static char *at; /* what is left to be read of network.json */
 
 static void refuse(const char *expected)
 {
-    int length = (int)strcspn(at, "\t\r\n");
+    /* A text with its quotes, or up to what ends a number. */
+    int length = (int)(*at == '"' ? 1 + strcspn(at + 1, "\"\t\r\n") : strcspn(at, " ,\t\r\n"));
+    if (*at == '"' && at[length] == '"') length++;
     fprintf(stderr, "network.json: expected %s, found ", expected);
     fprintf(stderr, *at ? "%.*s" : "its end", length < 30 ? length : 30, at);
     fprintf(stderr, "; springfit export --to xpbd writes this file\n");
@@ -256,8 +258,8 @@ static void read_setting(Body *b, const Asked *asked)
     b->h = (REAL)(own_step / own_substeps);
     if (!(b->h > 0)) refuse("a step above zero");
     if (is_fitted && (own_step != step || own_substeps != substeps || b->iterations != iterations))
-        fprintf(stderr, "Beware: the constants were fitted for substeps 1/%d of %g s and %d iterations; with 1/%d of %g s and %d the body has "
-                "another stiffness\n", substeps, step, iterations, own_substeps, own_step, b->iterations);
+        fprintf(stderr, "Beware: the constants were fitted for %d substeps of %d iterations in %g s; with %d of %d in %g s the body has "
+                "another stiffness\n", substeps, iterations, step, own_substeps, b->iterations, own_step);
 }
 
 /* Adds the forces of the load that is asked for. */

@@ -146,8 +146,9 @@ def setting_of(net, given):
     if not (own["step"] > 0 and own["substeps"] > 0 and own["iterations"] > 0):
         misuse("--step, --substeps, --iterations: expected numbers above zero")
     if net["fitted"] and own != net["setting"]:
-        words = [f"1/{of['substeps']} of {of['step']:g} s and {of['iterations']}" for of in [net["setting"], own]]
-        print(f"Beware: the constants were fitted for substeps {words[0]} iterations; with {words[1]} the body has another stiffness", file=sys.stderr)
+        words = [[of["substeps"], of["iterations"], f"{of['step']:g} s"] for of in [net["setting"], own]]
+        fitted, now = ("{} substeps of {} iterations in {}".format(*words[0]), "{} of {} in {}".format(*words[1]))
+        print(f"Beware: the constants were fitted for {fitted}; with {now} the body has another stiffness", file=sys.stderr)
     return own
 
 
