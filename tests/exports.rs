@@ -63,8 +63,8 @@ fn each_program_takes_the_fits_that_it_holds_and_names_one_for_the_others() {
                 ("vtu", _) => true,
                 (_, "patches") => false,
                 ("lammps" | "sofa" | "phystwin", "exact") => false,
-                ("jolt", "exact") => false,
-                ("jolt" | "phystwin", "free") => !negative,
+                ("jolt" | "xpbd", "exact") => false,
+                ("jolt" | "xpbd" | "phystwin", "free") => !negative,
                 _ => true,
             };
             match target.files(network, None) {
@@ -172,7 +172,7 @@ fn damping_that_a_program_lacks_is_named() {
     let words = |target: &Target, network: &NetworkRecord| target.left_out(network).join("; ");
     for target in &TARGETS {
         assert!(words(target, &rayleigh).contains("stiffness, 1e-4 s, is left out"), "{}", target.name);
-        let lacks_mass = ["newton", "jolt", "sofa"].contains(&target.name);
+        let lacks_mass = ["newton", "jolt", "xpbd", "sofa"].contains(&target.name);
         assert_eq!(words(target, &rayleigh).contains("mass, 2e0 1/s, is left out"), lacks_mass, "{}", target.name);
         let lacks_contents = ["newton", "blender", "npz"].contains(&target.name);
         assert_eq!(words(target, &ratio).contains("dampers of springs on contents"), lacks_contents, "{}", target.name);
@@ -600,7 +600,7 @@ fn networks_of_voxels_reach_an_engine() {
         let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
         (output.status.code(), said)
     };
-    for (to, fit) in [("newton", "bulk"), ("blender", "bulk"), ("jolt", "bulk"), ("npz", "bulk")] {
+    for (to, fit) in [("newton", "bulk"), ("blender", "bulk"), ("jolt", "bulk"), ("xpbd", "bulk"), ("npz", "bulk")] {
         let (code, said) = export(to, fit);
         assert_eq!(code, Some(0), "{to}: {said}");
         assert!(said.contains("the volume springs of 16 hexahedra are written as 160 of tetrahedra"), "{said}");

@@ -117,3 +117,4 @@ mod typeset;
 mod voxel_cells;
 mod voxels;
 mod whole;
+mod xpbd;

@@ -319,7 +319,7 @@ class Network:
         """Writes the files and scripts of another program, as ``springfit export``.
 
         Args:
-            to: The program: "mujoco", "newton", "lammps", "jolt", "sofa", "blender", "phystwin", "npz" or "vtu".
+            to: The program: "mujoco", "newton", "lammps", "jolt", "xpbd", "sofa", "blender", "phystwin", "npz" or "vtu".
             folder: Where they go; it is made.
             gravity: m/s², shape (dimension,); 9.81 against the last axis if None.
 

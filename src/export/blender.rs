@@ -7,8 +7,15 @@ use crate::error::Result;
 use crate::report::NetworkRecord;
 
 /// The script moves the network itself, so that it holds what the arrays hold.
-const HOLDS: Holds =
-    Holds { volumes: true, negative: true, tension: Tension::Any, partial: true, plane: true, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: true,
+    areas: false,
+    negative: true,
+    tension: Tension::Any,
+    partial: true,
+    plane: true,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -18,6 +25,7 @@ pub const TARGET: Target = Target {
     leaves_out: content_dampers,
     has_loads: true,
     divides: true,
+    engines: &[],
     stands: Stands::Network,
     write,
 };

@@ -10,6 +10,8 @@ use std::collections::HashSet;
 pub struct Holds {
     /// Springs on the volumes of tetrahedra.
     pub volumes: bool,
+    /// Springs on the areas of triangles in the plane.
+    pub areas: bool,
     /// Constants below zero.
     pub negative: bool,
     /// Springs that pull at rest.
@@ -78,7 +80,8 @@ impl<'a> Job<'a> {
         let step = network.largest_step.ok_or_else(|| Error::expected("largest_step", "a step in s", "none"))?;
         let parts = Parts::of(network)?;
         check_parts(&parts)?;
-        if let (Some(part), false) = (parts.contents.first(), holds.volumes && d == 3) {
+        let holds_contents = if d == 3 { holds.volumes } else { holds.areas };
+        if let (Some(part), false) = (parts.contents.first(), holds_contents) {
             let found = format!("a spring on the content of {}", named(network, &part.points));
             let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
             return unsupported("springs".into(), "springs between two points", found, advice);
@@ -90,10 +93,13 @@ impl<'a> Job<'a> {
             return unsupported("springs".into(), "constants above zero", found, advice);
         }
         if let Some(part) = parts.contents.iter().find(|part| part.constant <= 0.0 || part.rest <= 0.0) {
-            let found = format!("{:e} N/m⁵ and {:e} m³ at {}", part.constant, part.rest, named(network, &part.points));
+            let (what, [of_constant, of_rest]) =
+                if d == 3 { ("volume", ["N/m⁵", "m³"]) } else { ("area", ["N/m³", "m²"]) };
+            let at = named(network, &part.points);
+            let found = format!("{:e} {of_constant} and {:e} {of_rest} at {at}", part.constant, part.rest);
             return unsupported(
                 "springs".into(),
-                "volume springs with constants and rest volumes above zero",
+                &format!("{what} springs with constants and rest {what}s above zero"),
                 found,
                 "another fit has them",
             );
@@ -163,15 +169,24 @@ impl<'a> Job<'a> {
         }
     }
 
+    /// The area of a triangle in the plane, or the volume of a tetrahedron.
+    fn content(&self, points: &[usize]) -> f64 {
+        match *points {
+            [a, b, c] => {
+                let [a, b, c] = [a, b, c].map(|p| self.place(p));
+                ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+            }
+            _ => volume_by_edges(std::array::from_fn(|i| self.place(points[i]))).0,
+        }
+    }
+
     fn check_slack(&self, program: &str) -> Result<()> {
         let lengths = self.parts.lengths.iter().map(|spring| {
             let length = distance(self.place(spring.points[0]), self.place(spring.points[1]));
             (&spring.points[..], spring.rest / length)
         });
-        let contents = self.parts.contents.iter().map(|part| {
-            let (volume, _) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
-            (&part.points[..], part.rest / volume)
-        });
+        let contents =
+            self.parts.contents.iter().map(|part| (&part.points[..], part.rest / self.content(&part.points)));
         let Some((points, share)) = lengths.chain(contents).find(|(_, share)| !((share - 1.0).abs() <= BALANCED))
         else {
             return Ok(());

@@ -2,14 +2,22 @@
 
 use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
+use crate::engine::Engine;
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
 
 /// A constraint has a compliance, the inverse of a constant above zero. Constraints that pull against each other at rest do not
 /// converge in a step: exact networks without negative springs were 27 times as soft.
-const HOLDS: Holds =
-    Holds { volumes: true, negative: false, tension: Tension::None, partial: false, plane: true, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: true,
+    areas: false,
+    negative: false,
+    tension: Tension::None,
+    partial: false,
+    plane: true,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -19,6 +27,7 @@ pub const TARGET: Target = Target {
     leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
     has_loads: false,
     divides: true,
+    engines: &[Engine::Jolt],
     stands: Stands::Network,
     write,
 };

@@ -6,8 +6,15 @@ use crate::error::Result;
 use crate::report::NetworkRecord;
 use std::fmt::Write;
 
-const HOLDS: Holds =
-    Holds { volumes: false, negative: true, tension: Tension::Any, partial: true, plane: true, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: false,
+    areas: false,
+    negative: true,
+    tension: Tension::Any,
+    partial: true,
+    plane: true,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -17,6 +24,7 @@ pub const TARGET: Target = Target {
     leaves_out: dampers,
     has_loads: false,
     divides: false,
+    engines: &[],
     stands: Stands::Network,
     write,
 };

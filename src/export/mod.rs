@@ -18,6 +18,7 @@ mod rest;
 mod sofa;
 mod target;
 mod vtu;
+mod xpbd;
 
 pub use job::{Holds, Job, Tension};
 pub use target::{Content, NamedFile, Target, with_warnings, write_files};
@@ -26,11 +27,12 @@ use crate::error::Result;
 use crate::unknown;
 
 /// A new target is a row here.
-pub const TARGETS: [Target; 9] = [
+pub const TARGETS: [Target; 10] = [
     mujoco::TARGET,
     newton::TARGET,
     lammps::TARGET,
     jolt::TARGET,
+    xpbd::TARGET,
     sofa::TARGET,
     blender::TARGET,
     phystwin::TARGET,

@@ -7,8 +7,15 @@ use crate::error::Result;
 use crate::report::NetworkRecord;
 
 /// A flex has the quadratic energy of its squared edge lengths: no tension edge by edge, and no springs elsewhere.
-const HOLDS: Holds =
-    Holds { volumes: true, negative: true, tension: Tension::Balanced, partial: false, plane: false, off_edges: false };
+const HOLDS: Holds = Holds {
+    volumes: true,
+    areas: false,
+    negative: true,
+    tension: Tension::Balanced,
+    partial: false,
+    plane: false,
+    off_edges: false,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -18,6 +25,7 @@ pub const TARGET: Target = Target {
     leaves_out: dampers,
     has_loads: true,
     divides: false,
+    engines: &[],
     stands: Stands::SquaredLengths,
     write,
 };

@@ -3,11 +3,19 @@
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, mass_damping, script};
+use crate::engine::Engine;
 use crate::error::Result;
 use crate::report::NetworkRecord;
 
-const HOLDS: Holds =
-    Holds { volumes: true, negative: true, tension: Tension::Any, partial: false, plane: true, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: true,
+    areas: false,
+    negative: true,
+    tension: Tension::Any,
+    partial: false,
+    plane: true,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -17,6 +25,7 @@ pub const TARGET: Target = Target {
     leaves_out: |network| [content_dampers(network), mass_damping(network)].concat(),
     has_loads: true,
     divides: true,
+    engines: &[Engine::NewtonXpbd, Engine::NewtonVbd],
     stands: Stands::Network,
     write,
 };

@@ -2,7 +2,7 @@
 
 use super::extent::check_parts;
 use super::job::{Job, spatial};
-use super::target::{Content, NamedFile, Stands, Target, content_dampers};
+use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, content_dampers};
 use crate::error::Result;
 use crate::report::{NetworkRecord, Parts, network_npz};
 use std::io::Cursor;
@@ -15,6 +15,7 @@ pub const TARGET: Target = Target {
     leaves_out: content_dampers,
     has_loads: true,
     divides: true,
+    engines: EVERY_ENGINE,
     stands: Stands::Network,
     write,
 };

@@ -7,8 +7,15 @@ use crate::report::{ArrayFile, LengthPart, NetworkRecord};
 use std::io::{self, Cursor};
 
 /// The stiffness of a spring is a logarithm, and its force is divided by its rest length.
-const HOLDS: Holds =
-    Holds { volumes: false, negative: false, tension: Tension::Any, partial: false, plane: false, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: false,
+    areas: false,
+    negative: false,
+    tension: Tension::Any,
+    partial: false,
+    plane: false,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -18,6 +25,7 @@ pub const TARGET: Target = Target {
     leaves_out: different_dampers,
     has_loads: false,
     divides: false,
+    engines: &[],
     stands: Stands::Network,
     write,
 };

@@ -43,11 +43,17 @@ struct Stretches {
 impl Target {
     /// What a reader must know of the body at rest under the exported gravity, and under each load beside it, in sentences: that the network is not
     /// stable, that no equilibrium was found, that it is deformed beyond what the program moves as the network would. Bodies that are
-    /// not held are not solved, and neither are those that would take more than some seconds; of the latter a sentence says so.
+    /// not held are not solved, and neither are those that would take more than some seconds; of the latter a sentence says so. First is whether
+    /// the program ends its sweeps too early for the constants.
     ///
     /// # Errors
     /// Cells turn inside out under gravity alone; kind `Unsupported`.
     pub fn at_rest(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<String>> {
+        Ok(self.is_softer(network).into_iter().chain(self.solved(network, gravity)?).collect())
+    }
+
+    /// What the equilibria of the network tell.
+    fn solved(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<String>> {
         let (Some(masses), Ok(parts)) = (&network.masses, Parts::of(network)) else { return Ok(Vec::new()) };
         if self.stands == Stands::Still {
             return Ok(Vec::new());

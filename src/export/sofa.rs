@@ -7,8 +7,15 @@ use crate::report::NetworkRecord;
 use std::collections::HashSet;
 use std::fmt::Write;
 
-const HOLDS: Holds =
-    Holds { volumes: false, negative: true, tension: Tension::Any, partial: false, plane: true, off_edges: true };
+const HOLDS: Holds = Holds {
+    volumes: false,
+    areas: false,
+    negative: true,
+    tension: Tension::Any,
+    partial: false,
+    plane: true,
+    off_edges: true,
+};
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
@@ -18,6 +25,7 @@ pub const TARGET: Target = Target {
     leaves_out: mass_damping,
     has_loads: false,
     divides: false,
+    engines: &[],
     stands: Stands::Network,
     write,
 };

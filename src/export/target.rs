@@ -1,7 +1,8 @@
 //! What an export is: a row for each program, and its files.
 
 use super::extent::check_numbers;
-use crate::error::{Error, Result};
+use crate::engine::{Engine, Setting};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file::write_whole;
 use crate::mesh::vtk::{self, Grid};
 use crate::report::{MeasureKind, NetworkRecord, SpringRecord, open_outputs};
@@ -50,7 +51,7 @@ pub(super) fn script(text: &str) -> Content {
 }
 
 /// How a line that is not read begins, by the ending of a script.
-const COMMENTS: [(&str, &str); 3] = [(".py", "# "), (".mjs", "// "), ("in.network", "# ")];
+const COMMENTS: [(&str, &str); 4] = [(".py", "# "), (".mjs", "// "), (".c", "// "), ("in.network", "# ")];
 
 /// The files with these sentences at the top of their scripts.
 pub fn with_warnings(mut files: Vec<NamedFile>, warnings: &[String]) -> Vec<NamedFile> {
@@ -72,11 +73,17 @@ type Writer = fn(&NetworkRecord, Option<&[f64]>) -> Result<Vec<NamedFile>>;
 pub enum Stands {
     /// The program has the energy of the network and moves the body as far as the network does.
     Network,
+    /// The program ends its sweeps early: with the constants of equations that are solved it has a softer body.
+    Truncated,
     /// Springs whose energy is quadratic in the square of their length, `k/(8 L²) (l² − L²)²`.
     SquaredLengths,
     /// The program does not move it.
     Still,
 }
+
+/// Of programs that show or pass on the numbers of a network, whatever they were fitted for.
+pub(super) const EVERY_ENGINE: &[Engine] =
+    &[Engine::Xpbd, Engine::Vbd, Engine::Jolt, Engine::NewtonXpbd, Engine::NewtonVbd];
 
 /// A program that networks are written for.
 pub struct Target {
@@ -92,6 +99,8 @@ pub struct Target {
     pub has_loads: bool,
     /// Whether springs on the volumes of hexahedra are divided for it into those of tetrahedra, which it holds wherever they are.
     pub(super) divides: bool,
+    /// The engines whose constants it takes. Those of solved equations go to each program.
+    pub(super) engines: &'static [Engine],
     /// Up to which deformation it moves the network.
     pub(super) stands: Stands,
     pub(super) write: Writer,
@@ -102,9 +111,10 @@ impl Target {
     /// last axis.
     ///
     /// # Errors
-    /// The gravity has another dimension; a number is not finite in single precision; or the program does not hold the network: the error says what it holds and which fit has it.
+    /// The gravity has another dimension; the constants belong to an engine that is not this program; a number is not finite in single precision; or the program does not hold the network: the error says what it holds and which fit has it.
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
         gravity.map_or(Ok(()), |asked| self.check_gravity(network, asked))?;
+        self.check_engine(network)?;
         check_numbers(network, gravity)?;
         (self.write)(network, gravity)
     }
@@ -119,6 +129,30 @@ impl Target {
             return Err(Error::expected("--gravity", expected, asked.len()));
         }
         Ok(())
+    }
+
+    /// That constants which belong to the settings of an engine go to this engine: anywhere else the body has another stiffness.
+    fn check_engine(&self, network: &NetworkRecord) -> Result<()> {
+        let Some(setting) = &network.engine else { return Ok(()) };
+        setting.check().map_err(|e| e.under("engine"))?;
+        if self.engines.contains(&setting.engine) {
+            return Ok(());
+        }
+        let own = self.engines.iter().flat_map(|engine| [engine.name(), " or for "]).collect::<String>();
+        let expected = format!("constants for {own}equations that are solved");
+        let found = format!("constants for {}", setting.engine.name());
+        let advice = "; --to npz passes them on to a program of your own, and a fit without an engine goes anywhere";
+        Err(Error::expected("engine", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
+    }
+
+    /// That the constants are not those of this program, which ends its sweeps early.
+    pub(super) fn is_softer(&self, network: &NetworkRecord) -> Option<String> {
+        let engine = *self.engines.first().filter(|_| self.stands == Stands::Truncated && network.engine.is_none())?;
+        Some(format!(
+            "the constants are those of equations that are solved, and the body is softer where sweeps end early ({}): more substeps come closer, and \
+             a fit with an engine has constants that answer like the body at its settings",
+            Setting::usual(engine).words()
+        ))
     }
 
     /// The damping that is left out, in lines of words. No program has Rayleigh's damping by the stiffness at rest.

@@ -1,6 +1,6 @@
 //! VTU: a picture of the network for ParaView.
 
-use super::target::{Content, NamedFile, Stands, Target, nothing};
+use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, nothing};
 use crate::error::{Error, Result};
 use crate::mesh::vtk::{Array, Grid};
 use crate::report::NetworkRecord;
@@ -16,6 +16,7 @@ pub const TARGET: Target = Target {
     leaves_out: nothing,
     has_loads: false,
     divides: false,
+    engines: EVERY_ENGINE,
     stands: Stands::Still,
     write,
 };

@@ -1,0 +1,161 @@
+//! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
+
+use super::job::{Holds, Job, Tension};
+use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
+use crate::engine::{Engine, Setting, colours, sweep_order};
+use crate::error::Result;
+use crate::report::{ContentPart, LengthPart, NetworkRecord, NodalLoadRecord};
+use serde::Serialize;
+use std::collections::HashMap;
+
+/// As in Jolt, constraints have compliances above zero and do not pull against each other at rest.
+const HOLDS: Holds = Holds {
+    volumes: true,
+    areas: true,
+    negative: false,
+    tension: Tension::None,
+    partial: true,
+    plane: true,
+    off_edges: true,
+};
+
+/// What this program holds, and how a network is written for it.
+pub const TARGET: Target = Target {
+    name: "xpbd",
+    title: "constraints of XPBD in order, and their loop in C and NumPy, for your own engine",
+    command: "cc -O2 -o run run.c -lm && ./run",
+    leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
+    has_loads: true,
+    divides: true,
+    engines: &[Engine::Xpbd],
+    stands: Stands::Truncated,
+    write,
+};
+
+/// What the key `format` of the file says.
+const FORMAT: &str = "springfit xpbd";
+/// The version changes when a key is removed, or its place or meaning changes.
+const VERSION: u32 = 1;
+
+/// What the loops read. The one in C reads the keys in this order.
+#[derive(Serialize)]
+struct Body<'a> {
+    format: &'static str,
+    version: u32,
+    /// Whether the constants belong to the setting.
+    fitted: bool,
+    setting: Setting,
+    /// m/s², with z = 0 in the plane.
+    gravity: [f64; 3],
+    /// m, with z = 0 in the plane.
+    points: Vec<[f64; 3]>,
+    /// kg.
+    masses: &'a [f64],
+    /// Points, and the axes along which they are held.
+    held: Vec<(usize, usize)>,
+    surface: &'a [[usize; 3]],
+    loads: Vec<Load<'a>>,
+    constraints: Vec<Constraint>,
+}
+
+#[derive(Serialize)]
+struct Load<'a> {
+    name: &'a str,
+    /// Whether it holds points in another way than the network, so that it is no load of forces.
+    moves: bool,
+    /// Points and their forces, N.
+    forces: Vec<(usize, f64, f64, f64)>,
+}
+
+#[derive(Serialize)]
+struct Constraint {
+    kind: &'static str,
+    points: Vec<usize>,
+    compliance: f64,
+    rest: f64,
+    colour: usize,
+}
+
+impl Constraint {
+    fn of_length(part: &LengthPart) -> Constraint {
+        Constraint {
+            kind: "length",
+            points: part.points.to_vec(),
+            compliance: 1.0 / part.constant,
+            rest: part.rest,
+            colour: 0,
+        }
+    }
+
+    fn of_content(part: &ContentPart) -> Constraint {
+        Constraint {
+            kind: "content",
+            points: part.points.to_vec(),
+            compliance: 1.0 / part.constant,
+            rest: part.rest,
+            colour: 0,
+        }
+    }
+
+    /// Whether the compliance is a number of single precision. A spring that is softer has no force.
+    fn has_force(&self) -> bool {
+        self.compliance <= f64::from(f32::MAX)
+    }
+}
+
+/// The constraints in the order of a sweep, with their colours.
+fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
+    let lengths = job.parts.lengths.iter().map(Constraint::of_length).filter(Constraint::has_force);
+    let mut all: Vec<Constraint> = lengths.collect();
+    let count = all.len();
+    all.extend(job.parts.contents.iter().map(Constraint::of_content).filter(Constraint::has_force));
+    let sets: Vec<&[usize]> = all.iter().map(|constraint| &constraint.points[..]).collect();
+    let points = job.masses.len();
+    let (order, colours) = (sweep_order(setting.order, &sets, count, points), colours(&sets, points));
+    all.iter_mut().zip(colours).for_each(|(constraint, colour)| constraint.colour = colour);
+    let mut all: Vec<Option<Constraint>> = all.into_iter().map(Some).collect();
+    order.into_iter().filter_map(|constraint| all[constraint].take()).collect()
+}
+
+/// The loads of the scene by name.
+fn loads(network: &NetworkRecord) -> Vec<Load<'_>> {
+    let usual: HashMap<usize, _> = network.held.iter().map(|held| (held.point, held)).collect();
+    let of = |x: &[f64], k: usize| x.get(k).copied().unwrap_or(0.0);
+    let load = |load: &NodalLoadRecord| {
+        let moves = load.held.iter().any(|held| usual.get(&held.point) != Some(&held));
+        let forces = load.forces.iter().map(|f| (f.point, of(&f.force, 0), of(&f.force, 1), of(&f.force, 2)));
+        (moves, forces.collect())
+    };
+    let named = |own| {
+        let (moves, forces) = load(own);
+        Load { name: &own.name, moves, forces }
+    };
+    network.loads.iter().map(named).collect()
+}
+
+fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
+    let job = Job::new(network, gravity, "XPBD", &HOLDS)?;
+    let setting = network.engine.unwrap_or(Setting::usual(Engine::Xpbd));
+    let body = Body {
+        format: FORMAT,
+        version: VERSION,
+        fitted: network.engine.is_some(),
+        setting,
+        gravity: job.gravity,
+        points: (0..network.points.len()).map(|p| job.place(p)).collect(),
+        masses: job.masses,
+        held: (0..network.dimension)
+            .flat_map(|axis| job.held_along(axis).into_iter().map(move |p| (p, axis)))
+            .collect(),
+        surface: &network.surface,
+        loads: loads(network),
+        constraints: constraints(&job, &setting),
+    };
+    let text = serde_json::to_vec(&body).expect("keys are text");
+    let script = |bytes: &[u8]| Content::Bytes(bytes.to_vec());
+    Ok(vec![
+        ("network.json", script(&text)),
+        ("run.c", script(include_bytes!("../../exports/xpbd.c"))),
+        ("run.py", script(include_bytes!("../../exports/xpbd.py"))),
+    ])
+}

@@ -1,0 +1,399 @@
+// Beware: the constants are those of equations that are solved, and the body is softer where sweeps end early (xpbd, 10 substeps of 1/60 s with 1 sweep each, gauss-seidel, order colours): more substeps come closer, and a fit with an engine has constants that answer like the body at its settings.
+// Beware: 17 of 412 cells are inside out at rest under gravity and the load "shear".
+/* A springfit network moved by XPBD (Macklin, Mueller and Chentanez 2016), in C99 with the standard library alone.
+
+       cc -O2 -o run run.c -lm
+       ./run                    two seconds of motion, then where the points are
+       ./run 5                  five seconds
+       ./run --rest F           comes to rest and writes the positions to the file F, a line for each point
+       ./run --load NAME        any of these under a load of the scene as well
+       ./run --substeps N --iterations N --step S   in place of the setting in network.json
+
+   With -DREAL=float it counts in single precision. The loop is above the line of stars, for an engine of your own; below it, network.json
+   is read. What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area or a volume with the rest
+   measure of the spring. Points are in m, masses in kg, times in s; in the plane z is zero. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#ifndef REAL
+#define REAL double
+#endif
+typedef REAL Vector[3];
+
+typedef struct {
+    int count, points[4];    /* two points have a length, three an area, four a volume */
+    REAL compliance, rest;   /* 1/k, and the measure at which the spring does not pull */
+    REAL multiplier;         /* the sum of the corrections in this substep */
+} Constraint;
+
+typedef struct {
+    int points, constraints; /* how many */
+    Vector *x, *v;           /* positions and velocities */
+    Vector *w;               /* inverse masses along x, y, z: zero where a point is held */
+    Vector *force, gravity;  /* forces on the points, and the acceleration of all */
+    Vector *old, *seen;      /* positions before the substep, and before a sweep of Jacobi */
+    Constraint *constraint;  /* in the order of a sweep */
+    REAL h, relaxation;      /* length of a substep, factor of each correction */
+    int iterations, jacobi;  /* sweeps of a substep; whether they correct all constraints at once */
+} Body;
+
+/* The measure of a constraint at the positions x, and its gradient g at each of its points. */
+static REAL measure(const Constraint *c, Vector *x, Vector *g)
+{
+    Vector e[4]; /* edges from the first point to the others */
+    for (int i = 1; i < c->count; i++)
+        for (int k = 0; k < 3; k++) e[i][k] = x[c->points[i]][k] - x[c->points[0]][k];
+    for (int k = 0; k < 3; k++) {
+        int l = (k + 1) % 3, m = (k + 2) % 3;
+        if (c->count == 2) { /* |e1| */
+            REAL length = (REAL)sqrt(e[1][0] * e[1][0] + e[1][1] * e[1][1] + e[1][2] * e[1][2]);
+            g[1][k] = length > 0 ? e[1][k] / length : 0;
+        } else if (c->count == 3) { /* (e1 x e2)/2 along z */
+            g[1][k] = (k == 0 ? e[2][1] : k == 1 ? -e[2][0] : 0) / 2;
+            g[2][k] = (k == 0 ? -e[1][1] : k == 1 ? e[1][0] : 0) / 2;
+        } else { /* e1 . (e2 x e3)/6 */
+            g[1][k] = (e[2][l] * e[3][m] - e[2][m] * e[3][l]) / 6;
+            g[2][k] = (e[3][l] * e[1][m] - e[3][m] * e[1][l]) / 6;
+            g[3][k] = (e[1][l] * e[2][m] - e[1][m] * e[2][l]) / 6;
+        }
+        /* A motion of all points at once changes nothing. */
+        g[0][k] = 0;
+        for (int i = 1; i < c->count; i++) g[0][k] -= g[i][k];
+    }
+    /* Each measure grows in proportion to e1 in its direction. */
+    return g[1][0] * e[1][0] + g[1][1] * e[1][1] + g[1][2] * e[1][2];
+}
+
+/* Corrects each constraint once. Gauss-Seidel sees what the constraints before have moved, Jacobi the positions before the sweep. */
+static void sweep(Body *b)
+{
+    Vector *x = b->x, g[4];
+    if (b->jacobi) x = memcpy(b->seen, b->x, (size_t)b->points * sizeof(Vector));
+    for (Constraint *c = b->constraint; c < b->constraint + b->constraints; c++) {
+        REAL violation = measure(c, x, g) - c->rest;
+        REAL softness = c->compliance / (b->h * b->h), stiffness = 0;
+        for (int i = 0; i < c->count; i++)
+            for (int k = 0; k < 3; k++) stiffness += b->w[c->points[i]][k] * g[i][k] * g[i][k];
+        /* The step of Newton's method for violation + softness * multiplier = 0. */
+        REAL step = -b->relaxation * (violation + softness * c->multiplier) / (stiffness + softness);
+        c->multiplier += step;
+        for (int i = 0; i < c->count; i++)
+            for (int k = 0; k < 3; k++) b->x[c->points[i]][k] += b->w[c->points[i]][k] * g[i][k] * step;
+    }
+}
+
+/* A substep: points fly under the forces, the sweeps correct where they are, and velocities follow from where they have come. */
+static void substep(Body *b)
+{
+    memcpy(b->old, b->x, (size_t)b->points * sizeof(Vector));
+    for (int p = 0; p < b->points; p++)
+        for (int k = 0; k < 3; k++) {
+            if (b->w[p][k] == 0) continue;
+            b->v[p][k] += b->h * (b->gravity[k] + b->w[p][k] * b->force[p][k]);
+            b->x[p][k] += b->h * b->v[p][k];
+        }
+    for (int i = 0; i < b->constraints; i++) b->constraint[i].multiplier = 0;
+    for (int i = 0; i < b->iterations; i++) sweep(b);
+    for (int p = 0; p < b->points; p++)
+        for (int k = 0; k < 3; k++) b->v[p][k] = (b->x[p][k] - b->old[p][k]) / b->h;
+}
+
+/******************************************************************************************************************************/
+
+/* The kinetic energy of the velocities, or of motions by a few last digits of each position in a substep. */
+static double kinetic(const Body *b, int of_digits)
+{
+    double digit = sizeof(REAL) == sizeof(float) ? 5e-7 : 9e-16, sum = 0;
+    for (int p = 0; p < b->points; p++)
+        for (int k = 0; k < 3; k++) {
+            double v = of_digits ? digit * b->x[p][k] / b->h : b->v[p][k];
+            if (b->w[p][k] > 0) sum += v * v / b->w[p][k] / 2;
+        }
+    return sum;
+}
+
+/* Comes to rest: whenever the kinetic energy has passed a maximum, the body is stopped. Returns the number of substeps, or 0. */
+static long settle(Body *b)
+{
+    double highest = 0, last = 0, least = kinetic(b, 1);
+    for (long n = 1; n <= 2000000; n++) {
+        substep(b);
+        double energy = kinetic(b, 0);
+        if (!(energy <= HUGE_VAL)) return 0;
+        if (energy <= last) {
+            if (last <= 1e-18 * highest + least) return n;
+            memset(b->v, 0, (size_t)b->points * sizeof(Vector));
+            energy = 0;
+        }
+        last = energy;
+        if (last > highest) highest = last;
+    }
+    return 0;
+}
+
+static char *at; /* what is left to be read of network.json */
+
+static void refuse(const char *expected)
+{
+    /* A text with its quotes, or up to what ends a number. */
+    int length = (int)(*at == '"' ? 1 + strcspn(at + 1, "\"\t\r\n") : strcspn(at, " ,\t\r\n"));
+    if (*at == '"' && at[length] == '"') length++;
+    fprintf(stderr, "network.json: expected %s, found ", expected);
+    fprintf(stderr, *at ? "%.*s" : "its end", length < 30 ? length : 30, at);
+    fprintf(stderr, "; springfit export --to xpbd writes this file\n");
+    exit(2);
+}
+
+static void misuse(const char *option, const char *expected, const char *found)
+{
+    fprintf(stderr, "%s: expected %s, found \"%s\"\n", option, expected, found);
+    exit(2);
+}
+
+/* A list with room for one more entry: its room doubles whenever it is full. */
+static void *grown(void *list, int count, size_t size)
+{
+    if (count & (count - 1)) return list;
+    list = realloc(list, (count ? 2 * (size_t)count : 1) * size);
+    if (!list) fprintf(stderr, "the memory is full\n"), exit(2);
+    return list;
+}
+
+/* Numbers for each point, zero at first. */
+static Vector *table(int points)
+{
+    Vector *list = calloc((size_t)points + 1, sizeof(Vector));
+    if (!list) fprintf(stderr, "the memory is full\n"), exit(2);
+    return list;
+}
+
+static void skip(void) { at += strspn(at, " \t\r\n,:"); }
+
+/* Goes past a word, a bracket or a text in quotes if it is next. */
+static int take(const char *word)
+{
+    skip();
+    size_t length = strlen(word);
+    if (strncmp(at, word, length)) return 0;
+    at += length;
+    return 1;
+}
+
+static void expect(const char *word)
+{
+    if (!take(word)) refuse(word);
+}
+
+static double number(void)
+{
+    char *end;
+    skip();
+    double found = strtod(at, &end);
+    if (end == at || !(fabs(found) < HUGE_VAL)) refuse("a number");
+    at = end;
+    return found;
+}
+
+/* A whole number from `least` and below `end`. */
+static int whole(int least, int end)
+{
+    skip();
+    char *from = at, expected[60];
+    double found = number();
+    if (found >= least && found < end && found == floor(found)) return (int)found;
+    at = from;
+    sprintf(expected, "a whole number from %d to %d", least, end - 1);
+    refuse(expected);
+    return 0;
+}
+
+/* A text in quotes; it is ended where its last quote was. */
+static char *text(void)
+{
+    expect("\"");
+    char *start = at, *to = at;
+    for (; *at && *at != '"'; *to++ = *at++)
+        if (*at == '\\' && at[1]) at++;
+    expect("\"");
+    *to = 0;
+    return start;
+}
+
+static void vector(REAL *x)
+{
+    expect("[");
+    for (int k = 0; k < 3; k++) x[k] = (REAL)number();
+    expect("]");
+}
+
+/* What the command line asks for; zeros leave the setting as it is. */
+typedef struct {
+    const char *rest, *load;
+    double seconds, step;
+    int substeps, iterations;
+} Asked;
+
+/* Reads the setting, and says where other numbers are asked for than the constants were fitted for. */
+static void read_setting(Body *b, const Asked *asked)
+{
+    expect("\"fitted\"");
+    int is_fitted = take("true");
+    if (!is_fitted) expect("false");
+    expect("\"setting\""), expect("{"), expect("\"method\""), expect("\"xpbd\""), expect("\"step\"");
+    double step = number();
+    expect("\"substeps\"");
+    int substeps = whole(1, 100001);
+    expect("\"iterations\"");
+    int iterations = whole(1, 100001);
+    expect("\"sweep\"");
+    b->jacobi = take("\"jacobi\"");
+    if (!b->jacobi) expect("\"gauss-seidel\"");
+    expect("\"relaxation\"");
+    b->relaxation = (REAL)number();
+    expect("\"order\""), text(), expect("\"precision\""), text(), expect("}");
+    double own_step = asked->step > 0 ? asked->step : step;
+    int own_substeps = asked->substeps ? asked->substeps : substeps;
+    b->iterations = asked->iterations ? asked->iterations : iterations;
+    b->h = (REAL)(own_step / own_substeps);
+    if (!(b->h > 0)) refuse("a step above zero");
+    if (is_fitted && (own_step != step || own_substeps != substeps || b->iterations != iterations))
+        fprintf(stderr, "Beware: the constants were fitted for %d substeps of %d iterations in %g s; with %d of %d in %g s the body has "
+                "another stiffness\n", substeps, iterations, step, own_substeps, b->iterations, own_step);
+}
+
+/* Adds the forces of the load that is asked for. */
+static void read_loads(Body *b, const char *asked)
+{
+    char **names = NULL;
+    int count = 0, is_found = 0;
+    expect("\"loads\""), expect("[");
+    for (; take("{"); expect("}")) {
+        expect("\"name\"");
+        names = grown(names, count, sizeof *names);
+        names[count] = text();
+        int is_asked = asked && !is_found && !strcmp(asked, names[count]);
+        count++;
+        is_found |= is_asked;
+        expect("\"moves\"");
+        if (take("true") && is_asked) misuse("--load", "a load of forces", "one that moves points: move them in the engine");
+        take("false"), expect("\"forces\""), expect("[");
+        while (take("[")) {
+            int p = whole(0, b->points);
+            for (int k = 0; k < 3; k++) {
+                REAL force = (REAL)number();
+                if (is_asked) b->force[p][k] += force;
+            }
+            expect("]");
+        }
+        expect("]");
+    }
+    expect("]");
+    if (!asked || is_found) return;
+    fprintf(stderr, "--load: expected one of");
+    for (int i = 0; i < count; i++) fprintf(stderr, " \"%s\"", names[i]);
+    fprintf(stderr, "%s, found \"%s\"\n", count ? "" : " none", asked);
+    exit(2);
+}
+
+/* The whole of network.json, whose keys are in the order in which they are written. */
+static Body read_body(const Asked *asked)
+{
+    Body b = { 0 };
+    FILE *file = fopen("network.json", "rb");
+    long length = 0;
+    if (!file || fseek(file, 0, SEEK_END) || (length = ftell(file)) < 0 || fseek(file, 0, SEEK_SET))
+        misuse("network.json", "a file that can be read", strerror(errno));
+    char *all = at = calloc((size_t)length + 1, 1);
+    if (!all || fread(all, 1, (size_t)length, file) != (size_t)length) misuse("network.json", "its bytes in memory", "fewer");
+    fclose(file);
+    expect("{"), expect("\"format\""), expect("\"springfit xpbd\""), expect("\"version\""), whole(1, 2);
+    read_setting(&b, asked);
+    expect("\"gravity\""), vector(b.gravity), expect("\"points\""), expect("[");
+    for (; !take("]"); b.points++) b.x = grown(b.x, b.points, sizeof(Vector)), vector(b.x[b.points]);
+    b.v = table(b.points), b.w = table(b.points), b.force = table(b.points), b.old = table(b.points), b.seen = table(b.points);
+    expect("\"masses\""), expect("[");
+    for (int p = 0; p < b.points; p++) {
+        double mass = number();
+        if (!(mass > 0)) refuse("masses above zero");
+        for (int k = 0; k < 3; k++) b.w[p][k] = (REAL)(1 / mass);
+    }
+    expect("]"), expect("\"held\""), expect("[");
+    for (; take("["); expect("]")) {
+        int p = whole(0, b.points);
+        b.w[p][whole(0, 3)] = 0;
+    }
+    expect("]"), expect("\"surface\""), expect("[");
+    for (; take("["); expect("]")) whole(0, b.points), whole(0, b.points), whole(0, b.points);
+    expect("]");
+    read_loads(&b, asked->load);
+    expect("\"constraints\""), expect("[");
+    for (; take("{"); expect("}"), b.constraints++) {
+        b.constraint = grown(b.constraint, b.constraints, sizeof(Constraint));
+        Constraint *c = b.constraint + b.constraints;
+        memset(c, 0, sizeof *c);
+        expect("\"kind\"");
+        int is_content = take("\"content\"");
+        if (!is_content) expect("\"length\"");
+        expect("\"points\""), expect("[");
+        while (c->count < (is_content ? 4 : 2) && !(c->count == 3 && take("]"))) c->points[c->count++] = whole(0, b.points);
+        if (c->count != 3) expect("]");
+        expect("\"compliance\""), c->compliance = (REAL)number();
+        if (!(c->compliance > 0)) refuse("compliances above zero");
+        expect("\"rest\""), c->rest = (REAL)number(), expect("\"colour\""), number();
+    }
+    expect("]"), expect("}");
+    return b;
+}
+
+static double counted(const char *option, const char *given, int is_whole)
+{
+    char *end;
+    double found = given ? strtod(given, &end) : 0;
+    int is_fine = given && end != given && !*end && found > 0 && found < 1e300;
+    if (is_whole) is_fine = is_fine && found == floor(found) && found <= 100000;
+    if (!is_fine) misuse(option, is_whole ? "a whole number from 1 to 100000" : "a time above 0 s", given ? given : "nothing");
+    return found;
+}
+
+int main(int count, char **words)
+{
+    Asked asked = { NULL, NULL, 2, 0, 0, 0 };
+    for (int i = 1; i < count; i++) {
+        const char *word = words[i], *next = i + 1 < count ? words[i + 1] : NULL;
+        if (strncmp(word, "--", 2)) {
+            asked.seconds = counted("SECONDS", word, 0);
+            continue;
+        }
+        if (!strcmp(word, "--rest")) asked.rest = next;
+        else if (!strcmp(word, "--load")) asked.load = next;
+        else if (!strcmp(word, "--step")) asked.step = counted(word, next, 0);
+        else if (!strcmp(word, "--substeps")) asked.substeps = (int)counted(word, next, 1);
+        else if (!strcmp(word, "--iterations")) asked.iterations = (int)counted(word, next, 1);
+        else misuse(word, "--rest, --load, --step, --substeps or --iterations", word);
+        if (!next) misuse(word, "a word after it", "none");
+        i++;
+    }
+    Body b = read_body(&asked);
+    Vector *start = memcpy(table(b.points), b.x, (size_t)b.points * sizeof(Vector));
+    double steps = asked.rest ? settle(&b) : floor(asked.seconds / b.h + 0.5);
+    if (asked.rest && !steps) return fprintf(stderr, "the body has not come to rest\n"), 1;
+    for (double n = 0; !asked.rest && n < steps; n++) substep(&b);
+    double largest = 0;
+    int place = 0;
+    for (int p = 0; p < b.points; p++) {
+        double square = 0;
+        for (int k = 0; k < 3; k++) square += (b.x[p][k] - start[p][k]) * (b.x[p][k] - start[p][k]);
+        if (!(square < HUGE_VAL)) return fprintf(stderr, "the motion has diverged\n"), 1;
+        if (square > largest) largest = square, place = p;
+    }
+    FILE *file = asked.rest ? fopen(asked.rest, "w") : NULL;
+    if (asked.rest && !file) misuse("--rest", "a file that can be written", strerror(errno));
+    for (int p = 0; file && p < b.points; p++) fprintf(file, "%.17g %.17g %.17g\n", b.x[p][0], b.x[p][1], b.x[p][2]);
+    if (file && fclose(file)) misuse("--rest", "a file that can be written", strerror(errno));
+    printf("%d points, %s%.4g s: the largest displacement is %.4g m, at point %d\n", b.points, asked.rest ? "at rest after " : "",
+           steps * b.h, sqrt(largest), place);
+    return 0;
+}

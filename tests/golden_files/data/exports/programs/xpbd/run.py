@@ -1,0 +1,176 @@
+# Beware: the constants are those of equations that are solved, and the body is softer where sweeps end early (xpbd, 10 substeps of 1/60 s with 1 sweep each, gauss-seidel, order colours): more substeps come closer, and a fit with an engine has constants that answer like the body at its settings.
+# Beware: 17 of 412 cells are inside out at rest under gravity and the load "shear".
+"""A springfit network moved by XPBD (Macklin, Müller and Chentanez 2016), in NumPy (pip install numpy): the twin of run.c.
+
+    python run.py            two seconds of motion, then where the points are
+    python run.py 5          five seconds
+    python run.py --rest F   comes to rest and writes the positions to the file F, a line for each point
+    python run.py --load N   any of these under the load N of the scene as well
+    --substeps N, --iterations N, --step S   in place of the setting in network.json; --single counts in single precision
+
+What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area or a volume with the rest measure of
+the spring. Constraints that follow each other and share no point are corrected at once, which changes nothing.
+"""
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+
+def gradients(x):
+    """The gradients of the measures of constraints at each of their points, from the places of these, [constraints, points, 3]."""
+    e = (x[:, 1:] - x[:, :1]).swapaxes(0, 1)  # edges from the first point
+    if len(e) == 1:  # a length
+        length = np.linalg.norm(e[0], axis=1, keepdims=True)
+        g = [np.divide(e[0], length, out=np.zeros_like(e[0]), where=length > 0)]
+    elif len(e) == 2:  # an area in the plane
+        zero = np.zeros(len(x), x.dtype)
+        g = [np.stack([e[1][:, 1], -e[1][:, 0], zero], axis=1) / 2, np.stack([-e[0][:, 1], e[0][:, 0], zero], axis=1) / 2]
+    else:  # a volume
+        g = [np.cross(e[1], e[2]) / 6, np.cross(e[2], e[0]) / 6, np.cross(e[0], e[1]) / 6]
+    return np.stack([-sum(g), *g], axis=1)
+
+
+class Body:
+    def __init__(self, net, setting, forces, real):
+        self.h = real(setting["step"] / setting["substeps"])
+        self.iterations, self.relaxation = setting["iterations"], real(setting["relaxation"])
+        self.is_jacobi = setting["sweep"] == "jacobi"
+        self.x = np.array(net["points"], real).reshape(-1, 3)
+        self.v = np.zeros_like(self.x)
+        self.w = np.repeat(1 / np.array(net["masses"], real)[:, None], 3, axis=1)  # zero where a point is held
+        for point, axis in net["held"]:
+            self.w[point, axis] = 0
+        self.pull = np.where(self.w > 0, np.array(net["gravity"], real) + self.w * np.asarray(forces, real), 0)
+        self.batches = list(batches(net["constraints"], real))
+
+    def substep(self):
+        """Points fly under the forces, the sweeps correct where they are, and velocities follow from where they have come."""
+        old = self.x.copy()
+        self.v += self.h * self.pull
+        self.x += self.h * self.v
+        multipliers = [np.zeros_like(rest) for _, _, rest in self.batches]
+        for _ in range(self.iterations):
+            self.sweep(multipliers)
+        self.v = (self.x - old) / self.h
+
+    def sweep(self, multipliers):
+        """Corrects each constraint once. Gauss-Seidel sees what the constraints before have moved, Jacobi the positions before the sweep."""
+        x = self.x.copy() if self.is_jacobi else self.x
+        for (points, compliance, rest), multiplier in zip(self.batches, multipliers):
+            places, w = x[points], self.w[points]
+            g = gradients(places)
+            # Each measure grows in proportion to the first edge in its direction.
+            violation = np.sum(g[:, 1] * (places[:, 1] - places[:, 0]), axis=1) - rest
+            softness = compliance / self.h**2
+            stiffness = np.sum(w * g * g, axis=(1, 2))
+            # The step of Newton's method for violation + softness * multiplier = 0.
+            step = -self.relaxation * (violation + softness * multiplier) / (stiffness + softness)
+            multiplier += step
+            self.x[points] += w * g * step[:, None, None]
+
+    def energy(self, v):
+        """The kinetic energy of the velocities v."""
+        free = self.w > 0
+        return float(np.sum(np.square(v[free], dtype=float) / self.w[free])) / 2
+
+    def settle(self):
+        """Comes to rest: whenever the kinetic energy has passed a maximum, the body is stopped. Returns the number of substeps."""
+        highest = last = 0.0
+        # Motions by a few last digits of each position in a substep.
+        least = self.energy(4 * np.finfo(self.x.dtype).eps * self.x / self.h)
+        for n in range(1, 2_000_001):
+            self.substep()
+            energy = self.energy(self.v)
+            if not np.isfinite(energy):
+                break
+            if energy <= last:
+                if last <= 1e-18 * highest + least:
+                    return n
+                self.v[:] = 0
+                energy = 0.0
+            last, highest = energy, max(highest, energy)
+        sys.exit("the body has not come to rest")
+
+
+def batches(constraints, real):
+    """Points, compliances and rest measures of constraints that follow each other, have as many points each, and share none."""
+    batch, used = [], set()
+    for own in [*constraints, None]:
+        if batch and (own is None or len(own["points"]) != len(batch[0]["points"]) or not used.isdisjoint(own["points"])):
+            yield [np.array([c["points"] for c in batch]), *(np.array([c[key] for c in batch], real) for key in ["compliance", "rest"])]
+            batch, used = [], set()
+        if own:
+            batch.append(own)
+            used.update(own["points"])
+
+
+def misuse(words):
+    print(words, file=sys.stderr)
+    sys.exit(2)
+
+
+def read(path):
+    try:
+        net = json.loads(path.read_text())
+    except (OSError, ValueError) as error:
+        misuse(f"network.json: expected a file that can be read, found \"{error}\"; springfit export --to xpbd writes this file")
+    found = [net.get(key) for key in ["format", "version"]] if isinstance(net, dict) else []
+    if found != ["springfit xpbd", 1]:
+        misuse(f"network.json: expected the format springfit xpbd of version 1, found {found}; springfit export --to xpbd writes this file")
+    return net
+
+
+def forces_of(net, name):
+    """The forces [points, 3], N, of the load of this name."""
+    forces = np.zeros((len(net["points"]), 3))
+    if name is None:
+        return forces
+    load = next((load for load in net["loads"] if load["name"] == name), None)
+    if load is None:
+        names = " ".join(f'"{load["name"]}"' for load in net["loads"]) or "none"
+        misuse(f'--load: expected one of {names}, found "{name}"')
+    if load["moves"]:
+        misuse('--load: expected a load of forces, found "one that moves points: move them in the engine"')
+    for point, *force in load["forces"]:
+        forces[point] += force
+    return forces
+
+
+def setting_of(net, given):
+    """The setting, and where other numbers are asked for than the constants were fitted for."""
+    own = dict(net["setting"])
+    own.update({key: value for key in ["step", "substeps", "iterations"] if (value := getattr(given, key)) is not None})
+    if not (own["step"] > 0 and own["substeps"] > 0 and own["iterations"] > 0):
+        misuse("--step, --substeps, --iterations: expected numbers above zero")
+    if net["fitted"] and own != net["setting"]:
+        words = [[of["substeps"], of["iterations"], f"{of['step']:g} s"] for of in [net["setting"], own]]
+        fitted, now = ("{} substeps of {} iterations in {}".format(*words[0]), "{} of {} in {}".format(*words[1]))
+        print(f"Beware: the constants were fitted for {fitted}; with {now} the body has another stiffness", file=sys.stderr)
+    return own
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("seconds", nargs="?", type=float, default=2.0)
+    for name, kind in [("--rest", str), ("--load", str), ("--step", float), ("--substeps", int), ("--iterations", int)]:
+        arguments.add_argument(name, type=kind)
+    arguments.add_argument("--single", action="store_true")
+    given = arguments.parse_args()
+    net = read(Path(__file__).parent / "network.json")
+    body = Body(net, setting_of(net, given), forces_of(net, given.load), np.float32 if given.single else np.float64)
+    start, steps = body.x.copy(), round(given.seconds / body.h)
+    if given.rest:
+        steps = body.settle()
+    else:
+        for _ in range(steps):
+            body.substep()
+    moved = np.linalg.norm(body.x - start, axis=1)
+    if not np.all(np.isfinite(moved)):
+        sys.exit("the motion has diverged")
+    if given.rest:
+        np.savetxt(given.rest, body.x, fmt="%.17g")
+    words = "at rest after " if given.rest else ""
+    print(f"{len(start)} points, {words}{steps * body.h:.4g} s: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}")
