@@ -108,7 +108,7 @@ fn settings() -> Vec<Setting> {
         usual,
         Setting { substeps: 3, iterations: 4, relaxation: 1.3, ..usual },
         Setting { order: Order::Given, iterations: 2, ..usual },
-        Setting { order: Order::ContentsFirst, step: 0.01, substeps: 2, ..usual },
+        Setting { order: Order::Jolt, step: 0.01, substeps: 2, ..usual },
         Setting { sweep: Sweep::Jacobi, relaxation: 0.1, iterations: 3, ..usual },
     ]
 }
@@ -225,7 +225,7 @@ fn constraints_are_in_the_order_of_a_sweep() {
         match setting.order {
             Order::Colours => assert!(colours.is_sorted()),
             Order::Given => assert!(is_content.is_sorted()),
-            Order::ContentsFirst => assert!(is_content.iter().rev().is_sorted()),
+            Order::Jolt => assert!(is_content.iter().rev().is_sorted()),
         }
     }
 }

@@ -142,6 +142,15 @@ impl<'a> Job<'a> {
         held.map(|held| held.point).collect()
     }
 
+    /// Whether each point is held along all axes.
+    pub fn held(&self) -> Vec<bool> {
+        let mut held = vec![false; self.masses.len()];
+        for own in &self.network.held {
+            held[own.point] = own.displacement.iter().all(Option::is_some);
+        }
+        held
+    }
+
     /// The coordinates of a point, with z = 0 in the plane.
     pub fn place(&self, p: usize) -> [f64; 3] {
         let x = &self.network.points[p];

@@ -2,7 +2,7 @@
 
 use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::{Engine, Setting, colours, sweep_order};
+use crate::engine::{Engine, Sequence, Setting, colours};
 use crate::error::Result;
 use crate::report::{ContentPart, LengthPart, NetworkRecord, NodalLoadRecord};
 use serde::Serialize;
@@ -110,8 +110,10 @@ fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
     let count = all.len();
     all.extend(job.parts.contents.iter().map(Constraint::of_content).filter(Constraint::has_force));
     let sets: Vec<&[usize]> = all.iter().map(|constraint| &constraint.points[..]).collect();
-    let points = job.masses.len();
-    let (order, colours) = (sweep_order(setting.order, &sets, count, points), colours(&sets, points));
+    let (points, held): (Vec<f64>, Vec<bool>) = (job.network.points.concat(), job.held());
+    let sequence =
+        Sequence { springs: &sets, lengths: count, points: &points, dimension: job.network.dimension, held: &held };
+    let (order, colours) = (sequence.order(setting.order), colours(&sets, held.len()));
     all.iter_mut().zip(colours).for_each(|(constraint, colour)| constraint.colour = colour);
     let mut all: Vec<Option<Constraint>> = all.into_iter().map(Some).collect();
     order.into_iter().filter_map(|constraint| all[constraint].take()).collect()

@@ -286,7 +286,7 @@ impl Truncated {
         for _ in 0..VIBRATIONS {
             let inertia: Vec<f64> =
                 shape.iter().zip(&self.inverse).map(|(x, w)| if *w > 0.0 { x / w } else { 0.0 }).collect();
-            let Some(next) = self.solve(&[inertia.clone()], false)?.pop() else { return Ok(None) };
+            let Some(next) = self.solve(std::slice::from_ref(&inertia), false)?.pop() else { return Ok(None) };
             let (own, both): (f64, f64) = inertia
                 .iter()
                 .zip(&next)
