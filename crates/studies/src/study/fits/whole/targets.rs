@@ -86,6 +86,9 @@ impl WholeBody<'_> {
             }
         };
         let noise = self.weigh(recipe, &mut trained)?;
+        if recipe.engine.is_some() && noise.is_none() {
+            weigh_by_compliance(&mut trained);
+        }
         let frequencies = self.frequencies(recipe.frequencies)?;
         Ok(Wanted { trained, validation, frequencies, noise })
     }
@@ -119,9 +122,10 @@ impl WholeBody<'_> {
     }
 
     /// The settings of the optimisation. Among varied loads are some that a network of the mesh cannot follow, such as tractions in
-    /// balance near the parts that are held; they would decide a fit in which all count alike.
+    /// balance near the parts that are held; they would decide a fit in which all count alike. For an engine loads are weighed by their
+    /// compliance.
     pub(super) fn settings(&self, recipe: &WholeRecipe) -> WholeSettings {
-        let weighing = match recipe.loads.made && self.is_varied(recipe) {
+        let weighing = match recipe.loads.made && self.is_varied(recipe) && recipe.engine.is_none() {
             true => Weighing::ByError,
             false => Weighing::Equal,
         };
@@ -262,6 +266,22 @@ impl WholeBody<'_> {
             Target { is_firm, is_made: true, ..Target::new(name, held.support.clone(), load.forces.clone(), u.clone()) }
         };
         Ok(answers.iter().map(target).collect())
+    }
+}
+
+/// Weighs loads by their compliance `‖ū‖/‖f‖` over its median. Tractions in balance near what is held hardly move the body, and what an
+/// engine leaves of them does not matter where loads of the same strength bend or twist it.
+fn weigh_by_compliance(trained: &mut [Target]) {
+    let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let compliance = |target: &Target| norm(&target.displacement) / norm(&target.forces);
+    let mut sorted: Vec<f64> = trained.iter().map(compliance).filter(|c| c.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(median) = sorted.get(sorted.len() / 2).copied().filter(|median| *median > 0.0) else { return };
+    for target in trained {
+        let weight = compliance(target) / median;
+        if weight > 0.0 && weight.is_finite() {
+            target.weight = weight;
+        }
     }
 }
 
