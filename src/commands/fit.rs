@@ -77,6 +77,9 @@ pub struct Fit {
     format: OutputOptions,
 }
 
+/// Points of a body whose longest step is found a second time, to be told.
+const FEW: usize = 20_000;
+
 const EXAMPLES: &str = "\
 Examples:
   springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
@@ -184,6 +187,11 @@ impl Fit {
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         self.format.print_outcome(terminal, &outcome)?;
+        let network = NetworkFile::of(&outcome, &outcome.fits[0]);
+        // A larger body has it in its file alone.
+        if let Some(step) = network.longest_step().filter(|_| outcome.mesh.point_count() <= FEW) {
+            terminal.note(&format!("the longest stable explicit step is {step:.3e} s, without damping"));
+        }
         if outcome.masses.is_some() && format.ending == "csv" {
             terminal.note("a CSV file has no masses and no places of points; .json and .npz have both");
         }

@@ -6,7 +6,7 @@ use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::study::{Controls, Forecast, run_with, stages};
+use springfit::study::{Controls, Forecast, engine_limits, run_with, stages};
 use springfit::{check_apart, report};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -58,7 +58,8 @@ impl Run {
             scene.output_mut().time = true;
         }
         if self.explain {
-            let forecast = Forecast::of(&scene)?;
+            let mut forecast = Forecast::of(&scene)?;
+            forecast.engines = engine_limits(&scene)?;
             let text = || report::forecast_text(scene.title(), &forecast, &stages(&scene));
             self.output.print_plan(terminal, &forecast, text)?;
             return Ok(ExitCode::SUCCESS);

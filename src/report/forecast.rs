@@ -20,6 +20,9 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
             Some(why) => format!("left out  {}: {why}\n", printable(stage)),
         };
     }
+    for limit in &forecast.engines {
+        text += &format!("engine    {}: {}\n", printable(&limit.fit), limit.words());
+    }
     let columns = vec![Column::words("expected"), Column::numbers("time"), Column::numbers("memory")];
     let words = |value: Option<f64>, words: fn(f64) -> String| value.map_or("unknown".into(), words);
     let mut rows: Vec<Vec<String>> = forecast

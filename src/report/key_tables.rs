@@ -68,7 +68,12 @@ fn found<'a>(root: &'a Value, separator: &str) -> (Vec<Found<'a>>, BTreeMap<&'a 
             for reference in references(property, root) {
                 let definition = resolved(reference, root);
                 let own = name_of(definition).unwrap_or(key);
-                let path = if title.is_empty() { own.to_string() } else { format!("{title}{separator}{own}") };
+                // What all alternatives have belongs to the table above them.
+                let above = match title.rsplit_once(' ') {
+                    Some((above, _)) if taken.contains_key(key) => above,
+                    _ => &title,
+                };
+                let path = if above.is_empty() { own.to_string() } else { format!("{above}{separator}{own}") };
                 if let std::collections::btree_map::Entry::Vacant(entry) = titles.entry(reference) {
                     ahead.push_back((definition, entry.insert(path).clone(), Map::new()));
                 }

@@ -8,8 +8,9 @@ const FAR: f64 = 0.1;
 /// A warning of a network that is far from the material.
 pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {
     let (name, m) = (&fit.fit.name, &fit.as_material);
-    // A guess that the fit was to replace.
-    if fit.kind.whole().is_some_and(|whole| whole.is_measured) {
+    // A guess that the fit was to replace; or constants that are stiffer than the material by what an engine leaves.
+    let is_for_engine = fit.engine.is_some();
+    if is_for_engine || fit.kind.whole().is_some_and(|whole| whole.is_measured) {
         return None;
     }
     // Of springs that belong to no cell nothing is known where membranes or rods are beside them.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 37] = [
+const LAYERS: [&str; 38] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -38,6 +38,7 @@ const LAYERS: [&str; 37] = [
     "solve",
     "positive",
     "dynamics",
+    "engine",
     "whole",
     "network",
     "analysis",

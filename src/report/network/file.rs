@@ -136,6 +136,11 @@ impl<'a> NetworkFile<'a> {
         }
     }
 
+    /// The longest step of symplectic Euler with the support of the run, s; `None` where nothing moves or resists.
+    pub fn longest_step(&self) -> Option<f64> {
+        self.largest_step(&self.support())
+    }
+
     /// `2/ω` of the fastest motion at rest, s; `None` where a point that moves has no mass, or nothing resists.
     pub fn largest_step(&self, support: &Support) -> Option<f64> {
         let masses = self.masses()?;

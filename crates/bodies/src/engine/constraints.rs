@@ -2,10 +2,10 @@
 //!
 //! Theory: page *Networks in engines* of the book.
 
+use super::history::History;
 use super::lanes::{Block, LANES, Lanes, add};
 use super::order::Sequence;
 use super::setting::{Engine, Setting, Sweep};
-use super::truncated::History;
 use crate::model::{Network, SpringGradients};
 
 /// The springs as constraints, in the order of a sweep.

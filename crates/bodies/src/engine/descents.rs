@@ -2,10 +2,10 @@
 //!
 //! Theory: page *Networks in engines* of the book.
 
+use super::history::History;
 use super::lanes::{Block, LANES, Lanes, add};
 use super::order::point_order;
 use super::setting::{Engine, Setting};
-use super::truncated::History;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Network, SpringGradients};
 use nalgebra::DMatrix;

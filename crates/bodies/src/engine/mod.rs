@@ -21,6 +21,8 @@
 //! | `constraints` | XPBD: sweeps over the springs, and their derivatives |
 //! | `descents` | VBD: sweeps over the points, and their derivatives |
 //! | `truncated` | the effective stiffness: products, solutions, sensitivities |
+//! | `model`, `growth` | what engines hold, and whether sweeps end |
+//! | `vibration` | natural vibrations in an engine |
 //! | `krylov` | solutions by GMRES, in memory that grows like the springs |
 //! | `ceiling` | the largest stiffness that a setting reaches |
 //!
@@ -29,14 +31,20 @@
 mod ceiling;
 mod constraints;
 mod descents;
+mod growth;
+mod history;
 mod jolt;
 mod krylov;
 mod lanes;
+mod model;
 mod order;
 mod setting;
 mod truncated;
+mod vibration;
 
 pub use ceiling::{Ceiling, least_substeps};
+pub use model::TruncatedModel;
 pub use order::{Sequence, colours};
 pub use setting::{Engine, Order, Precision, Setting, Sweep};
-pub use truncated::{Truncated, TruncatedModel, Vibration};
+pub use truncated::Truncated;
+pub use vibration::Vibration;

@@ -4,28 +4,19 @@
 
 use super::constraints::Constraints;
 use super::descents::Descents;
+use super::growth::check_growth;
+use super::history::History;
 use super::krylov::gmres;
 use super::lanes::{Block, LANES, block, vectors};
+use super::model::TruncatedModel;
 use super::setting::{Setting, Sweep};
+use super::vibration::Vibration;
 use crate::error::{Error, ErrorKind, Result};
-use crate::model::{LengthSpring, MeasureSpring, Network, Support};
+use crate::model::Support;
 use crate::solve::Equations;
-use crate::springs::{Measure, distance};
-use crate::stiffness::gather;
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use rayon::prelude::*;
-
-/// A network on its points with masses, as an engine holds it.
-#[derive(Debug, Clone, Copy)]
-pub struct TruncatedModel<'a> {
-    /// The springs.
-    pub network: &'a Network,
-    /// The positions at rest, `[points × dimension]`, m.
-    pub points: &'a [f64],
-    /// The masses, `[points]`, kg.
-    pub masses: &'a [f64],
-}
 
 /// The effective stiffness `K_N` of a network under a support, with what solves its equations.
 #[derive(Debug)]
@@ -52,17 +43,6 @@ enum Solver {
     Dense(PartialPivLu<f64>),
     /// GMRES with the factor of the stiffness of the network.
     Krylov(Equations),
-}
-
-/// What the changes of a product `K_N y` depend on.
-#[derive(Debug)]
-pub(super) struct History {
-    /// What the sweeps begin with.
-    pub start: Block,
-    /// What each sweep has found, by springs or by points.
-    pub sweeps: Vec<Block>,
-    /// The number of degrees of freedom.
-    pub size: usize,
 }
 
 /// Up to this number of free degrees of freedom the whole matrix costs less than iterations for the loads of a fit; it has 128 MB.
@@ -102,7 +82,7 @@ impl Truncated {
         setting: &Setting,
         (is_rigid, dense): (bool, usize),
     ) -> Result<Option<Truncated>> {
-        check(model, support)?;
+        model.check(support)?;
         let TruncatedModel { network, points, masses } = model;
         let d = network.dimension;
         let inverse: Vec<f64> =
@@ -311,110 +291,3 @@ impl Truncated {
 
 /// Inverse iterations at most.
 const VIBRATIONS: usize = 500;
-
-/// A natural vibration in an engine.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Vibration {
-    /// The frequency, Hz.
-    pub frequency: f64,
-    /// The damping ratio.
-    pub damping: f64,
-}
-
-impl Vibration {
-    /// That with the eigenvalue κ of `W K_N`, 1/s², in substeps of h; `None` if it is no vibration.
-    fn of(kappa: f64, substep: f64) -> Option<Vibration> {
-        let square = 1.0 - substep * substep * kappa;
-        if !(square > 0.0) {
-            return None;
-        }
-        let factor = square.sqrt();
-        let angle = factor.acos();
-        Some(Vibration { frequency: angle / (substep * std::f64::consts::TAU), damping: -factor.ln() / angle })
-    }
-}
-
-/// Checks that engines hold the springs, and that each free point has a mass.
-fn check(model: TruncatedModel, support: &Support) -> Result<()> {
-    let TruncatedModel { network, points, masses } = model;
-    let unsupported = |key: &str, expected: &str, found: String| {
-        Err(Error::expected(key, expected, found).of_kind(ErrorKind::Unsupported))
-    };
-    let d = network.dimension;
-    if let Some(p) = (0..masses.len()).find(|&p| !(masses[p] > 0.0)) {
-        return unsupported("masses", "masses above zero", format!("{:e} kg at point {p}", masses[p]));
-    }
-    if masses.len() * d != points.len() {
-        return unsupported("masses", "a mass of each point", format!("{}", masses.len()));
-    }
-    if support.prescribed.iter().flatten().any(|u| *u != 0.0) {
-        return unsupported("engine", "supports at rest", "a support that moves".into());
-    }
-    if let Some((_, constant)) = network.springs().find(|(_, constant)| !(*constant > 0.0)) {
-        let expected = "springs with constants above zero, which engines hold; nonnegative = true has no negative ones";
-        return unsupported("engine", expected, format!("{constant:e}"));
-    }
-    let is_simplex = |spring: &MeasureSpring| {
-        matches!(spring.measure, Measure::Content(_) | Measure::Span(_)) && spring.points.len() == d + 1
-    };
-    if network.others.iter().any(|spring| spring.law.is_some() || !is_simplex(spring)) {
-        let expected = "springs on lengths and on the contents of simplices with linear forces, which engines hold";
-        return unsupported("engine", expected, "others".into());
-    }
-    let slack = |rest: f64, now: f64| (rest / now - 1.0).abs() <= SLACK;
-    let length = |spring: &LengthSpring| {
-        let [a, b] = spring.points.map(|p| &points[p * d..(p + 1) * d]);
-        distance(a, b)
-    };
-    let is_slack = network.lengths.iter().all(|spring| slack(spring.rest, length(spring)))
-        && network.others.iter().all(|spring| {
-            let mut own = vec![0.0; spring.points.len() * d];
-            gather(points, d, &spring.points, &mut own);
-            slack(spring.rest, spring.measure.value(&own, d))
-        });
-    if !is_slack {
-        let expected =
-            "springs that do not pull at rest: an engine that ends its sweeps early leaves their sum out of balance";
-        return unsupported("engine", expected, "rest measures that differ from those of the mesh".into());
-    }
-    Ok(())
-}
-
-/// Checks that sweeps which take all springs at once come to an end.
-fn check_growth(
-    constraints: &Constraints,
-    (network, points, inverse): (&Network, &[f64], &[f64]),
-    setting: &Setting,
-) -> Result<()> {
-    let growth = constraints.growth(points.len());
-    if growth < STABLE {
-        return Ok(());
-    }
-    let is_stable = |substeps: usize| {
-        let setting = setting.with_substeps(substeps);
-        Constraints::new(network, (points, inverse), &setting, false).growth(points.len()) < STABLE
-    };
-    let (mut below, mut above) = (setting.substeps, 2 * setting.substeps);
-    while !is_stable(above) && above < LARGE {
-        (below, above) = (above, 2 * above);
-    }
-    while above - below > 1 + below / 100 {
-        let middle = (below + above) / 2;
-        if is_stable(middle) { above = middle } else { below = middle }
-    }
-    let expected = format!(
-        "{above} substeps or more of a step of {:.3e} s: sweeps that take all springs at once grow without bound with longer ones",
-        setting.step
-    );
-    let found = format!("{}", setting.substeps);
-    let advice = "; there they are nearly converged, so that constants for this engine are those of other fits";
-    Err(Error::expected("engine.substeps", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
-}
-
-/// The largest eigenvalue of `ω D⁻¹ A` with which sweeps end, below 2 by what the power method may miss.
-const STABLE: f64 = 1.98;
-/// More substeps than are looked for.
-const LARGE: usize = 1 << 24;
-
-/// A relative difference of a measure from its rest value that is rounding.
-const SLACK: f64 = 1e-9;

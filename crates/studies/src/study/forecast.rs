@@ -2,7 +2,7 @@
 
 use super::body::{Case, LargeBody, load_cases};
 use super::cost::{COMPARISONS, REFINEMENTS, entries};
-use super::fits::{NamedFit, Reference};
+use super::fits::{EngineLimit, NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
 use crate::analysis::tensor::most_samples;
@@ -63,6 +63,8 @@ pub struct Forecast {
     pub unknowns: usize,
     /// The stages in the order in which they run.
     pub stages: Vec<ExpectedStage>,
+    /// How stiff a body the engine of each fit that has one can hold, where this was asked for.
+    pub engines: Vec<EngineLimit>,
     /// The entries of the stiffness of the largest network, of its lower triangle.
     #[serde(skip)]
     network_entries: f64,
@@ -155,6 +157,7 @@ impl Forecast {
             cells: mesh.blocks.iter().map(|block| (block.element.name.clone(), block.cells().len())).collect(),
             unknowns: mesh.points.len(),
             stages,
+            engines: Vec::new(),
             network_entries,
         }
     }
@@ -197,6 +200,8 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
     if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
         return None;
     }
+    // Factors for an engine are found from the whole body.
+    let fit = &fit.clone().in_engine(None);
     let total = mesh.cell_count();
     let reference = Reference { large, ..Reference::default() };
     let mut count = 8;

@@ -60,13 +60,13 @@ pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, EngineErrors, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe, ExactRecord, FamilyOutcome,
-    FitEntry, FitFunctions, FitKind, Fitted, FittedKind, FittedLoad, FittedMasses, ForceRecipe, FoundModuli,
-    FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError, ModelFrequencies, ModuliSearch, NamedFit,
-    PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome, SampledRecipe, SampledRecord, ScaledLoad,
-    SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start, StartOutcome, StiffnessOutcome, StiffnessRecord,
-    SupportFrequencies, SupportPart, Task, TensionOutcome, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe,
-    WholeRecord, WorseLoad, WorstShape, fit_schema,
+    CellMethod, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe, ExactRecord,
+    FamilyOutcome, FitEntry, FitFunctions, FitKind, Fitted, FittedKind, FittedLoad, FittedMasses, ForceRecipe,
+    FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError, ModelFrequencies,
+    ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome, SampledRecipe,
+    SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start, StartOutcome,
+    StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome, ValidationRecipe,
+    WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape, fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
@@ -83,7 +83,7 @@ pub use paper::{
     write_experiments,
 };
 pub use progress::{Event, Progress};
-pub use run::{run, run_with};
+pub use run::{engine_limits, run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, LoadCase, LoadKind, MeshInput,
     MotionRecipe, Output, Part, PrescribedMotion, ReferenceEntry, Scene, Setting, check_unit, load_elements,

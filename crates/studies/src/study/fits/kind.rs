@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::fit::CellFits;
 use crate::material::{Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
+use crate::model::Network;
 use crate::springs::Springs;
 use crate::study::body::LargeBody;
 use crate::study::progress::{Event, Progress};
@@ -32,6 +33,14 @@ pub trait FitKind {
     /// # Errors
     /// The elements have no such spring group, or the body lacks what the fit requires.
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted>;
+
+    /// The network from which a fit for an engine starts.
+    ///
+    /// # Errors
+    /// Those of [`FitKind::fit`].
+    fn start(&self, task: &Task, progress: &mut Progress) -> Result<Network> {
+        Ok(self.fit(task, progress)?.network)
+    }
 
     /// The sampled fit that it is, or from which it starts.
     fn sampled(&self) -> Option<&SampledRecipe> {

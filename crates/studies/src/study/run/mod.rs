@@ -5,6 +5,7 @@ mod posed;
 mod solved;
 
 use super::checkpoint::Controls;
+use super::fits::EngineLimit;
 use super::outcome::Outcome;
 use super::progress::{Event, Progress};
 use super::scene::Scene;
@@ -27,6 +28,23 @@ pub fn run(scene: &Scene, progress: &mut Progress) -> Result<Outcome> {
 /// An input is wrong, as for [`run`]; or the checkpoint is wrong or cannot be written.
 pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> Result<Outcome> {
     in_stages(scene, controls, progress).map_err(|e| scene.with_line(e))
+}
+
+/// How stiff a body each engine of the scene can hold, one entry for each fit with an `engine`. The finite elements are solved for it.
+///
+/// # Errors
+/// Those of a run before its fits, and those of the springs from which fits start.
+pub fn engine_limits(scene: &Scene) -> Result<Vec<EngineLimit>> {
+    if scene.fits().iter().all(|fit| fit.engine.is_none()) {
+        return Ok(Vec::new());
+    }
+    let silent = &mut |_: Event| ();
+    let mut limits = || {
+        let controls = Controls::default();
+        let mut posed = Posed::of(scene, &controls, silent)?;
+        Solved::of(&mut posed, silent)?.engine_limits(&posed, &controls, silent)
+    };
+    limits().map_err(|e| scene.with_line(e))
 }
 
 /// The stages of a run, one after the other.

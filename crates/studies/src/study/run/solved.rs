@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
 use crate::study::body::{FineBody, LargeBody, LinearBody, seconds_of_body, seconds_of_network};
 use crate::study::checkpoint::Controls;
-use crate::study::fits::{Finer, NamedFit, Reference, WholeBody};
+use crate::study::fits::{EngineLimit, Finer, NamedFit, Reference, Task, WholeBody};
 use crate::study::fitting::{fit_mesh, fit_without_errors};
 use crate::study::masses::{PointMasses, point_masses};
 use crate::study::outcome::FitOutcome;
@@ -70,6 +70,30 @@ impl Solved {
             fits.push(fitted.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
         }
         Ok(fits)
+    }
+
+    /// How stiff a body the engine of each fit that has one can hold.
+    ///
+    /// # Errors
+    /// The engine does not hold the springs; the error names the fit.
+    pub fn engine_limits(
+        &self,
+        posed: &Posed,
+        controls: &Controls,
+        progress: &mut Progress,
+    ) -> Result<Vec<EngineLimit>> {
+        let Posed { scene, mesh, material, .. } = posed;
+        let whole = self.whole(posed, controls);
+        let held = posed.held_points();
+        let reference = &Reference { large: self.large.as_ref(), whole: Some(&whole), held: &held };
+        let mut limits = Vec::new();
+        for (fit, setting) in scene.fits().iter().filter_map(|fit| Some((fit, fit.engine?))) {
+            let task = Task { name: &fit.name, springs: fit.springs.as_deref(), mesh, material, reference };
+            let network = fit.recipe.kind().start(&task, progress);
+            let limit = network.and_then(|network| whole.engine_limit((&fit.name, setting), &network, progress));
+            limits.push(limit.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
+        }
+        Ok(limits)
     }
 
     /// Measures what the fits, their networks and the finite elements cost, if the scene asks for it: on one thread, in turns. Returns

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The settings; what is absent is as the engine does it unless it is told otherwise.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, expecting = "a table such as { method = \"xpbd\", substeps = 10 }")]
 pub struct EngineEntry {
     /// The method is extended position-based dynamics (`xpbd`) or vertex block descent (`vbd`), or that of an engine by its name.
     #[schemars(with = "String", extend("enum" = Engine::NAMES))]

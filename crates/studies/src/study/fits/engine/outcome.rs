@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 pub struct EngineOutcome {
     /// The constants are for these settings.
     pub setting: Setting,
-    /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd`, which reaches any
+    /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd` and of `jacobi`, which reaches any
     /// stiffness.
     pub ceiling: Option<f64>,
-    /// The body can be represented with this number of substeps or more; it is null of `vbd`.
+    /// The largest Young's modulus is this in Pa; it is null where `ceiling` is, and of a body with several.
+    pub modulus: Option<f64>,
+    /// The body can be represented with this number of substeps or more; it is null of `vbd` and of `jacobi`.
     pub least_substeps: Option<usize>,
     /// The constants of springs on lengths, and those of springs on contents, were multiplied by these factors; the list is null of a
     /// whole-object fit, which finds each constant.
@@ -26,6 +28,43 @@ pub struct EngineOutcome {
     pub vibration: Option<EngineVibration>,
     /// The finite elements have this first frequency in Hz, with the masses of the network.
     pub frequency: f64,
+}
+
+/// How stiff a body an engine can hold, before a fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EngineLimit {
+    /// The fit has this name.
+    pub fit: String,
+    /// The constants are for these settings.
+    pub setting: Setting,
+    /// Springs without compliance make a body with this many times the modulus of this one; `None` of a method without such a limit.
+    pub ceiling: Option<f64>,
+    /// The largest Young's modulus in Pa; `None` without a limit, and of a body with several moduli.
+    pub modulus: Option<f64>,
+    /// The body can be represented with this number of substeps or more.
+    pub least_substeps: Option<usize>,
+}
+
+impl EngineLimit {
+    /// The limit in a sentence.
+    pub fn words(&self) -> String {
+        reach(self.ceiling, self.least_substeps, self.modulus)
+            .unwrap_or_else(|| "the method reaches any stiffness".to_string())
+    }
+}
+
+/// What springs without compliance reach, in words; `None` of a method that reaches any stiffness.
+fn reach(ceiling: Option<f64>, least_substeps: Option<usize>, modulus: Option<f64>) -> Option<String> {
+    let ceiling = ceiling?;
+    let modulus = modulus.map_or(String::new(), |modulus| format!(", {modulus:.3e} Pa"));
+    let least = match least_substeps {
+        Some(1) => "1 substep is the least".into(),
+        Some(least) => format!("{least} substeps are the least"),
+        None => "thousands of substeps are not enough".to_string(),
+    };
+    Some(format!(
+        "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine{modulus}; {least} for this body"
+    ))
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` under some loads.
@@ -76,12 +115,7 @@ impl EngineOutcome {
             percent(self.after),
             percent(self.before)
         )];
-        if let (Some(ceiling), Some(substeps)) = (self.ceiling, self.least_substeps) {
-            notes.push(format!(
-                "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine; {substeps} substeps are the least for \
-                 this body"
-            ));
-        }
+        notes.extend(reach(self.ceiling, self.least_substeps, self.modulus));
         if let Some(factors) = &self.factors {
             let kinds = ["lengths", "contents"].iter().zip(factors);
             let words: Vec<String> = kinds.map(|(kind, factor)| format!("on {kind} by {factor:.4}")).collect();

@@ -9,7 +9,7 @@ use crate::engine::{Ceiling, Setting, Truncated, TruncatedModel, least_substeps}
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
 use crate::model::Network;
-use crate::study::fits::engine::{EngineErrors, EngineOutcome};
+use crate::study::fits::engine::{EngineErrors, EngineLimit, EngineOutcome};
 use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::progress::{Event, Progress};
 use crate::whole::{DescentMethod, Displacements, GaussNewton, Object, Target, Unknowns, Wanted, fit_whole};
@@ -54,7 +54,49 @@ impl WholeBody<'_> {
     ///
     /// # Errors
     /// The body is above the ceiling, or the engine does not hold its springs.
-    pub(super) fn check_ceiling(
+    fn check_ceiling(
+        &self,
+        setting: &Setting,
+        network: &Network,
+        targets: &[Target],
+    ) -> Result<(Option<f64>, Option<usize>)> {
+        let (ceiling, least) = self.ceiling(setting, network, targets)?;
+        match ceiling {
+            Some(factor) if factor < 1.0 => {
+                let words = least.map_or("thousands of substeps".into(), |least| format!("at least {least} substeps"));
+                let expected = format!("{words} for a body of this stiffness, mass and size");
+                let found = format!(
+                    "{}, with which springs without compliance reach {factor:.3} of its modulus",
+                    setting.substeps
+                );
+                Err(Error::expected("engine.substeps", expected, found).of_kind(ErrorKind::Infeasible))
+            }
+            _ => Ok((ceiling, least)),
+        }
+    }
+
+    /// The limit of the engine for a network of these springs, under the loads that are made for a fit.
+    ///
+    /// # Errors
+    /// The engine does not hold the springs.
+    pub(in crate::study) fn engine_limit(
+        &self,
+        (name, setting): (&str, Setting),
+        network: &Network,
+        progress: &mut Progress,
+    ) -> Result<EngineLimit> {
+        let wanted = self.wanted(&few(setting), &mut None, progress)?;
+        let (ceiling, least_substeps) = self.ceiling(&setting, network, &wanted.trained)?;
+        let modulus = self.largest_modulus(ceiling);
+        Ok(EngineLimit { fit: name.into(), setting, ceiling, modulus, least_substeps })
+    }
+
+    /// The largest Young's modulus, Pa, if the body has one modulus.
+    fn largest_modulus(&self, ceiling: Option<f64>) -> Option<f64> {
+        Some(ceiling? * self.material.uniform()?.young())
+    }
+
+    fn ceiling(
         &self,
         setting: &Setting,
         network: &Network,
@@ -65,13 +107,6 @@ impl WholeBody<'_> {
             targets.iter().map(|target| (&target.support, &target.forces[..], &target.displacement[..])).collect();
         let Some(Ceiling { factor }) = Ceiling::of(model, &loads, setting)? else { return Ok((None, None)) };
         let least = least_substeps(model, &loads, setting)?;
-        if factor < 1.0 {
-            let words = least.map_or("thousands of substeps".into(), |least| format!("at least {least} substeps"));
-            let expected = format!("{words} for a body of this stiffness, mass and size");
-            let found =
-                format!("{}, with which springs without compliance reach {factor:.3} of its modulus", setting.substeps);
-            return Err(Error::expected("engine.substeps", expected, found).of_kind(ErrorKind::Infeasible));
-        }
         Ok((Some(factor), least))
     }
 
@@ -119,6 +154,7 @@ impl WholeBody<'_> {
         Ok(EngineOutcome {
             setting,
             ceiling,
+            modulus: self.largest_modulus(ceiling),
             least_substeps,
             factors,
             before: EngineErrors::of(&before).ok_or_else(unknown)?,

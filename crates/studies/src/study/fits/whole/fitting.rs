@@ -61,6 +61,12 @@ impl FitKind for WholeRecipe {
         Ok(Fitted { cells, springs, network, seconds, seconds_assembly, kind })
     }
 
+    fn start(&self, task: &Task, progress: &mut Progress) -> Result<Network> {
+        let mut cells = self.begin(task, progress)?;
+        raise_idle(&mut cells);
+        Ok(Network::assemble(task.mesh, &cells))
+    }
+
     fn sampled(&self) -> Option<&SampledRecipe> {
         match &self.start {
             Start::Sampled(recipe) => Some(recipe),

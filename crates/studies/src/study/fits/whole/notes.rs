@@ -109,7 +109,8 @@ impl WholeOutcome {
     /// What limits a fit that leaves large errors: the springs, or the loads that have chosen ρ.
     fn capacity(&self) -> Option<String> {
         let left = self.largest_left();
-        if !(left > CAPACITY) || self.is_exact {
+        // What an engine leaves is told with its setting.
+        if !(left > CAPACITY) || self.is_exact || self.is_for_engine {
             return None;
         }
         let least = self.curve.iter().filter_map(|stage| Some((stage.trained?, stage.regularization)));
@@ -119,10 +120,6 @@ impl WholeOutcome {
                  does not want it",
                 100.0 * left,
                 100.0 * error
-            )),
-            _ if self.is_for_engine => Some(format!(
-                "errors of up to {:.0} % are left: what this engine leaves, more substeps or springs on volumes as well may mend",
-                100.0 * left
             )),
             _ => Some(format!(
                 "errors of up to {:.0} % are left: springs with the rest lengths of the mesh cannot do better here; start = \"exact\" has \
