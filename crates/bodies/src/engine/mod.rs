@@ -37,6 +37,6 @@ mod setting;
 mod truncated;
 
 pub use ceiling::{Ceiling, least_substeps};
-pub use order::{Sequence, colours};
+pub use order::{Sequence, colours, point_colours};
 pub use setting::{Engine, Order, Precision, Setting, Sweep};
 pub use truncated::{Truncated, TruncatedModel, Vibration};
