@@ -43,6 +43,7 @@ struct SoftBody<'a> {
     fitted: bool,
     setting: Setting,
     /// The order in which constraints were taken when the constants were fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<Sweep>,
     points: Vec<[f64; 3]>,
     masses: Vec<f64>,
