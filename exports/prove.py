@@ -33,7 +33,7 @@ CASES = [
     ("newton", "classical", 0.2),
     ("newton", "classical-and-volume", 0.2),
     ("lammps", "classical", 1e-5),
-    ("jolt", "classical", 6.0),
+    ("jolt", "classical", 5.0),
     ("jolt", "classical-and-volume", 10.0),
     ("xpbd", "classical", 0.1),
     ("xpbd", "classical-and-volume", 0.1),
