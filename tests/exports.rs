@@ -1,5 +1,6 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
+use springfit::engine::{Engine, Setting};
 use springfit::error::ErrorKind;
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
 use springfit::model::Elastic;
@@ -342,6 +343,71 @@ fn jolt_has_no_edge_without_force() {
     assert_eq!(body["edges"].as_array().unwrap().len(), count - 2);
 }
 
+/// Constants that belong to a setting go with it, in Jolt with the order of a sweep; others move at many substeps.
+#[test]
+fn jolt_has_the_setting_of_the_fit() {
+    let network = networks(SCENE).remove("classical").unwrap();
+    let body = |engine: Option<Setting>| -> serde_json::Value {
+        let network = NetworkRecord { engine, ..network.clone() };
+        serde_json::from_slice(&texts("jolt", &network)["network.json"]).unwrap()
+    };
+    let own = body(Some(Setting { step: 0.01, ..Setting::usual(Engine::Jolt).with_substeps(7) }));
+    assert_eq!(
+        (&own["fitted"], &own["setting"]["substeps"], &own["setting"]["step"]),
+        (&true.into(), &7.into(), &0.01.into())
+    );
+    let edges = own["edges"].as_array().unwrap().len();
+    let mut order: Vec<u64> = own["sweep"]["edges"].as_array().unwrap().iter().map(|i| i.as_u64().unwrap()).collect();
+    assert!(!order.is_sorted(), "Jolt has an order of its own");
+    order.sort_unstable();
+    assert_eq!(order, (0..edges as u64).collect::<Vec<_>>());
+    let usual = body(None);
+    assert_eq!((&usual["fitted"], &usual["setting"]["substeps"]), (&false.into(), &50.into()));
+    assert!(usual["sweep"].is_null());
+}
+
+/// In Newton's VBD points of a colour move at once: two ends of a spring differ. Its other arrays stay as they are.
+#[test]
+fn newton_has_the_setting_and_the_colours_of_the_fit() {
+    let network = networks(SCENE).remove("classical").unwrap();
+    let bytes = |engine: Option<Setting>| {
+        texts("newton", &NetworkRecord { engine, ..network.clone() }).remove("network.npz").unwrap()
+    };
+    let names = |bytes: &[u8]| -> Vec<String> {
+        let archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+        archive.file_names().map(|name| name.unwrap().into_owned()).collect()
+    };
+    let usual = names(&bytes(None));
+    let setting = |engine| Setting { iterations: 3, step: 0.02, ..Setting::usual(engine) };
+    let [vbd, xpbd] = [Engine::NewtonVbd, Engine::NewtonXpbd].map(|engine| bytes(Some(setting(engine))));
+    for (bytes, more) in [(&vbd, 6), (&xpbd, 5)] {
+        assert!(usual.iter().all(|name| names(bytes).contains(name)) && names(bytes).len() == usual.len() + more);
+        assert_eq!((wholes(bytes, "iterations"), wholes(bytes, "substeps")), (vec![3], vec![10]));
+        assert_eq!(reals(bytes, "step"), [0.02]);
+    }
+    assert_eq!((reals(&vbd, "relaxation"), reals(&xpbd, "relaxation")), (vec![1.0], vec![0.9]));
+    let colours = wholes(&vbd, "colours");
+    assert_eq!(colours.len(), network.points.len());
+    for spring in &network.springs {
+        assert_ne!(colours[spring.points[0]], colours[spring.points[1]], "{spring:?}");
+    }
+    let mut damped = NetworkRecord { engine: Some(setting(Engine::NewtonVbd)), ..network.clone() };
+    damped.springs[0].damper = 1.0;
+    let told = target_named("newton").unwrap().left_out(&damped).join("; ");
+    assert!(told.contains("1 dampers of springs are left out"), "{told}");
+}
+
+/// What an engine does not have is refused by the key of the setting.
+#[test]
+fn settings_that_an_engine_lacks_are_refused() {
+    for (engine, target) in [(Engine::Jolt, "jolt"), (Engine::NewtonVbd, "newton")] {
+        let engine = Some(Setting { relaxation: 1.5, ..Setting::usual(engine) });
+        let network = NetworkRecord { engine, ..networks(SCENE).remove("classical").unwrap() };
+        let error = target_named(target).unwrap().files(&network, None).err().unwrap();
+        assert_eq!(error.key(), Some("engine.relaxation"), "{error}");
+    }
+}
+
 /// The header and the bytes of an array in a file of NumPy.
 fn array(archive: &[u8], name: &str) -> (String, Vec<u8>) {
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(archive)).unwrap();
@@ -480,7 +546,7 @@ fn scripts_begin_with_what_is_told() {
     }
     let network = &networks(&text)["classical"];
     let jolt = target_named("jolt").unwrap();
-    assert!(jolt.at_rest(network, None).unwrap().is_empty(), "it has no loads");
+    assert!(target_named("lammps").unwrap().at_rest(network, None).unwrap().is_empty(), "it has no loads");
     let files = with_warnings(jolt.files(network, None).unwrap(), &["one".into(), "two".into()]);
     let starts = |name: &str, start: &str| {
         files.iter().any(|(own, content)| {

@@ -8,13 +8,14 @@ import warp as wp
 version = newton.__version__
 # Step in s and iterations. A step of VBD starts from where the points would fly, and what its iterations leave of that is there at rest too.
 # XPBD runs away with steps of 0.5 ms and more.
-ITERATED = {"VBD 1 ms": (1e-3, 20), "VBD 2 ms": (2e-3, 20), "XPBD 0.2 ms": (2e-4, 2)}
+ITERATED = {"VBD 1 ms": (1e-3, 20), "VBD 2 ms": (2e-3, 20), "VBD 10 substeps": (1 / 600, 10), "XPBD 0.2 ms": (2e-4, 2)}
 
 
 class Body:
     def __init__(self, script, solver, told, damping):
         builder = script.build(told)
-        if solver.startswith("VBD"):
+        # Networks that are fitted for VBD have colours of their own.
+        if solver.startswith("VBD") and not builder.particle_color_groups:
             builder.color()
         self.model = builder.finalize()
         if solver == "SemiImplicit":

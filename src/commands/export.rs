@@ -73,9 +73,14 @@ impl Export {
             let names: Vec<String> = network.loads.iter().map(|load| format!("\"{}\"", load.name)).collect();
             let names = names.join(", ");
             terminal.note(&match (target.has_loads, target.command.is_empty()) {
-                (true, false) => format!(
-                    "the loads {names} act where the script is given --load NAME, and are arrays of network.npz"
-                ),
+                (true, false) => {
+                    let are = if files.iter().any(|(name, _)| *name == "network.json") {
+                        "in network.json"
+                    } else {
+                        "arrays of network.npz"
+                    };
+                    format!("the loads {names} act where the script is given --load NAME, and are {are}")
+                }
                 (true, true) => format!("the loads {names} are arrays of network.npz"),
                 (false, _) => format!("the loads {names} are not exported: supports and gravity are"),
             });

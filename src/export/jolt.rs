@@ -1,8 +1,9 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
 use super::job::{Holds, Job, Tension};
+use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::Engine;
+use crate::engine::{Engine, Sequence, Setting};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
@@ -25,16 +26,25 @@ pub const TARGET: Target = Target {
     title: "a Node script for Jolt: edge and volume constraints of a soft body",
     command: "npm install jolt-physics@1.1.0 && node run.mjs",
     leaves_out: |network| [dampers(network), mass_damping(network)].concat(),
-    has_loads: false,
+    has_loads: true,
     divides: true,
     engines: &[Engine::Jolt],
     stands: Stands::Network,
     write,
 };
 
+/// Substeps of a step for constants of equations that are solved: fewer make the body much softer.
+const SUBSTEPS: usize = 50;
+
 /// What the script reads.
 #[derive(Serialize)]
-struct SoftBody {
+struct SoftBody<'a> {
+    /// Whether the constants belong to the setting.
+    fitted: bool,
+    setting: Setting,
+    /// The order in which constraints were taken when the constants were fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<Sweep>,
     points: Vec<[f64; 3]>,
     masses: Vec<f64>,
     held: Vec<usize>,
@@ -44,6 +54,27 @@ struct SoftBody {
     /// Corners, constant, rest volume.
     volumes: Vec<(Vec<usize>, f64, f64)>,
     surface: Vec<[usize; 3]>,
+    loads: Vec<Load<'a>>,
+}
+
+/// The places of edges and volumes in their lists, in the order of a sweep.
+#[derive(Serialize)]
+struct Sweep {
+    edges: Vec<usize>,
+    volumes: Vec<usize>,
+}
+
+impl Sweep {
+    fn of(body: &SoftBody, job: &Job, setting: &Setting) -> Sweep {
+        let edges = body.edges.iter().map(|(a, b, ..)| vec![*a, *b]);
+        let springs: Vec<Vec<usize>> = edges.chain(body.volumes.iter().map(|(corners, ..)| corners.clone())).collect();
+        let (points, held, lengths) = (job.network.points.concat(), job.held(), body.edges.len());
+        let dimension = job.network.dimension;
+        let sequence = Sequence { springs: &springs, lengths, points: &points, dimension, held: &held };
+        let (edges, volumes): (Vec<usize>, Vec<usize>) =
+            sequence.order(setting.order).into_iter().partition(|&spring| spring < lengths);
+        Sweep { edges, volumes: volumes.into_iter().map(|spring| spring - lengths).collect() }
+    }
 }
 
 /// Whether the inverse of the constant is a number of single precision. A spring that is softer has no force.
@@ -53,7 +84,11 @@ fn has_compliance(constant: f64) -> bool {
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "Jolt", &HOLDS)?;
-    let body = SoftBody {
+    let setting = network.engine.unwrap_or(Setting::usual(Engine::Jolt).with_substeps(SUBSTEPS));
+    let mut body = SoftBody {
+        fitted: network.engine.is_some(),
+        setting,
+        sweep: None,
         points: (0..network.points.len()).map(|p| job.place(p)).collect(),
         masses: job.masses.to_vec(),
         held: job.held_along(0),
@@ -67,7 +102,11 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
             .collect(),
         volumes: job.parts.contents.iter().map(|s| (s.points.to_vec(), s.constant, s.rest)).collect(),
         surface: network.surface.clone(),
+        loads: Load::all(network),
     };
+    if body.fitted {
+        body.sweep = Some(Sweep::of(&body, &job, &setting));
+    }
     let text = serde_json::to_vec(&body).expect("keys are text");
     Ok(vec![
         ("network.json", Content::Bytes(text)),

@@ -10,6 +10,7 @@ mod extent;
 mod job;
 mod jolt;
 mod lammps;
+mod loads;
 mod mujoco;
 mod newton;
 mod npz;

@@ -4,7 +4,7 @@ use super::extent::check_parts;
 use super::job::{Job, spatial};
 use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, content_dampers};
 use crate::error::Result;
-use crate::report::{NetworkRecord, Parts, network_npz};
+use crate::report::{ArrayFile, NetworkRecord, Parts, network_npz, network_npz_with};
 use std::io::Cursor;
 
 /// What this program holds, and how a network is written for it.
@@ -32,9 +32,17 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
 
 /// The arrays of a job, with its gravity.
 pub fn arrays(job: &Job) -> Vec<u8> {
+    arrays_with(job, |_| Ok(()))
+}
+
+/// The arrays of a job, with its gravity, and those that `more` adds to them.
+pub fn arrays_with(
+    job: &Job,
+    more: impl FnOnce(&mut ArrayFile<&mut Cursor<Vec<u8>>>) -> std::io::Result<()>,
+) -> Vec<u8> {
     let d = job.network.dimension;
     let network = NetworkRecord { gravity: Some(job.gravity[..d].to_vec()), ..job.network.clone() };
     let mut bytes = Cursor::new(Vec::new());
-    network_npz(&network, &job.parts, &mut bytes).expect("a Vec grows");
+    network_npz_with(&network, &job.parts, &mut bytes, more).expect("a Vec grows");
     bytes.into_inner()
 }

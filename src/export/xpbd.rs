@@ -1,12 +1,12 @@
 //! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
 
 use super::job::{Holds, Job, Tension};
+use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Sequence, Setting, colours};
 use crate::error::Result;
-use crate::report::{ContentPart, LengthPart, NetworkRecord, NodalLoadRecord};
+use crate::report::{ContentPart, LengthPart, NetworkRecord};
 use serde::Serialize;
-use std::collections::HashMap;
 
 /// As in Jolt, constraints have compliances above zero and do not pull against each other at rest.
 const HOLDS: Holds = Holds {
@@ -56,15 +56,6 @@ struct Body<'a> {
     surface: &'a [[usize; 3]],
     loads: Vec<Load<'a>>,
     constraints: Vec<Constraint>,
-}
-
-#[derive(Serialize)]
-struct Load<'a> {
-    name: &'a str,
-    /// Whether it holds points in another way than the network, so that it is no load of forces.
-    moves: bool,
-    /// Points and their forces, N.
-    forces: Vec<(usize, f64, f64, f64)>,
 }
 
 #[derive(Serialize)]
@@ -119,22 +110,6 @@ fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
     order.into_iter().filter_map(|constraint| all[constraint].take()).collect()
 }
 
-/// The loads of the scene by name.
-fn loads(network: &NetworkRecord) -> Vec<Load<'_>> {
-    let usual: HashMap<usize, _> = network.held.iter().map(|held| (held.point, held)).collect();
-    let of = |x: &[f64], k: usize| x.get(k).copied().unwrap_or(0.0);
-    let load = |load: &NodalLoadRecord| {
-        let moves = load.held.iter().any(|held| usual.get(&held.point) != Some(&held));
-        let forces = load.forces.iter().map(|f| (f.point, of(&f.force, 0), of(&f.force, 1), of(&f.force, 2)));
-        (moves, forces.collect())
-    };
-    let named = |own| {
-        let (moves, forces) = load(own);
-        Load { name: &own.name, moves, forces }
-    };
-    network.loads.iter().map(named).collect()
-}
-
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "XPBD", &HOLDS)?;
     let setting = network.engine.unwrap_or(Setting::usual(Engine::Xpbd));
@@ -150,7 +125,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
             .flat_map(|axis| job.held_along(axis).into_iter().map(move |p| (p, axis)))
             .collect(),
         surface: &network.surface,
-        loads: loads(network),
+        loads: Load::all(network),
         constraints: constraints(&job, &setting),
     };
     let text = serde_json::to_vec(&body).expect("keys are text");

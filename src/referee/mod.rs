@@ -76,9 +76,14 @@ pub fn referee(options: &RefereeOptions, progress: &mut Progress) -> Result<Refe
     if engines.is_empty() {
         return Err(Error::new(format!("no engine is there; {}", record.not_run.join("; "))));
     }
+    let solvers = || engines.iter().flat_map(|engine| options.chosen(engine));
+    // Elements of an engine come with the export of the exact network.
+    let mut fits: Vec<&str> = solvers().flat_map(|solver| solver.networks).copied().chain(["exact"]).collect();
+    fits.sort_unstable();
+    fits.dedup();
     let mut done = 0;
     for &poisson in &options.poisson {
-        let bodies = standard_bodies(poisson, progress)?;
+        let bodies = standard_bodies(poisson, &fits, progress)?;
         record.young = bodies[0].moduli[0];
         let loads: usize = bodies.iter().map(|body| body.cases.len()).sum();
         let models = |engine: &'static Engine| options.chosen(engine).map(Solver::models).sum::<usize>();

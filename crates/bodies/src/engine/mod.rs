@@ -44,7 +44,7 @@ mod vibration;
 
 pub use ceiling::{Ceiling, least_substeps};
 pub use model::TruncatedModel;
-pub use order::{Sequence, colours};
+pub use order::{Sequence, colours, point_colours};
 pub use setting::{Engine, Order, Precision, Setting, Sweep};
 pub use truncated::Truncated;
 pub use vibration::Vibration;

@@ -59,17 +59,22 @@ impl<S: AsRef<[usize]>> Sequence<'_, S> {
     }
 }
 
+/// The colour of each point: two points that are in a spring together differ.
+pub fn point_colours<S: AsRef<[usize]>>(springs: &[S], points: usize) -> Vec<usize> {
+    // The sets of a point are the springs that it is in.
+    let mut of_point: Vec<Vec<usize>> = vec![Vec::new(); points];
+    for (s, spring) in springs.iter().enumerate() {
+        spring.as_ref().iter().for_each(|&p| of_point[p].push(s));
+    }
+    colours(&of_point, springs.len())
+}
+
 /// The points in the order of a sweep of vertex block descent. Points of a colour are in no spring together.
 pub(super) fn point_order<S: AsRef<[usize]>>(order: Order, springs: &[S], points: usize) -> Vec<usize> {
-    match order {
-        Order::Given | Order::Jolt => (0..points).collect(),
-        Order::Colours => {
-            // Two points of a spring must differ: the sets of a point are the springs that it is in.
-            let mut of_point: Vec<Vec<usize>> = vec![Vec::new(); points];
-            for (s, spring) in springs.iter().enumerate() {
-                spring.as_ref().iter().for_each(|&p| of_point[p].push(s));
-            }
-            by_colour(&of_point, springs.len())
-        }
+    let mut all: Vec<usize> = (0..points).collect();
+    if order == Order::Colours {
+        let colours = point_colours(springs, points);
+        all.sort_by_key(|&point| colours[point]);
     }
+    all
 }

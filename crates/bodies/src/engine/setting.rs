@@ -163,6 +163,10 @@ impl Setting {
                 let expected = "1: what Jolt calls iterations are substeps of one sweep";
                 Err(Error::expected("iterations", expected, self.iterations))
             }
+            Engine::Jolt | Engine::NewtonVbd if self.relaxation != usual.relaxation => {
+                let expected = format!("{}, as {} does", usual.relaxation, self.engine.name());
+                Err(Error::expected("relaxation", expected, self.relaxation))
+            }
             Engine::Jolt | Engine::NewtonXpbd | Engine::NewtonVbd => Ok(()),
         }
     }

@@ -19,7 +19,7 @@ pub use csv::{network_csv, write_points};
 pub use division::Division;
 pub use json::write_json;
 pub use lists::{CellList, ListedRecord, Lists, SpringList};
-pub use npz::{ArrayFile, network_npz, write_npz};
+pub use npz::{ArrayFile, network_npz, network_npz_with, write_npz};
 pub use part::Shard;
 pub use parts::{ContentPart, LengthPart, Parts};
 pub use reader::read_network;

@@ -35,8 +35,23 @@ use zip::write::SimpleFileOptions;
 /// # Errors
 /// The writer fails.
 pub fn network_npz(network: &NetworkRecord, parts: &Parts, to: impl Write + Seek) -> io::Result<()> {
+    network_npz_with(network, parts, to, |_| Ok(()))
+}
+
+/// Writes the arrays of [`network_npz`], and those that `more` adds to them.
+///
+/// # Errors
+/// The writer fails.
+pub fn network_npz_with<W: Write + Seek>(
+    network: &NetworkRecord,
+    parts: &Parts,
+    to: W,
+    more: impl FnOnce(&mut ArrayFile<W>) -> io::Result<()>,
+) -> io::Result<()> {
     let cells = || network.cells.iter().flat_map(|block| &block.points).map(Vec::as_slice);
-    arrays_of(network, cells, parts, to)
+    let mut file = arrays_of(network, cells, parts, to)?;
+    more(&mut file)?;
+    file.finish().map(drop)
 }
 
 /// Writes the arrays of [`network_npz`] from a record whose cells and springs, those of `mesh` and `network`, are made while they are written.
@@ -47,16 +62,16 @@ pub fn write_npz(path: &Path, record: &ListedRecord<'_>, mesh: &Mesh, network: &
     let parts = Parts::with_room(network).with_springs(record, record.springs.iter());
     let parts = parts.map_err(|e| e.in_file(path))?;
     let cells = || mesh.blocks.iter().flat_map(|block| block.cells());
-    write_seekable(path, |to| arrays_of(record, cells, &parts, to))
+    write_seekable(path, |to| arrays_of(record, cells, &parts, to)?.finish().map(drop))
 }
 
-/// Writes the arrays of [`network_npz`], with `cells` in place of those of the record.
-fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
+/// The arrays of [`network_npz`], with `cells` in place of those of the record.
+fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
     network: &NetworkRecord<S, C>,
     cells: impl Fn() -> I,
     parts: &Parts,
-    to: impl Write + Seek,
-) -> io::Result<()> {
+    to: W,
+) -> io::Result<ArrayFile<W>> {
     let d = network.dimension;
     let free = vec![[f64::NAN; 3]; network.points.len()];
     let held = network.held.iter().fold(free, |mut held, given| {
@@ -88,7 +103,7 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>>(
     file.real("gravity", &[3], spatial(gravity))?;
     file.real("damping", &[], [network.damping.mass])?;
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
-    file.finish().map(drop)
+    Ok(file)
 }
 
 /// The coordinates of a vector, with z = 0 in the plane.

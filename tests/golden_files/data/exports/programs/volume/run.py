@@ -5,10 +5,14 @@
     python run.py --rest F   comes to rest and writes the positions to the file F
     python run.py --load N   any of these under the load N of the scene as well
     python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
+    --step S, --substeps N, --iterations N   in place of the setting that the constants were fitted for
 
 What was converted: springs are springs, with their constants, rest lengths and dampers. A spring of constant K on the volume V of a
 tetrahedron is a tetrahedron without shear modulus (k_mu = 0): its rest pose is enlarged to the rest volume V0 of the spring, and
 k_lambda = K V0. Points that are held have no mass. The solver is explicit: its step is 0.5 of the longest stable one at rest.
+Constants that were fitted for a setting of SolverVBD or SolverXPBD are moved by that solver at that setting, without dampers, which would
+change where the body rests. VBD gets colours in which the ends of springs differ as well; XPBD leaves out tetrahedra without shear
+modulus, and gets a millionth of k_lambda.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -78,7 +82,9 @@ folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
 points, masses, springs, k, rest = (net[name] for name in ["points", "masses", "springs", "k", "rest"])
 volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", "rest_volume"])
-step = 0.5 * float(net["dt_max"])  # s
+fitted = {name: net[name].ravel()[0].item() for name in ["method", "step", "substeps", "iterations", "relaxation"] if name in net}
+setting = dict(fitted)  # empty where the constants are those of equations that are solved
+step = setting["step"] / setting["substeps"] if setting else 0.5 * float(net["dt_max"])  # s
 
 
 def build(material=None):
@@ -97,7 +103,7 @@ def build(material=None):
     builder.spring_indices.extend(springs.ravel().tolist())
     builder.spring_rest_length.extend(rest.tolist())
     builder.spring_stiffness.extend(k.tolist())
-    builder.spring_damping.extend(net["damper"].tolist())
+    builder.spring_damping.extend([0.0] * len(springs) if setting else net["damper"].tolist())
     builder.spring_control.extend([0.0] * len(springs))
     for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
         x = points[corners]
@@ -106,24 +112,39 @@ def build(material=None):
         builder.tet_indices.append(tuple(corners.tolist()))
         builder.tet_poses.append(np.linalg.inv(scale * edges).tolist())
         builder.tet_activations.append(0.0)
-        builder.tet_materials.append((0.0, constant * at_rest, 0.0))
+        shear = 1e-6 * constant * at_rest if setting.get("method") == "newton-xpbd" else 0.0
+        builder.tet_materials.append((shear, constant * at_rest, 0.0))
+    if "colours" in net:
+        colours = net["colours"]
+        builder.set_coloring([np.flatnonzero(colours == colour) for colour in range(colours.max() + 1)])
     return builder
 
 
+def solver_of(model, material=None):
+    """The solver, for a step of `step`: the one that the constants were fitted for, or the explicit one."""
+    solvers = newton.solvers
+    if material or not setting:
+        return solvers.SolverSemiImplicit(model)
+    if setting["method"] == "newton-vbd":
+        return solvers.SolverVBD(model, iterations=setting["iterations"])
+    return solvers.SolverXPBD(model, iterations=setting["iterations"], soft_body_relaxation=setting["relaxation"])
+
+
 class Motion:
-    """The body in motion under forces on its points, [points, 3], N, by the explicit solver."""
+    """The body in motion under forces on its points, [points, 3], N, by the solver of the network, elements by the explicit one."""
 
     def __init__(self, material=None, forces=None):
         self.forces = forces
+        self.step = 0.5 * float(net["dt_max"]) if material else step
         model = build(material).finalize()
-        self.solver, self.control = newton.solvers.SolverSemiImplicit(model), model.control()
+        self.solver, self.control = solver_of(model, material), model.control()
         self.now, self.after = model.state(), model.state()
 
     def advance(self):
         self.now.clear_forces()
         if self.forces is not None:
             self.now.particle_f.assign(self.forces)
-        self.solver.step(self.now, self.after, self.control, None, step)
+        self.solver.step(self.now, self.after, self.control, None, self.step)
         self.now, self.after = self.after, self.now
 
     def positions(self):
@@ -143,8 +164,39 @@ def come_to_rest(material=None, forces=None):
     return body.positions()
 
 
+def misuse(words):
+    print(words, file=sys.stderr)
+    sys.exit(2)
+
+
+def change_setting(arguments):
+    """Puts the numbers of --step, --substeps and --iterations into the setting, says so, and returns the other arguments."""
+    global step
+    for name, kind, expected in [("step", float, "a time in s"), ("substeps", int, "a whole number"), ("iterations", int, "a whole number")]:
+        if f"--{name}" not in arguments:
+            continue
+        if not setting:
+            misuse(f"--{name}: expected a network that is fitted for a solver of Newton, found one for equations that are solved; a fit with engine = {{ method = \"newton-vbd\" }} has such constants")
+        place = arguments.index(f"--{name}")
+        word = "".join(arguments[place + 1 : place + 2])
+        try:
+            value = kind(word)
+        except ValueError:
+            value = np.nan
+        if not 0 < value < np.inf:
+            misuse(f'--{name}: expected {expected} above zero, found "{word}"; the network is fitted for {fitted[name]:g}')
+        setting[name] = value
+        arguments = arguments[:place] + arguments[place + 2 :]
+    if setting != fitted:
+        words = [[of["substeps"], of["iterations"], f"{of['step']:g} s"] for of in [fitted, setting]]
+        first, now = ("{} substeps of {} iterations in {}".format(*words[0]), "{} of {} in {}".format(*words[1]))
+        print(f"Beware: the constants were fitted for {first}; with {now} the body has another stiffness", file=sys.stderr)
+        step = setting["step"] / setting["substeps"]
+    return arguments
+
+
 if __name__ == "__main__":
-    forces, given = taken(net, sys.argv[1:])
+    forces, given = taken(net, change_setting(sys.argv[1:]))
     if given[:1] == ["--rest"]:
         x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
         np.save(given[1], x)
