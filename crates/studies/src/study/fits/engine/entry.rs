@@ -30,9 +30,9 @@ pub struct EngineEntry {
     /// A correction is multiplied by this factor, above 0 and below 2.
     #[schemars(extend("x-default" = "1; 0.9 of `newton-xpbd`"))]
     relaxation: Option<f64>,
-    /// A sweep takes the springs, or the points of `vbd`, colour after colour (`colours`), as they are in the network (`given`), or springs on
-    /// contents before those on lengths (`contents-first`).
-    #[schemars(extend("enum" = Order::NAMES, "x-default" = "`\"colours\"`; `\"contents-first\"` of `jolt`"))]
+    /// A sweep takes the springs, or the points of `vbd`, colour after colour (`colours`), as they are in the network (`given`), or as Jolt
+    /// takes them (`jolt`): those on contents before those on lengths, and each from the held points outwards.
+    #[schemars(extend("enum" = Order::NAMES, "x-default" = "`\"colours\"`; `\"jolt\"` of `jolt`"))]
     order: Option<String>,
     /// The engine stores positions in these numbers. They decide nothing but a note, where substeps move points by less than their last digit.
     #[schemars(extend("enum" = Precision::NAMES, "default" = Precision::Single.name()))]
