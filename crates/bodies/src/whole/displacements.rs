@@ -201,7 +201,7 @@ impl<'a> Displacements<'a> {
             for ((&l, prediction), force) in group.iter().zip(&predictions).zip(&forces) {
                 displacements[l] = truncated.displacement(prediction, force);
             }
-            let (loads, factors) = (group.clone(), factors.clone());
+            let (truncated, loads, factors) = (Box::new(truncated), group.clone(), factors.clone());
             tangents.push(Tangent::Engine { truncated, loads, predictions, factors });
         }
         Ok(Some((displacements, tangents)))

@@ -18,7 +18,7 @@ pub(super) enum Tangent {
     },
     /// At rest in an engine that ends its sweeps early.
     Engine {
-        truncated: Truncated,
+        truncated: Box<Truncated>,
         loads: Vec<usize>,
         /// The prediction y of each load.
         predictions: Vec<Vec<f64>>,
