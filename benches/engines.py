@@ -5,17 +5,17 @@ has seen, with the constants as they are and fitted for the setting.
     python benches/engines.py --engine jolt                   in Jolt: needs node, and npm install jolt-physics@1.1.0 in --modules
     python benches/engines.py --engine newton-vbd             in Newton: needs pip install newton==1.8.0
     python benches/engines.py --bodies bar organ --seed 3     other bodies, other dimensions
-    python benches/engines.py --ceiling                       sweeps of a whole step at 40 and 60 % of the ceiling
+    python benches/engines.py --sweeps                        sweeps of a whole step at 40 and 60 % of the ceiling
 
 It needs numpy and scipy. The finite elements are written here a second time, so that they are no part of what is measured. Bodies are small and
 their dimensions come from the seed; tetrahedra are distorted. Constants are fitted to three supports, the fourth is in none. Loads are those
 of the table, of random strength over the surface on which they act, and small: geometry is another error.
 """
 import argparse
+import importlib.util
 import json
 import shutil
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
@@ -24,6 +24,7 @@ import scipy.sparse as sparse
 from scipy.sparse.linalg import eigsh, splu
 
 YOUNG, POISSON, DENSITY = 1e4, 0.3, 1000.0
+STIFFNESS = 1.0
 LONG = {"substeps": 150, "iterations": 10}
 KUHN = [(0, 1, 3, 7), (0, 1, 7, 5), (0, 5, 7, 4), (0, 3, 2, 7), (0, 6, 4, 7), (0, 2, 6, 7)]
 
@@ -81,7 +82,7 @@ class Body:
         mu, lam = YOUNG / (2 + 2 * POISSON), YOUNG * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
         dot = np.einsum("eak,ebk->eab", g, g)
         k = lam * np.einsum("eai,ebj->eaibj", g, g) + mu * np.einsum("eaj,ebi->eaibj", g, g) + mu * np.einsum("eab,ij->eaibj", dot, np.eye(3))
-        k *= self.volumes()[:, None, None, None, None]
+        k *= STIFFNESS * self.volumes()[:, None, None, None, None]
         dofs = (3 * self.tets[:, :, None] + np.arange(3)).reshape(-1, 12)
         rows, columns = np.repeat(dofs, 12, axis=1).ravel(), np.tile(dofs, (1, 12)).ravel()
         return sparse.csc_matrix((k.reshape(-1), (rows, columns)), shape=(self.x.size, self.x.size))
@@ -165,47 +166,98 @@ def rms(found, truth):
     return 100 * np.sqrt(np.mean(np.sum((found - truth) ** 2, axis=1))) / np.linalg.norm(truth, axis=1).max()
 
 
+OWN = {"method": "xpbd", "step": 1 / 60, "substeps": 10, "iterations": 1, "sweep": "gauss-seidel", "relaxation": 1.0, "order": "colours",
+       "precision": "single"}
+
+
+def exported(options, folder, network, setting):
+    """The folder of the scripts of a network, as if its constants were fitted for the setting."""
+    target = {"newton-vbd": "newton"}.get(setting["method"], setting["method"])
+    # What an earlier export wrote is changed here, and stays.
+    fresh = Path(tempfile.mkdtemp(prefix=f"{network}-", dir=folder))
+    path = fresh / "network.json"
+    path.write_text(json.dumps(dict(json.loads((folder / f"out/{network}.json").read_text()), engine=setting)))
+    out = fresh / target
+    command = [options.springfit, "export", str(path), "--to", target, "--gravity", "0 0 0", "--out", str(out)]
+    subprocess.run(command, check=True, capture_output=True)
+    return out
+
+
+def imported(path):
+    spec = importlib.util.spec_from_file_location("script", path)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    return script
+
+
 class Loop:
-    """The own loop: run.c of the export, with other held points, loads and settings."""
+    """The own loop: run.c of the export in double precision, with other held points, loads and substeps."""
 
-    engine = "xpbd"
+    size = 1e-3  # of the largest displacement, over the size of the body
 
-    def __init__(self, options, folder, body, network):
-        out = folder / f"engine-{network}"
-        subprocess.run([options.springfit, "export", f"out/{network}.json", "--to", self.engine, "--out", str(out)], cwd=folder, check=True,
-                       capture_output=True)
-        self.out, self.options = out, options
-        self.text = json.loads((out / "network.json").read_text())
-        subprocess.run(["cc", "-O2", "-o", "run", "run.c", "-lm"], cwd=out, check=True)
+    def __init__(self, options, folder, network, setting):
+        self.out, self.setting = exported(options, folder, network, setting), setting
+        self.text = json.loads((self.out / "network.json").read_text())
+        subprocess.run(["cc", "-O2", "-o", "run", "run.c", "-lm"], cwd=self.out, check=True)
 
-    def rest(self, held, loads, setting):
-        own = dict(self.text, gravity=[0, 0, 0], held=[[int(p), k] for p in np.flatnonzero(held) for k in range(3)])
-        own["setting"], own["fitted"] = dict(own["setting"], **setting), False
+    def of(self, held, setting):
+        points = [[int(p), k] for p in np.flatnonzero(held) for k in range(3)]
+        return dict(self.text, held=points, setting=dict(self.text["setting"], **setting), fitted=False)
+
+    def rest(self, held, loads, **setting):
+        own = self.of(held, setting)
         own["loads"] = [{"name": str(i), "moves": False, "forces": [[p, *map(float, f[p])] for p in range(len(f))]} for i, f in enumerate(loads)]
-        keys = ["format", "version", "fitted", "setting", "gravity", "points", "masses", "held", "surface", "loads", "constraints"]
-        (self.out / "network.json").write_text(json.dumps({key: own[key] for key in keys}))
-        found = []
+        (self.out / "network.json").write_text(json.dumps(own))
         for i in range(len(loads)):
             subprocess.run(["./run", "--rest", f"{i}.txt", "--load", str(i)], cwd=self.out, check=True, capture_output=True)
-            found.append(np.loadtxt(self.out / f"{i}.txt") - np.array(self.text["points"]))
-        return np.array(found)
+        return np.array([np.loadtxt(self.out / f"{i}.txt") for i in range(len(loads))]) - np.array(self.text["points"])
 
-    def frequency(self, held, shape, setting):
+    def frequency(self, held, shape):
         """The first frequency and its damping ratio, from the motion after a release from the first mode of the finite elements."""
-        sys.path.insert(0, str(self.out))
-        import importlib.util
-        spec = importlib.util.spec_from_file_location("loop", self.out / "run.py")
-        loop = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(loop)
-        own = dict(self.text, gravity=[0, 0, 0], held=[[int(p), k] for p in np.flatnonzero(held) for k in range(3)])
-        body = loop.Body(own, dict(own["setting"], **setting), np.zeros_like(shape), np.float64)
-        start, scale = body.x.copy(), 2e-4 * np.ptp(body.x) / np.abs(shape).max()
-        body.x += scale * shape
+        body = imported(self.out / "run.py").Body(own := self.of(held, {}), own["setting"], np.zeros_like(shape), np.float64)
+        start = body.x.copy()
+        body.x += 2e-4 * np.ptp(body.x) / np.abs(shape).max() * shape
         weights, seen = np.array(self.text["masses"])[:, None] * shape, []
         for _ in range(round(1.5 / body.h)):
             body.substep()
             seen.append(float(np.sum(weights * (body.x - start))))
         return vibration(np.array(seen), body.h)
+
+
+class Jolt:
+    """Jolt, by node. Half of the difference between a load and its opposite, because single precision needs loads that bend the body."""
+
+    size = 1e-2
+
+    def __init__(self, options, folder, network, setting):
+        self.out = exported(options, folder, network, setting)
+        self.text = json.loads((self.out / "network.json").read_text())
+        (self.out / "node_modules").symlink_to(Path(options.modules).resolve() / "node_modules")
+
+    def rest(self, held, loads):
+        own = dict(self.text, held=[int(p) for p in np.flatnonzero(held)])
+        both = [(f"{sign}{i}", sign * f) for i, f in enumerate(loads) for sign in (1, -1)]
+        own["loads"] = [{"name": name, "moves": False, "forces": [[p, *map(float, f[p])] for p in range(len(f))]} for name, f in both]
+        (self.out / "network.json").write_text(json.dumps(own))
+        for name, _ in both:
+            subprocess.run(["node", "run.mjs", "--rest", f"{name}.json", "--load", name], cwd=self.out, check=True, capture_output=True)
+        read = lambda name: np.array(json.loads((self.out / f"{name}.json").read_text()))
+        return np.array([(read(f"1{i}") - read(f"-1{i}")) / 2 for i in range(len(loads))])
+
+
+class Newton:
+    """The VBD solver of Newton, on the processor."""
+
+    size = 1e-3
+
+    def __init__(self, options, folder, network, setting):
+        self.script = imported(exported(options, folder, network, setting) / "run.py")
+        self.own = {key: self.script.net[key] for key in self.script.net.files}
+
+    def rest(self, held, loads):
+        self.script.net = dict(self.own, fixed=np.flatnonzero(held).astype(np.int32))
+        rest = [self.script.come_to_rest(None, np.where(held[:, None], 0, f).astype(np.float32)) for f in loads]
+        return np.array(rest) - self.own["points"]
 
 
 def vibration(seen, h):
@@ -219,19 +271,17 @@ def vibration(seen, h):
     return frequency, decay
 
 
-ENGINES = {"xpbd": Loop}
+ENGINES = {"xpbd": Loop, "jolt": Jolt, "newton-vbd": Newton}
 
 
-def measure(loop, body, supports, setting):
+def measure(loop, body, supports, **setting):
     """Errors by load over supports."""
     errors = {}
     for held in supports:
         loads = body.loads(held)
         truth = body.solve(held, list(loads.values()))
-        # Small: a thousandth of the body.
-        scale = 1e-3 * np.ptp(body.x) / np.linalg.norm(truth, axis=2).max(1)
-        forces = [f * s for f, s in zip(loads.values(), scale)]
-        found = loop.rest(held, forces, setting)
+        scale = loop.size * np.ptp(body.x) / np.linalg.norm(truth, axis=2).max(1)
+        found = loop.rest(held, [f * s for f, s in zip(loads.values(), scale)], **setting)
         for name, u, t, s in zip(loads, found, truth, scale):
             errors.setdefault(name, []).append(rms(u, t * s))
     return errors
@@ -248,42 +298,61 @@ def main():
     arguments.add_argument("--seed", type=int, default=2026)
     arguments.add_argument("--springfit", default=str(Path(__file__).parents[1] / "target/release/springfit"))
     arguments.add_argument("--modules", default=".", help="the folder with node_modules")
+    arguments.add_argument("--sweeps", action="store_true", help="one substep of many sweeps, at 40 and 60 %% of the ceiling")
     arguments.add_argument("--keep", help="a folder in which all files stay")
     options = arguments.parse_args()
-    print(f"{options.engine}, seed {options.seed}: mean % e_rms over loads that no fit has seen; trained and unseen supports")
-    print("body      springs  unfitted <= 3 %  setting     as it is       fitted   unseen  compression    f1 as it is  fitted  damping")
+    engine = ENGINES[options.engine]
+    print(f"{options.engine}, seed {options.seed}: mean % e_rms over loads that no fit has seen")
     for name in options.bodies:
         body = Body(name, options.seed)
-        folder = Path(options.keep or tempfile.mkdtemp()) / name
+        folder = Path(options.keep or tempfile.mkdtemp()).resolve() / name
         folder.mkdir(parents=True, exist_ok=True)
         body.write(folder / "body.msh")
-        seen = [body.groups[group] for group in ("left", "right", "below")]
-        unseen = [body.groups["front"]]
-        first = run(options.springfit, folder, scene(None))
-        plain = ENGINES[options.engine](options, folder, body, "as-it-is")
+        seen, unseen = [body.groups[group] for group in ("left", "right", "below")], [body.groups["front"]]
+        run(options.springfit, folder, scene(None))
+        own = Loop(options, folder, "as-it-is", OWN)
+        last = measure(own, body, seen, **LONG)
+        if options.sweeps:
+            at_share_of_ceiling(options, folder, body, own, seen)
+            continue
         # Where the constants as they are come within 3 %, or within a tenth of what they reach at all.
-        goal = max(3.0, 1.1 * mean(measure(plain, body, seen, LONG)))
-        count = 4
-        while mean(measure(plain, body, seen, {"substeps": count})) > goal and count < 400:
+        goal, count = max(3.0, 1.1 * mean(last)), 4
+        while mean(measure(own, body, seen, substeps=count)) > goal and count < 400:
             count = int(np.ceil(1.19 * count / 4)) * 4
-        quarter = count // 4
-        setting = f'{{ method = "{options.engine}", substeps = {quarter} }}'
-        run(options.springfit, folder, scene(setting))
-        fitted = ENGINES[options.engine](options, folder, body, "fitted")
-        at = {"substeps": quarter}
-        before, after, other = measure(plain, body, seen, at), measure(fitted, body, seen, at), measure(fitted, body, unseen, at)
-        true, shape = body.frequency(seen[0])
-        f_before, f_after = plain.frequency(seen[0], shape, at), fitted.frequency(seen[0], shape, at)
-        springs = first["fits"][0]["springs"]
-        print(f"{name:8}  {springs:7}  {count:8} ({goal:3.1f} %)  {quarter:7}  {mean(before):8.2f} %  {mean(after):8.2f} %  {mean(other):5.2f} %"
-              f"  {np.mean(after['compression']):8.2f} %    {100 * f_before[0] / true - 100:+8.1f} %  {100 * f_after[0] / true - 100:+5.1f} %  {f_after[1]:.3f}",
-              flush=True)
-        last = measure(plain, body, seen, LONG)
+        quarter = f"substeps = {count // 4}" if options.engine != "newton-vbd" else 'step = "1/240 s", substeps = 1, iterations = 5'
+        report = run(options.springfit, folder, scene(f'{{ method = "{options.engine}", {quarter} }}'))
+        setting = report["fits"][1]["engine"]["setting"]
+        plain, fitted = engine(options, folder, "as-it-is", setting), engine(options, folder, "fitted", setting)
+        before, after, other = measure(plain, body, seen), measure(fitted, body, seen), measure(fitted, body, unseen)
+        print(f"{name}: {report['fits'][0]['springs']} springs; own loop, as it is: {goal:.1f} % from {count} substeps on, {mean(last):.2f} % with all sweeps")
+        print(f"  {quarter}: as it is {mean(before):.2f} %, fitted {mean(after):.2f} %, on a support that no fit has seen {mean(other):.2f} %")
+        if options.engine == "xpbd":
+            true, shape = body.frequency(seen[0])
+            (f_before, _), (f_after, damping) = plain.frequency(seen[0], shape), fitted.frequency(seen[0], shape)
+            print(f"  first frequency: as it is {100 * f_before / true - 100:+.1f} %, fitted {100 * f_after / true - 100:+.1f} %, damping ratio {damping:.3f}")
         for load in after:
-            print(f"    {load:12} {np.mean(before[load]):8.2f} -> {np.mean(after[load]):6.2f}, unseen {other[load][0]:6.2f}; as it is with 800 "
-                  f"rest of all sweeps {np.mean(last[load]):6.2f}")
+            print(f"    {load:12} {np.mean(before[load]):7.2f} -> {np.mean(after[load]):6.2f} %, unseen support {other[load][0]:6.2f} %; as it is with all "
+                  f"sweeps {np.mean(last[load]):6.2f} %", flush=True)
         if not options.keep:
-            shutil.rmtree(folder)
+            shutil.rmtree(folder.parent)
+
+
+def at_share_of_ceiling(options, folder, body, own, seen):
+    """One substep of 1/60 s: 10 sweeps for a body at 40 % of the ceiling, 30 at 60 %."""
+    for iterations, share in [(10, 0.4), (30, 0.6)]:
+        setting = f'{{ method = "xpbd", substeps = 1, iterations = {iterations} }}'
+        low = run(options.springfit, folder, scene(setting, YOUNG / 1e3))["fits"][1]["engine"]
+        young = share * low["modulus"]
+        run(options.springfit, folder, scene(setting, young))
+        # The finite elements here have another modulus: their displacements are in proportion.
+        global STIFFNESS
+        STIFFNESS = young / YOUNG
+        told = dict(OWN, substeps=1, iterations=iterations)
+        before = measure(Loop(options, folder, "as-it-is", told), body, seen)
+        after = measure(Loop(options, folder, "fitted", told), body, seen)
+        STIFFNESS = 1.0
+        print(f"{body.name}: {iterations} sweeps of 1/60 s, E {young:.0f} Pa of {low['modulus']:.0f}: as it is {mean(before):.2f} %, fitted {mean(after):.2f} %",
+              flush=True)
 
 
 if __name__ == "__main__":

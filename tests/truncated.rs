@@ -344,7 +344,7 @@ fn wrong_settings_are_one_line() {
         ("{ method = \"xpbd\", step = \"60 Hz\" }", "engine.step: expected a time such as"),
         ("{ method = \"unity\" }", "engine.method: expected one of xpbd, vbd, jolt"),
         ("{ substeps = 3 }", "engine.method: expected one of xpbd, vbd, jolt"),
-        ("{ method = \"xpbd\", relaxation = 2 }", "engine.relaxation: expected a factor above 0 and below 2"),
+        ("{ method = \"xpbd\", relaxation = 2 }", "engine.relaxation: expected a factor of at least 0.001 and below 2"),
         ("{ method = \"vbd\", sweep = \"jacobi\" }", "engine.sweep: expected \"gauss-seidel\", as vbd does"),
         ("{ method = \"jolt\", iterations = 3 }", "engine.iterations: expected 1: what Jolt calls iterations"),
         ("{ method = \"xpbd\", order = \"rainbow\" }", "engine.order: expected one of colours, given, jolt"),

@@ -292,6 +292,11 @@ norm = "huber"
 loads = ["pull"]
 regularization = 0.01
 iterations = 3
+[[fit]]
+name = "four"
+objective = "offdiag"
+nonnegative = true
+engine = { method = "xpbd", step = 0.01, substeps = 4, iterations = 2, relaxation = 1.0 }
 [[fix]]
 group = "zmin"
 [[load]]

@@ -5,7 +5,8 @@ use super::lanes::{Block, LANES, Lanes, dots};
 /// Iterations at most. The preconditioned stiffness has few eigenvalues far from one, those of the slowest motions.
 const MOST: usize = 300;
 
-/// The solutions of `A x = b` with the preconditioner `P ≈ A⁻¹`, to the relative residual `tolerance`; `None` if they are not reached.
+/// The solutions of `A x = b` with the preconditioner `P ≈ A⁻¹`, to the relative residual `tolerance` or as far as 300 iterations lead, and
+/// the largest relative residual; `None` if the preconditioner fails.
 ///
 /// `x = P w` with `A P w = b`: `w` is the combination of `v_1, …, v_j`, an orthonormal basis of the Krylov space, with the least residual.
 pub(super) fn gmres(
@@ -13,7 +14,7 @@ pub(super) fn gmres(
     precondition: impl Fn(&Block) -> Option<Block>,
     b: &Block,
     tolerance: f64,
-) -> Option<Block> {
+) -> Option<(Block, f64)> {
     let size = b.len();
     let first = dots(b, b).map(f64::sqrt);
     let mut basis = vec![scaled(b, &first.map(reciprocal))];
@@ -24,9 +25,6 @@ pub(super) fn gmres(
         let is_done = |lane: usize| right[j][lane].abs() <= tolerance * first[lane];
         if (0..LANES).all(is_done) {
             break;
-        }
-        if j + 1 == MOST {
-            return None;
         }
         let mut next = apply(&precondition(&basis[j])?);
         let mut column = Vec::with_capacity(j + 2);
@@ -72,7 +70,9 @@ pub(super) fn gmres(
     for (v, weight) in basis.iter().zip(&weights) {
         w.iter_mut().zip(v).for_each(|(w, v)| (0..LANES).for_each(|lane| w[lane] += weight[lane] * v[lane]));
     }
-    precondition(&w)
+    let last = right.last().unwrap_or(&first);
+    let left = (0..LANES).map(|lane| last[lane].abs() * reciprocal(first[lane])).fold(0.0, f64::max);
+    Some((precondition(&w)?, left))
 }
 
 /// `1/x`, zero of zero.

@@ -91,6 +91,10 @@ pub struct Setting {
 
 /// The step of most games and of the engines' examples, s.
 const FRAME: f64 = 1.0 / 60.0;
+/// A longer step than any engine makes, s.
+const LONGEST: f64 = 1000.0;
+/// The least factor on a correction that moves anything.
+const LEAST_RELAXATION: f64 = 1e-3;
 /// More substeps than any engine makes.
 const MOST: usize = 100_000;
 
@@ -136,16 +140,17 @@ impl Setting {
     /// # Errors
     /// A value is out of range or another than that of the engine; the error has its key.
     pub fn check(&self) -> Result<()> {
-        if !(self.step > 0.0 && self.step.is_finite()) {
-            return Err(Error::expected("step", "a time above 0 s", self.step));
+        if !(self.step > 0.0 && self.step <= LONGEST) {
+            return Err(Error::expected("step", format!("a time above 0 s and at most {LONGEST} s"), self.step));
         }
         for (key, count) in [("substeps", self.substeps), ("iterations", self.iterations)] {
             if !(1..=MOST).contains(&count) {
                 return Err(Error::expected(key, format!("a whole number from 1 to {MOST}"), count));
             }
         }
-        if !(self.relaxation > 0.0 && self.relaxation < 2.0) {
-            return Err(Error::expected("relaxation", "a factor above 0 and below 2", self.relaxation));
+        if !(self.relaxation >= LEAST_RELAXATION && self.relaxation < 2.0) {
+            let expected = format!("a factor of at least {LEAST_RELAXATION} and below 2");
+            return Err(Error::expected("relaxation", expected, self.relaxation));
         }
         let usual = Setting::usual(self.engine);
         let own = |key: &str, expected: &str, found: &str| {

@@ -47,8 +47,10 @@ enum Solver {
 
 /// Up to this number of free degrees of freedom the whole matrix costs less than iterations for the loads of a fit; it has 128 MB.
 const DENSE: usize = 4000;
-/// The relative residual of iterations.
+/// The relative residual at which iterations end.
 const RESIDUAL: f64 = 1e-10;
+/// What they may leave where rounding ends them, in units of what was asked.
+const LEFT: f64 = 100.0;
 
 impl Truncated {
     /// The effective stiffness at a setting; `None` if some motion has no stiffness.
@@ -145,7 +147,7 @@ impl Truncated {
     }
 
     /// `K_N⁻¹ f` of each f, or `K_N⁻ᵀ f`, zero where points are held.
-    fn solve(&self, forces: &[Vec<f64>], is_transposed: bool) -> Result<Vec<Vec<f64>>> {
+    fn solve(&self, forces: &[Vec<f64>], is_transposed: bool, tolerance: f64) -> Result<Vec<Vec<f64>>> {
         let size = self.inverse.len();
         match &self.solver {
             Solver::Dense(factors) => {
@@ -166,7 +168,9 @@ impl Truncated {
                         Some(block(&found, size))
                     };
                     let apply = |v: &Block| if is_transposed { self.apply_transposed(v) } else { self.apply(v) };
-                    let found = gmres(apply, precondition, &right, RESIDUAL).ok_or_else(|| {
+                    let found = gmres(apply, precondition, &right, tolerance);
+                    let found = found.filter(|(_, left)| *left <= LEFT * tolerance);
+                    let (found, _) = found.ok_or_else(|| {
                         let problem =
                             "iterations for the body in the engine stall: its sweeps are far from the equilibrium";
                         Error::at("engine", problem).of_kind(ErrorKind::Limit)
@@ -184,7 +188,14 @@ impl Truncated {
     /// # Errors
     /// Iterations stall: kind `Limit`.
     pub fn predictions(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
-        self.solve(forces, false)
+        let found = self.solve(forces, false, RESIDUAL)?;
+        match found.iter().flatten().all(|y| y.is_finite()) {
+            true => Ok(found),
+            false => {
+                let problem = "where the body rests in the engine is no finite number";
+                Err(Error::at("engine", problem).of_kind(ErrorKind::Limit))
+            }
+        }
     }
 
     /// The displacements `u = y − h² W f`.
@@ -209,11 +220,12 @@ impl Truncated {
         }
     }
 
-    /// The changes of the displacements, `−K_N⁻¹ δK_N y`, where the logarithms of the constants change by `changes`, `[springs]`.
+    /// The changes of the displacements, `−K_N⁻¹ δK_N y`, where the logarithms of the constants change by `changes`, `[springs]`, within a relative
+    /// error where equations are solved by iterations.
     ///
     /// # Errors
     /// Iterations stall: kind `Limit`.
-    pub fn changes(&self, predictions: &[Vec<f64>], changes: &[f64]) -> Result<Vec<Vec<f64>>> {
+    pub fn changes(&self, predictions: &[Vec<f64>], changes: &[f64], tolerance: f64) -> Result<Vec<Vec<f64>>> {
         let one = |chunk: &[Vec<f64>]| {
             let history = self.trace(&block(chunk, self.inverse.len()));
             let mut change = self.freed(match &self.sweeps {
@@ -224,17 +236,17 @@ impl Truncated {
             vectors(&change, chunk.len())
         };
         let forces: Vec<Vec<Vec<f64>>> = predictions.par_chunks(LANES).map(one).collect();
-        self.solve(&forces.concat(), false)
+        self.solve(&forces.concat(), false, tolerance.max(RESIDUAL))
     }
 
     /// `Σ_l w_l·∂u_l/∂ ln k_s` of each spring, `[springs]`, for the weights w_l of the displacements of each load: with `K_Nᵀ z = w` it is
-    /// `−zᵀ (∂K_N/∂ ln k_s) y`.
+    /// `−zᵀ (∂K_N/∂ ln k_s) y`, within a relative error where equations are solved by iterations.
     ///
     /// # Errors
     /// Iterations stall: kind `Limit`.
-    pub fn gradient(&self, predictions: &[Vec<f64>], weights: &[Vec<f64>]) -> Result<Vec<f64>> {
+    pub fn gradient(&self, predictions: &[Vec<f64>], weights: &[Vec<f64>], tolerance: f64) -> Result<Vec<f64>> {
         let size = self.inverse.len();
-        let adjoints = self.solve(weights, true)?;
+        let adjoints = self.solve(weights, true, tolerance.max(RESIDUAL))?;
         let one = |(predictions, adjoints): (&[Vec<f64>], &[Vec<f64>])| {
             let (history, z) = (self.trace(&block(predictions, size)), block(adjoints, size));
             match &self.sweeps {
@@ -266,7 +278,9 @@ impl Truncated {
         for _ in 0..VIBRATIONS {
             let inertia: Vec<f64> =
                 shape.iter().zip(&self.inverse).map(|(x, w)| if *w > 0.0 { x / w } else { 0.0 }).collect();
-            let Some(next) = self.solve(std::slice::from_ref(&inertia), false)?.pop() else { return Ok(None) };
+            let Some(next) = self.solve(std::slice::from_ref(&inertia), false, RESIDUAL)?.pop() else {
+                return Ok(None);
+            };
             let (own, both): (f64, f64) = inertia
                 .iter()
                 .zip(&next)

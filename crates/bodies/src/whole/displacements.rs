@@ -197,7 +197,11 @@ impl<'a> Displacements<'a> {
             let support = &self.targets[group[0]].support;
             let Some(truncated) = Truncated::new(model, support, &setting)? else { return Ok(None) };
             let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
-            let predictions = truncated.predictions(&forces)?;
+            let predictions = match truncated.predictions(&forces) {
+                // The constants are too far from what the sweeps resolve.
+                Err(error) if error.kind() == ErrorKind::Limit => return Ok(None),
+                found => found?,
+            };
             for ((&l, prediction), force) in group.iter().zip(&predictions).zip(&forces) {
                 displacements[l] = truncated.displacement(prediction, force);
             }

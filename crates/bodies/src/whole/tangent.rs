@@ -46,7 +46,7 @@ impl Tangent {
             }
             Tangent::Engine { truncated, predictions, factors, .. } => {
                 let relative: Vec<f64> = change.iter().zip(factors).map(|(change, factor)| change / factor).collect();
-                truncated.changes(predictions, &relative)
+                truncated.changes(predictions, &relative, tolerance)
             }
         }
     }
@@ -68,7 +68,7 @@ impl Tangent {
                 Ok(total)
             }
             Tangent::Engine { truncated, predictions, factors, .. } => {
-                let relative = truncated.gradient(predictions, weights)?;
+                let relative = truncated.gradient(predictions, weights, tolerance)?;
                 Ok(relative.iter().zip(factors).map(|(slope, factor)| slope / factor).collect())
             }
         }

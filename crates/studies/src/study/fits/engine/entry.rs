@@ -14,7 +14,7 @@ pub struct EngineEntry {
     /// The method is extended position-based dynamics (`xpbd`) or vertex block descent (`vbd`), or that of an engine by its name.
     #[schemars(with = "String", extend("enum" = Engine::NAMES))]
     method: Option<String>,
-    /// The engine is asked for steps of this length in s, such as one frame.
+    /// The engine is asked for steps of this length in s, above 0 and at most 1000, such as one frame.
     #[serde(deserialize_with = "value::optional_time")]
     #[schemars(schema_with = "value::time_schema", extend("default" = "1/60 s"))]
     step: Option<f64>,
@@ -27,7 +27,7 @@ pub struct EngineEntry {
     /// A sweep of `xpbd` takes the springs one after the other (`gauss-seidel`) or all at once (`jacobi`).
     #[schemars(extend("enum" = Sweep::NAMES, "x-default" = "`\"gauss-seidel\"`; `\"jacobi\"` of `newton-xpbd`"))]
     sweep: Option<String>,
-    /// A correction is multiplied by this factor, above 0 and below 2.
+    /// A correction is multiplied by this factor, at least 0.001 and below 2.
     #[schemars(extend("x-default" = "1; 0.9 of `newton-xpbd`"))]
     relaxation: Option<f64>,
     /// A sweep takes the springs, or the points of `vbd`, colour after colour (`colours`), as they are in the network (`given`), or as Jolt
