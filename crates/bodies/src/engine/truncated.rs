@@ -12,7 +12,7 @@ use super::model::TruncatedModel;
 use super::setting::{Setting, Sweep};
 use super::vibration::Vibration;
 use crate::error::{Error, ErrorKind, Result};
-use crate::model::Support;
+use crate::model::{Network, SpringGradients, Support};
 use crate::solve::Equations;
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
@@ -90,7 +90,10 @@ impl Truncated {
         let inverse: Vec<f64> =
             (0..points.len()).map(|dof| if support.is_fixed(dof) { 0.0 } else { 1.0 / masses[dof / d] }).collect();
         let free: Vec<usize> = (0..points.len()).filter(|&dof| !support.is_fixed(dof)).collect();
-        let held = Equations::factored(&network.stiffness(points), support, points, d)?;
+        // Without compliance the constants decide nothing but how well the stiffness prepares the iterations: those that a sweep sees do best.
+        let seen = is_rigid.then(|| seen_by_sweeps(network, points, (&inverse, setting.substep())));
+        let stiffness = seen.as_ref().unwrap_or(network).stiffness(points);
+        let held = Equations::factored(&stiffness, support, points, d)?;
         let Some(equations) = held else { return Ok(None) };
         let sweeps = match setting.is_by_points() {
             true => Sweeps::Points(Descents::new(network, (points, &inverse), setting)?),
@@ -305,3 +308,14 @@ impl Truncated {
 
 /// Inverse iterations at most.
 const VIBRATIONS: usize = 500;
+
+/// The network with the constants `1/(h² g·W g)` at which the compliance of each spring is what its points have. Springs between held points stay.
+fn seen_by_sweeps(network: &Network, points: &[f64], (inverse, substep): (&[f64], f64)) -> Network {
+    let (gradients, _) = SpringGradients::at(network, points);
+    let factor = |((dofs, g), (_, constant)): ((&[usize], &[f64]), (&[usize], f64))| {
+        let moved: f64 = dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum();
+        if moved > 0.0 { 1.0 / (substep * substep * moved * constant) } else { 1.0 }
+    };
+    let factors: Vec<f64> = gradients.each().zip(network.springs()).map(factor).collect();
+    network.scaled(&factors)
+}

@@ -12,7 +12,7 @@ use crate::model::Network;
 use crate::study::fits::engine::{EngineErrors, EngineLimit, EngineOutcome};
 use crate::study::fits::fitted::{Fitted, FittedKind};
 use crate::study::progress::{Event, Progress};
-use crate::whole::{DescentMethod, Displacements, GaussNewton, Object, Target, Unknowns, Wanted, fit_whole};
+use crate::whole::{DescentMethod, GaussNewton, Object, Target, Unknowns, Wanted, fit_whole};
 
 impl WholeBody<'_> {
     /// The masses that an engine needs.
@@ -128,8 +128,8 @@ impl WholeBody<'_> {
         let (ceiling, least_substeps) = self.check_ceiling(&setting, &fitted.network, &wanted.trained)?;
         let (before, after, factors) = match &fitted.kind {
             FittedKind::Whole(outcome) => {
-                let before: Vec<f64> = outcome.fitted.iter().map(|load| load.before).collect();
-                (before, self.errors_in_engine(setting, &fitted.network, &wanted)?, None)
+                let before = outcome.fitted.iter().map(|load| load.before).collect();
+                (before, outcome.fitted.iter().map(|load| load.after).collect(), None)
             }
             _ => {
                 let unknowns = Unknowns::per_kind(&fitted.network);
@@ -150,6 +150,11 @@ impl WholeBody<'_> {
         };
         let model = TruncatedModel { network: &fitted.network, points: &self.mesh.points, masses };
         let truncated = Truncated::new(model, self.support, &setting)?.ok_or_else(unknown)?;
+        let vibration = match truncated.lowest_vibration() {
+            // The fit is not lost where its first vibration is not found.
+            Err(error) if error.kind() == ErrorKind::Limit => None,
+            found => found?.map(Into::into),
+        };
         let modes = self.equations("engine", self.support)?.lowest_modes(masses, self.mesh.dimension, 1)?;
         Ok(EngineOutcome {
             setting,
@@ -159,18 +164,9 @@ impl WholeBody<'_> {
             factors,
             before: EngineErrors::of(&before).ok_or_else(unknown)?,
             after: EngineErrors::of(&after).ok_or_else(unknown)?,
-            vibration: truncated.lowest_vibration()?.map(Into::into),
+            vibration,
             frequency: modes.squares.first().map_or(f64::NAN, |square| square.sqrt() / std::f64::consts::TAU),
         })
-    }
-
-    /// The errors of a network in an engine under the loads of a fit.
-    fn errors_in_engine(&self, setting: Setting, network: &Network, wanted: &Wanted) -> Result<Vec<f64>> {
-        let object = Object::new(network, &self.mesh.points, Unknowns::per_kind(network), None)?;
-        let object = object.in_engine(Some((setting, self.engine_masses()?)));
-        let problem = Displacements::new(&object, wanted.trained.iter().collect(), None)?;
-        let none = vec![0.0; object.unknowns().count()];
-        Ok(problem.errors(&none)?.map_or(Vec::new(), |errors| errors.loads))
     }
 }
 
