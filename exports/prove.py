@@ -304,7 +304,7 @@ def finite_elements(net):
 
 
 def rest_fitted(target, folder, load):
-    """Where a network rests at the setting of the files, without gravity; that another setting is told."""
+    """Returns where a network rests at the setting of its files, without gravity, and checks that a run at another setting prints a warning."""
     if target == "jolt":
         found, words = rest_of_node(folder, ["--load", load])[0], ["node", "run.mjs"]
     elif target == "newton":

@@ -373,7 +373,7 @@ fn wrong_settings_are_one_line() {
     }
 }
 
-/// A fit for an engine answers there like the body, where the constants as they were are far off, and the limit is told before a run.
+/// A network that is fitted for an engine has the displacements of the body there, and `--explain` prints the limit of the engine.
 #[test]
 fn a_fitted_network_answers_in_the_engine_like_the_body() {
     for method in ["xpbd", "jolt", "vbd", "newton-vbd"] {

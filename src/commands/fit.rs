@@ -187,9 +187,10 @@ impl Fit {
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         self.format.print_outcome(terminal, &outcome)?;
-        let network = NetworkFile::of(&outcome, &outcome.fits[0]);
         // A larger body has it in its file alone.
-        if let Some(step) = network.longest_step().filter(|_| outcome.mesh.point_count() <= FEW) {
+        let is_told = outcome.mesh.point_count() <= FEW;
+        let step = is_told.then(|| NetworkFile::of(&outcome, &outcome.fits[0]).longest_step()).flatten();
+        if let Some(step) = step {
             terminal.note(&format!("the longest stable explicit step is {step:.3e} s, without damping"));
         }
         if outcome.masses.is_some() && format.ending == "csv" {

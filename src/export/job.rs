@@ -1,6 +1,7 @@
 //! A network on its way to another program, checked against what that program holds.
 
 use super::extent::check_parts;
+use crate::engine::{Order, Sequence};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{NetworkRecord, Parts};
 use std::collections::HashSet;
@@ -33,6 +34,11 @@ pub enum Tension {
     Balanced,
     /// None.
     None,
+}
+
+/// Whether the inverse of the constant is a number of single precision. A spring that is softer has no force.
+pub fn has_compliance(constant: f64) -> bool {
+    1.0 / constant <= f64::from(f32::MAX)
 }
 
 /// A network that a program holds.
@@ -142,13 +148,14 @@ impl<'a> Job<'a> {
         held.map(|held| held.point).collect()
     }
 
-    /// Whether each point is held along all axes.
-    pub fn held(&self) -> Vec<bool> {
+    /// The springs with these points, of which the first `lengths` measure lengths, in the order of a sweep.
+    pub fn order<S: AsRef<[usize]>>(&self, springs: &[S], lengths: usize, order: Order) -> Vec<usize> {
         let mut held = vec![false; self.masses.len()];
         for own in &self.network.held {
             held[own.point] = own.displacement.iter().all(Option::is_some);
         }
-        held
+        let (points, dimension) = (&self.network.points.concat()[..], self.network.dimension);
+        Sequence { springs, lengths, points, dimension, held: &held }.order(order)
     }
 
     /// The coordinates of a point, with z = 0 in the plane.

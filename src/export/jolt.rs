@@ -1,9 +1,9 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::{Engine, Sequence, Setting};
+use crate::engine::{Engine, Setting};
 use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
@@ -68,18 +68,11 @@ impl Sweep {
     fn of(body: &SoftBody, job: &Job, setting: &Setting) -> Sweep {
         let edges = body.edges.iter().map(|(a, b, ..)| vec![*a, *b]);
         let springs: Vec<Vec<usize>> = edges.chain(body.volumes.iter().map(|(corners, ..)| corners.clone())).collect();
-        let (points, held, lengths) = (job.network.points.concat(), job.held(), body.edges.len());
-        let dimension = job.network.dimension;
-        let sequence = Sequence { springs: &springs, lengths, points: &points, dimension, held: &held };
-        let (edges, volumes): (Vec<usize>, Vec<usize>) =
-            sequence.order(setting.order).into_iter().partition(|&spring| spring < lengths);
+        let lengths = body.edges.len();
+        let order = job.order(&springs, lengths, setting.order);
+        let (edges, volumes): (Vec<usize>, Vec<usize>) = order.into_iter().partition(|&spring| spring < lengths);
         Sweep { edges, volumes: volumes.into_iter().map(|spring| spring - lengths).collect() }
     }
-}
-
-/// Whether the inverse of the constant is a number of single precision. A spring that is softer has no force.
-fn has_compliance(constant: f64) -> bool {
-    1.0 / constant <= f64::from(f32::MAX)
 }
 
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {

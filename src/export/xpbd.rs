@@ -1,11 +1,11 @@
 //! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::{Engine, Sequence, Setting, colours};
+use crate::engine::{Engine, Setting, colours};
 use crate::error::Result;
-use crate::report::{ContentPart, LengthPart, NetworkRecord};
+use crate::report::NetworkRecord;
 use serde::Serialize;
 
 /// As in Jolt, constraints have compliances above zero and do not pull against each other at rest.
@@ -68,43 +68,21 @@ struct Constraint {
 }
 
 impl Constraint {
-    fn of_length(part: &LengthPart) -> Constraint {
-        Constraint {
-            kind: "length",
-            points: part.points.to_vec(),
-            compliance: 1.0 / part.constant,
-            rest: part.rest,
-            colour: 0,
-        }
-    }
-
-    fn of_content(part: &ContentPart) -> Constraint {
-        Constraint {
-            kind: "content",
-            points: part.points.to_vec(),
-            compliance: 1.0 / part.constant,
-            rest: part.rest,
-            colour: 0,
-        }
-    }
-
-    /// Whether the compliance is a number of single precision. A spring that is softer has no force.
-    fn has_force(&self) -> bool {
-        self.compliance <= f64::from(f32::MAX)
+    fn new(kind: &'static str, points: &[usize], constant: f64, rest: f64) -> Constraint {
+        Constraint { kind, points: points.to_vec(), compliance: 1.0 / constant, rest, colour: 0 }
     }
 }
 
 /// The constraints in the order of a sweep, with their colours.
 fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
-    let lengths = job.parts.lengths.iter().map(Constraint::of_length).filter(Constraint::has_force);
-    let mut all: Vec<Constraint> = lengths.collect();
+    let lengths = job.parts.lengths.iter().filter(|part| has_compliance(part.constant));
+    let mut all: Vec<Constraint> =
+        lengths.map(|part| Constraint::new("length", &part.points, part.constant, part.rest)).collect();
     let count = all.len();
-    all.extend(job.parts.contents.iter().map(Constraint::of_content).filter(Constraint::has_force));
+    let contents = job.parts.contents.iter().filter(|part| has_compliance(part.constant));
+    all.extend(contents.map(|part| Constraint::new("content", &part.points, part.constant, part.rest)));
     let sets: Vec<&[usize]> = all.iter().map(|constraint| &constraint.points[..]).collect();
-    let (points, held): (Vec<f64>, Vec<bool>) = (job.network.points.concat(), job.held());
-    let sequence =
-        Sequence { springs: &sets, lengths: count, points: &points, dimension: job.network.dimension, held: &held };
-    let (order, colours) = (sequence.order(setting.order), colours(&sets, held.len()));
+    let (order, colours) = (job.order(&sets, count, setting.order), colours(&sets, job.masses.len()));
     all.iter_mut().zip(colours).for_each(|(constraint, colour)| constraint.colour = colour);
     let mut all: Vec<Option<Constraint>> = all.into_iter().map(Some).collect();
     order.into_iter().filter_map(|constraint| all[constraint].take()).collect()

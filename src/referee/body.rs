@@ -78,7 +78,7 @@ impl Case {
 /// The standard bodies of this Poisson's ratio with the networks of these fits.
 ///
 /// # Errors
-/// Poisson's ratio is none of a material that has them all, or a setting of an engine does not reach the stiffness.
+/// No material with this Poisson's ratio has all networks, or an engine cannot hold a body of this stiffness at its setting.
 pub fn standard_bodies(poisson: f64, fits: &[&str], progress: &mut Progress) -> Result<Vec<StandardBody>> {
     SCENES.iter().map(|scene| standard_body(scene, poisson, fits, progress)).collect()
 }

@@ -90,7 +90,7 @@ pub const ENGINES: [Engine; 5] = [
                 elements: Some(stable_neo_hookean),
             },
             Solver { name: "VBD 1 ms", is_usual: true, networks: &["exact"], elements: Some(as_told) },
-            // As they are, and fitted for this setting.
+            // The springs of solved equations, and those that are fitted for this setting.
             Solver { name: "VBD 10 substeps", is_usual: true, networks: &["classical", "vbd-fitted"], elements: None },
             Solver { name: "VBD 2 ms", is_usual: false, networks: &[], elements: Some(as_told) },
             // Its elements are left out: both of their constraints, tr FᵀF − 3 and det F − 1, are functions of the volume to first order,
@@ -114,7 +114,7 @@ pub const ENGINES: [Engine; 5] = [
         target: "jolt",
         solvers: &[
             Solver { name: "5 substeps", is_usual: true, networks: &["length"], elements: None },
-            // As they are, and fitted for this setting.
+            // The springs of solved equations, and those that are fitted for this setting.
             Solver { name: "30 substeps", is_usual: true, networks: &["classical", "jolt-fitted"], elements: None },
             Solver { name: "50 substeps", is_usual: true, networks: &["length", "classical"], elements: None },
             Solver { name: "100 substeps", is_usual: false, networks: &["length", "classical"], elements: None },

@@ -21,7 +21,8 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
         };
     }
     for limit in &forecast.engines {
-        text += &format!("engine    {}: {}\n", printable(&limit.fit), limit.words());
+        let words = limit.limit.words().unwrap_or("the method reaches any stiffness".into());
+        text += &format!("engine    {}: {words}\n", printable(&limit.fit));
     }
     let columns = vec![Column::words("expected"), Column::numbers("time"), Column::numbers("memory")];
     let words = |value: Option<f64>, words: fn(f64) -> String| value.map_or("unknown".into(), words);

@@ -4,7 +4,7 @@
 
 use super::history::History;
 use super::lanes::{Block, LANES, Lanes, add};
-use super::order::Sequence;
+use super::sequence::Sequence;
 use super::setting::{Engine, Setting, Sweep};
 use crate::model::{Network, SpringGradients};
 
@@ -177,22 +177,13 @@ impl Constraints {
         growth
     }
 
-    /// `K_N y`.
-    pub fn apply(&self, y: &Block) -> Block {
+    /// `K_N y`, or `K_Nᵀ y` by the sweeps in the opposite order.
+    pub fn apply(&self, y: &Block, is_transposed: bool) -> Block {
         let (mut x, mut multipliers) = (y.clone(), vec![[0.0; LANES]; self.len()]);
         for _ in 0..self.iterations {
-            self.sweep((&mut x, &mut multipliers), false, None, |_, _, _| ());
+            self.sweep((&mut x, &mut multipliers), is_transposed, None, |_, _, _| ());
         }
         self.forces(&multipliers, y.len())
-    }
-
-    /// `K_Nᵀ z`: the sweeps in the opposite order.
-    pub fn apply_transposed(&self, z: &Block) -> Block {
-        let (mut x, mut multipliers) = (z.clone(), vec![[0.0; LANES]; self.len()]);
-        for _ in 0..self.iterations {
-            self.sweep((&mut x, &mut multipliers), true, None, |_, _, _| ());
-        }
-        self.forces(&multipliers, z.len())
     }
 
     /// What the changes of `K_N y` depend on: `s = λ + Δ` of each row in each sweep.

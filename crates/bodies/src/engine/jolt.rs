@@ -4,6 +4,7 @@
 //! Points are divided into groups of 256. A sweep takes the springs inside groups before those across groups, in each of both those on contents
 //! before those on lengths, and each of these by the distance to the nearest held point along springs, the least point, and their place.
 
+use super::sequence::Sequence;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -12,21 +13,9 @@ const GROUP: usize = 256;
 /// Jolt computes in single precision, and ties are decided by its rounding.
 type Place = [f32; 3];
 
-/// A network as Jolt sees it.
-pub(super) struct Body<'a, S> {
-    /// The points of the springs, those on lengths first.
-    pub springs: &'a [S],
-    pub lengths: usize,
-    /// `[points × dimension]`, m.
-    pub points: &'a [f64],
-    pub dimension: usize,
-    /// Whether each point is held, `[points]`.
-    pub held: &'a [bool],
-}
-
-impl<S: AsRef<[usize]>> Body<'_, S> {
-    /// The springs in the order of a sweep.
-    pub fn order(&self) -> Vec<usize> {
+impl<S: AsRef<[usize]>> Sequence<'_, S> {
+    /// The springs in the order in which Jolt takes them.
+    pub(super) fn order_of_jolt(&self) -> Vec<usize> {
         let places: Vec<Place> = self
             .points
             .chunks_exact(self.dimension)
@@ -96,7 +85,7 @@ impl<S: AsRef<[usize]>> Body<'_, S> {
                 }
             }
         }
-        // A last set that is small is none of its own: its springs count as those across groups.
+        // A last set of at most half a group is no group: its springs count as those across groups.
         if members.len() <= GROUP / 2 {
             groups.iter_mut().filter(|group| **group == Some(now)).for_each(|group| *group = None);
         }

@@ -15,7 +15,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `setting` | the settings of an engine, and those of engines by name |
-//! | `order` | the order in which a sweep takes the springs or the points |
+//! | `sequence`, `order` | the order in which a sweep takes the springs or the points |
 //! | `jolt` | the order of Jolt |
 //! | `lanes` | displacements under several loads, which are swept together |
 //! | `constraints` | XPBD: sweeps over the springs, and their derivatives |
@@ -38,13 +38,15 @@ mod krylov;
 mod lanes;
 mod model;
 mod order;
+mod sequence;
 mod setting;
 mod truncated;
 mod vibration;
 
 pub use ceiling::{Ceiling, least_substeps};
 pub use model::TruncatedModel;
-pub use order::{Sequence, colours, point_colours};
+pub use order::{colours, point_colours};
+pub use sequence::Sequence;
 pub use setting::{Engine, Order, Precision, Setting, Sweep};
 pub use truncated::Truncated;
 pub use vibration::Vibration;

@@ -1,6 +1,6 @@
 //! The order in which a sweep takes the springs or the points.
 
-use super::jolt;
+use super::sequence::Sequence;
 use super::setting::Order;
 
 /// The colour of each of these sets: the least that no earlier set has with which it shares a member. Sets of a colour share none.
@@ -30,31 +30,13 @@ fn by_colour<S: AsRef<[usize]>>(sets: &[S], members: usize) -> Vec<usize> {
     order
 }
 
-/// Springs whose order is sought.
-#[derive(Debug, Clone, Copy)]
-pub struct Sequence<'a, S> {
-    /// Their points; those on lengths come first.
-    pub springs: &'a [S],
-    /// The number of those on lengths.
-    pub lengths: usize,
-    /// The points at rest, `[points × dimension]`, m.
-    pub points: &'a [f64],
-    /// The number of coordinates of a point.
-    pub dimension: usize,
-    /// Whether each point is held, `[points]`.
-    pub held: &'a [bool],
-}
-
 impl<S: AsRef<[usize]>> Sequence<'_, S> {
     /// The springs in the order of a sweep.
     pub fn order(&self, order: Order) -> Vec<usize> {
         match order {
             Order::Colours => by_colour(self.springs, self.held.len()),
             Order::Given => (0..self.springs.len()).collect(),
-            Order::Jolt => {
-                let Sequence { springs, lengths, points, dimension, held } = *self;
-                jolt::Body { springs, lengths, points, dimension, held }.order()
-            }
+            Order::Jolt => self.order_of_jolt(),
         }
     }
 }

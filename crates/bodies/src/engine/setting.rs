@@ -99,7 +99,7 @@ const LEAST_RELAXATION: f64 = 1e-3;
 const MOST: usize = 100_000;
 
 impl Setting {
-    /// What an engine does unless it is told otherwise.
+    /// The settings that an engine has by default.
     pub fn usual(engine: Engine) -> Setting {
         let (substeps, iterations) = match engine {
             Engine::Xpbd => (10, 1),
@@ -129,7 +129,7 @@ impl Setting {
         self.step / self.substeps as f64
     }
 
-    /// The same with another number of substeps.
+    /// The settings with another number of substeps.
     #[must_use]
     pub fn with_substeps(self, substeps: usize) -> Setting {
         Setting { substeps, ..self }

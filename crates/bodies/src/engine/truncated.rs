@@ -122,24 +122,18 @@ impl Truncated {
         let columns = |chunk: &[usize]| {
             let mut unit = vec![[0.0; LANES]; self.inverse.len()];
             chunk.iter().enumerate().for_each(|(lane, &dof)| unit[dof][lane] = 1.0);
-            let found = self.apply(&unit);
-            vectors(&found, chunk.len())
+            vectors(&self.apply(&unit, false), chunk.len())
         };
         let columns: Vec<Vec<f64>> = self.free.par_chunks(LANES).flat_map_iter(columns).collect();
         Mat::from_fn(n, n, |i, j| columns[j][self.free[i]])
     }
 
-    fn apply(&self, y: &Block) -> Block {
+    /// `K_N y`, or `K_Nᵀ y`.
+    fn apply(&self, y: &Block, is_transposed: bool) -> Block {
         self.freed(match &self.sweeps {
-            Sweeps::Springs(constraints) => constraints.apply(y),
+            Sweeps::Springs(constraints) => constraints.apply(y, is_transposed),
+            Sweeps::Points(descents) if is_transposed => descents.apply_transposed(y),
             Sweeps::Points(descents) => descents.apply(y),
-        })
-    }
-
-    fn apply_transposed(&self, z: &Block) -> Block {
-        self.freed(match &self.sweeps {
-            Sweeps::Springs(constraints) => constraints.apply_transposed(z),
-            Sweeps::Points(descents) => descents.apply_transposed(z),
         })
     }
 
@@ -170,7 +164,7 @@ impl Truncated {
                         let found = equations.respond_all(&vectors(v, LANES), 0.0).ok()?;
                         Some(block(&found, size))
                     };
-                    let apply = |v: &Block| if is_transposed { self.apply_transposed(v) } else { self.apply(v) };
+                    let apply = |v: &Block| self.apply(v, is_transposed);
                     let found = gmres(apply, precondition, &right, tolerance);
                     let found = found.filter(|(_, left)| *left <= LEFT * tolerance);
                     let (found, _) = found.ok_or_else(|| {
@@ -312,10 +306,10 @@ const VIBRATIONS: usize = 500;
 /// The network with the constants `1/(h² g·W g)` at which the compliance of each spring is what its points have. Springs between held points stay.
 fn seen_by_sweeps(network: &Network, points: &[f64], (inverse, substep): (&[f64], f64)) -> Network {
     let (gradients, _) = SpringGradients::at(network, points);
-    let factor = |((dofs, g), (_, constant)): ((&[usize], &[f64]), (&[usize], f64))| {
-        let moved: f64 = dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum();
+    let moves = gradients.each().map(|(dofs, g)| dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum::<f64>());
+    let factor = |(moved, (_, constant)): (f64, (_, f64))| {
         if moved > 0.0 { 1.0 / (substep * substep * moved * constant) } else { 1.0 }
     };
-    let factors: Vec<f64> = gradients.each().zip(network.springs()).map(factor).collect();
+    let factors: Vec<f64> = moves.zip(network.springs()).map(factor).collect();
     network.scaled(&factors)
 }

@@ -2,7 +2,7 @@
 
 use super::body::{Case, LargeBody, load_cases};
 use super::cost::{COMPARISONS, REFINEMENTS, entries};
-use super::fits::{EngineLimit, NamedFit, Reference};
+use super::fits::{FitLimit, NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
 use crate::analysis::tensor::most_samples;
@@ -64,7 +64,7 @@ pub struct Forecast {
     /// The stages in the order in which they run.
     pub stages: Vec<ExpectedStage>,
     /// How stiff a body the engine of each fit that has one can hold, where this was asked for.
-    pub engines: Vec<EngineLimit>,
+    pub engines: Vec<FitLimit>,
     /// The entries of the stiffness of the largest network, of its lower triangle.
     #[serde(skip)]
     network_entries: f64,

@@ -61,12 +61,12 @@ pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
     CellMethod, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe, ExactRecord,
-    FamilyOutcome, FitEntry, FitFunctions, FitKind, Fitted, FittedKind, FittedLoad, FittedMasses, ForceRecipe,
-    FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError, ModelFrequencies,
-    ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome, SampledRecipe,
-    SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start, StartOutcome,
-    StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome, ValidationRecipe,
-    WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape, fit_schema,
+    FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad, FittedMasses,
+    ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError,
+    ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
+    SampledRecipe, SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start,
+    StartOutcome, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, WorstShape, fit_schema,
 };
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};

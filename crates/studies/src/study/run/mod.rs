@@ -5,7 +5,7 @@ mod posed;
 mod solved;
 
 use super::checkpoint::Controls;
-use super::fits::EngineLimit;
+use super::fits::FitLimit;
 use super::outcome::Outcome;
 use super::progress::{Event, Progress};
 use super::scene::Scene;
@@ -34,7 +34,7 @@ pub fn run_with(scene: &Scene, controls: &Controls, progress: &mut Progress) -> 
 ///
 /// # Errors
 /// Those of a run before its fits, and those of the springs from which fits start.
-pub fn engine_limits(scene: &Scene) -> Result<Vec<EngineLimit>> {
+pub fn engine_limits(scene: &Scene) -> Result<Vec<FitLimit>> {
     if scene.fits().iter().all(|fit| fit.engine.is_none()) {
         return Ok(Vec::new());
     }

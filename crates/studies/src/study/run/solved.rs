@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
 use crate::study::body::{FineBody, LargeBody, LinearBody, seconds_of_body, seconds_of_network};
 use crate::study::checkpoint::Controls;
-use crate::study::fits::{EngineLimit, Finer, NamedFit, Reference, Task, WholeBody};
+use crate::study::fits::{Finer, FitLimit, NamedFit, Reference, Task, WholeBody};
 use crate::study::fitting::{fit_mesh, fit_without_errors};
 use crate::study::masses::{PointMasses, point_masses};
 use crate::study::outcome::FitOutcome;
@@ -76,12 +76,7 @@ impl Solved {
     ///
     /// # Errors
     /// The engine does not hold the springs; the error names the fit.
-    pub fn engine_limits(
-        &self,
-        posed: &Posed,
-        controls: &Controls,
-        progress: &mut Progress,
-    ) -> Result<Vec<EngineLimit>> {
+    pub fn engine_limits(&self, posed: &Posed, controls: &Controls, progress: &mut Progress) -> Result<Vec<FitLimit>> {
         let Posed { scene, mesh, material, .. } = posed;
         let whole = self.whole(posed, controls);
         let held = posed.held_points();
@@ -90,8 +85,9 @@ impl Solved {
         for (fit, setting) in scene.fits().iter().filter_map(|fit| Some((fit, fit.engine?))) {
             let task = Task { name: &fit.name, springs: fit.springs.as_deref(), mesh, material, reference };
             let network = fit.recipe.kind().start(&task, progress);
-            let limit = network.and_then(|network| whole.engine_limit((&fit.name, setting), &network, progress));
-            limits.push(limit.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?);
+            let limit = network.and_then(|network| whole.engine_limit(setting, &network, progress));
+            let limit = limit.map_err(|e| e.placed(|e| scene.at(&fit.place(), e)))?;
+            limits.push(FitLimit { fit: fit.name.clone(), limit });
         }
         Ok(limits)
     }

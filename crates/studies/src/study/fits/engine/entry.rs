@@ -7,7 +7,7 @@ use crate::study::scene::value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The settings; what is absent is as the engine does it unless it is told otherwise.
+/// The settings of an engine. A key that is absent has the default of the engine.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default, expecting = "a table such as { method = \"xpbd\", substeps = 10 }")]
 pub struct EngineEntry {

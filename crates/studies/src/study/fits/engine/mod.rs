@@ -6,4 +6,4 @@ mod entry;
 mod outcome;
 
 pub(super) use entry::EngineEntry;
-pub use outcome::{EngineErrors, EngineLimit, EngineOutcome, EngineVibration};
+pub use outcome::{EngineErrors, EngineLimit, EngineOutcome, EngineVibration, FitLimit};

@@ -8,6 +8,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct EngineOutcome {
+    /// How stiff a body the engine can hold.
+    #[serde(flatten)]
+    pub limit: EngineLimit,
+    /// The constants of springs on lengths, and those of springs on contents, were multiplied by these factors; the list is null of a
+    /// whole-object fit, which finds each constant.
+    pub factors: Option<Vec<f64>>,
+    /// The displacements in the engine under the loads of the fit have these errors before the constants are fitted for it.
+    pub before: EngineErrors,
+    /// The displacements in the engine under the loads of the fit have these errors afterwards.
+    pub after: EngineErrors,
+    /// `vibration` has the first natural vibration of the network in the engine; it is null where none is found.
+    pub vibration: Option<EngineVibration>,
+    /// The finite elements have this first frequency in Hz, with the masses of the network.
+    pub frequency: f64,
+}
+
+/// How stiff a body an engine can hold.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct EngineLimit {
     /// The constants are for these settings.
     pub setting: Setting,
     /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd` and of `jacobi`, which reaches any
@@ -17,54 +36,32 @@ pub struct EngineOutcome {
     pub modulus: Option<f64>,
     /// The body can be represented with this number of substeps or more; it is null of `vbd` and of `jacobi`.
     pub least_substeps: Option<usize>,
-    /// The constants of springs on lengths, and those of springs on contents, were multiplied by these factors; the list is null of a
-    /// whole-object fit, which finds each constant.
-    pub factors: Option<Vec<f64>>,
-    /// The displacements in the engine under the loads of the fit have these errors before the constants are fitted for it.
-    pub before: EngineErrors,
-    /// The displacements in the engine under the loads of the fit have these errors afterwards.
-    pub after: EngineErrors,
-    /// `vibration` has the first natural vibration of the network in the engine; it is null where there is none.
-    pub vibration: Option<EngineVibration>,
-    /// The finite elements have this first frequency in Hz, with the masses of the network.
-    pub frequency: f64,
 }
 
-/// How stiff a body an engine can hold, before a fit.
+/// The limit of the engine of a fit, before the fit is made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EngineLimit {
+pub struct FitLimit {
     /// The fit has this name.
     pub fit: String,
-    /// The constants are for these settings.
-    pub setting: Setting,
-    /// Springs without compliance make a body with this many times the modulus of this one; `None` of a method without such a limit.
-    pub ceiling: Option<f64>,
-    /// The largest Young's modulus in Pa; `None` without a limit, and of a body with several moduli.
-    pub modulus: Option<f64>,
-    /// The body can be represented with this number of substeps or more.
-    pub least_substeps: Option<usize>,
+    /// How stiff a body the engine can hold.
+    #[serde(flatten)]
+    pub limit: EngineLimit,
 }
 
 impl EngineLimit {
-    /// The limit in a sentence.
-    pub fn words(&self) -> String {
-        reach(self.ceiling, self.least_substeps, self.modulus)
-            .unwrap_or_else(|| "the method reaches any stiffness".to_string())
+    /// The limit in a sentence; `None` of a method that reaches any stiffness.
+    pub fn words(&self) -> Option<String> {
+        let ceiling = self.ceiling?;
+        let modulus = self.modulus.map_or(String::new(), |modulus| format!(", {modulus:.3e} Pa"));
+        let least = match self.least_substeps {
+            Some(1) => "1 substep is the least".into(),
+            Some(least) => format!("{least} substeps are the least"),
+            None => "thousands of substeps are not enough".to_string(),
+        };
+        Some(format!(
+            "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine{modulus}; {least} for this body"
+        ))
     }
-}
-
-/// What springs without compliance reach, in words; `None` of a method that reaches any stiffness.
-fn reach(ceiling: Option<f64>, least_substeps: Option<usize>, modulus: Option<f64>) -> Option<String> {
-    let ceiling = ceiling?;
-    let modulus = modulus.map_or(String::new(), |modulus| format!(", {modulus:.3e} Pa"));
-    let least = match least_substeps {
-        Some(1) => "1 substep is the least".into(),
-        Some(least) => format!("{least} substeps are the least"),
-        None => "thousands of substeps are not enough".to_string(),
-    };
-    Some(format!(
-        "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine{modulus}; {least} for this body"
-    ))
 }
 
 /// The relative errors `‖u − ū‖/‖ū‖` under some loads.
@@ -109,13 +106,14 @@ impl EngineOutcome {
     pub fn notes(&self, extent: f64) -> Vec<String> {
         let percent =
             |errors: EngineErrors| format!("{:.1} (largest {:.1}) %", 100.0 * errors.mean, 100.0 * errors.largest);
+        let setting = &self.limit.setting;
         let mut notes = vec![format!(
             "for {}: displacements in the engine under the loads of the fit are {} off, with the constants as they were {}",
-            self.setting.words(),
+            setting.words(),
             percent(self.after),
             percent(self.before)
         )];
-        notes.extend(reach(self.ceiling, self.least_substeps, self.modulus));
+        notes.extend(self.limit.words());
         if let Some(factors) = &self.factors {
             let kinds = ["lengths", "contents"].iter().zip(factors);
             let words: Vec<String> = kinds.map(|(kind, factor)| format!("on {kind} by {factor:.4}")).collect();
@@ -128,8 +126,8 @@ impl EngineOutcome {
                 self.frequency
             ));
         }
-        let moved = GRAVITY * self.setting.substep().powi(2);
-        if self.setting.precision == Precision::Single && moved < COARSE * extent {
+        let moved = GRAVITY * setting.substep().powi(2);
+        if setting.precision == Precision::Single && moved < COARSE * extent {
             notes.push(format!(
                 "a substep moves points by {moved:.1e} m under gravity, which single precision rounds by a tenth and more: fewer substeps with \
                  more sweeps are more accurate"

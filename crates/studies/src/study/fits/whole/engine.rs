@@ -50,29 +50,19 @@ impl WholeBody<'_> {
         self.check_ceiling(setting, network, &wanted.trained).map(|_| ())
     }
 
-    /// How stiff a body the engine can hold, and the least substeps for this one.
+    /// How stiff a body the engine can hold.
     ///
     /// # Errors
     /// The body is above the ceiling, or the engine does not hold its springs.
-    fn check_ceiling(
-        &self,
-        setting: &Setting,
-        network: &Network,
-        targets: &[Target],
-    ) -> Result<(Option<f64>, Option<usize>)> {
-        let (ceiling, least) = self.ceiling(setting, network, targets)?;
-        match ceiling {
-            Some(factor) if factor < 1.0 => {
-                let words = least.map_or("thousands of substeps".into(), |least| format!("at least {least} substeps"));
-                let expected = format!("{words} for a body of this stiffness, mass and size");
-                let found = format!(
-                    "{}, with which springs without compliance reach {factor:.3} of its modulus",
-                    setting.substeps
-                );
-                Err(Error::expected("engine.substeps", expected, found).of_kind(ErrorKind::Infeasible))
-            }
-            _ => Ok((ceiling, least)),
-        }
+    fn check_ceiling(&self, setting: &Setting, network: &Network, targets: &[Target]) -> Result<EngineLimit> {
+        let limit = self.limit(setting, network, targets)?;
+        let Some(factor) = limit.ceiling.filter(|factor| *factor < 1.0) else { return Ok(limit) };
+        let least = limit.least_substeps;
+        let words = least.map_or("thousands of substeps".into(), |least| format!("at least {least} substeps"));
+        let expected = format!("{words} for a body of this stiffness, mass and size");
+        let found =
+            format!("{}, with which springs without compliance reach {factor:.3} of its modulus", setting.substeps);
+        Err(Error::expected("engine.substeps", expected, found).of_kind(ErrorKind::Infeasible))
     }
 
     /// The limit of the engine for a network of these springs, under the loads that are made for a fit.
@@ -81,33 +71,26 @@ impl WholeBody<'_> {
     /// The engine does not hold the springs.
     pub(in crate::study) fn engine_limit(
         &self,
-        (name, setting): (&str, Setting),
+        setting: Setting,
         network: &Network,
         progress: &mut Progress,
     ) -> Result<EngineLimit> {
         let wanted = self.wanted(&few(setting), &mut None, progress)?;
-        let (ceiling, least_substeps) = self.ceiling(&setting, network, &wanted.trained)?;
-        let modulus = self.largest_modulus(ceiling);
-        Ok(EngineLimit { fit: name.into(), setting, ceiling, modulus, least_substeps })
+        self.limit(&setting, network, &wanted.trained)
     }
 
-    /// The largest Young's modulus, Pa, if the body has one modulus.
-    fn largest_modulus(&self, ceiling: Option<f64>) -> Option<f64> {
-        Some(ceiling? * self.material.uniform()?.young())
-    }
-
-    fn ceiling(
-        &self,
-        setting: &Setting,
-        network: &Network,
-        targets: &[Target],
-    ) -> Result<(Option<f64>, Option<usize>)> {
+    fn limit(&self, setting: &Setting, network: &Network, targets: &[Target]) -> Result<EngineLimit> {
         let model = TruncatedModel { network, points: &self.mesh.points, masses: self.engine_masses()? };
         let loads: Vec<_> =
             targets.iter().map(|target| (&target.support, &target.forces[..], &target.displacement[..])).collect();
-        let Some(Ceiling { factor }) = Ceiling::of(model, &loads, setting)? else { return Ok((None, None)) };
-        let least = least_substeps(model, &loads, setting)?;
-        Ok((Some(factor), least))
+        let ceiling = Ceiling::of(model, &loads, setting)?.map(|ceiling| ceiling.factor);
+        let least_substeps = match ceiling {
+            Some(_) => least_substeps(model, &loads, setting)?,
+            None => None,
+        };
+        // A body of several moduli has none that stands for it.
+        let modulus = ceiling.zip(self.material.uniform()).map(|(factor, material)| factor * material.young());
+        Ok(EngineLimit { setting: *setting, ceiling, modulus, least_substeps })
     }
 
     /// Measures what a network answers in an engine. The constants of a fit that does not know of the engine are multiplied by one factor for
@@ -125,7 +108,7 @@ impl WholeBody<'_> {
         let masses = self.engine_masses()?;
         let recipe = few(setting);
         let wanted = self.wanted(&recipe, &mut None, progress)?;
-        let (ceiling, least_substeps) = self.check_ceiling(&setting, &fitted.network, &wanted.trained)?;
+        let limit = self.check_ceiling(&setting, &fitted.network, &wanted.trained)?;
         let (before, after, factors) = match &fitted.kind {
             FittedKind::Whole(outcome) => {
                 let before = outcome.fitted.iter().map(|load| load.before).collect();
@@ -157,10 +140,7 @@ impl WholeBody<'_> {
         };
         let modes = self.equations("engine", self.support)?.lowest_modes(masses, self.mesh.dimension, 1)?;
         Ok(EngineOutcome {
-            setting,
-            ceiling,
-            modulus: self.largest_modulus(ceiling),
-            least_substeps,
+            limit,
             factors,
             before: EngineErrors::of(&before).ok_or_else(unknown)?,
             after: EngineErrors::of(&after).ok_or_else(unknown)?,

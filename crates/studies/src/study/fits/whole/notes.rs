@@ -109,7 +109,7 @@ impl WholeOutcome {
     /// What limits a fit that leaves large errors: the springs, or the loads that have chosen ρ.
     fn capacity(&self) -> Option<String> {
         let left = self.largest_left();
-        // What an engine leaves is told with its setting.
+        // The note on the engine has these errors.
         if !(left > CAPACITY) || self.is_exact || self.is_for_engine {
             return None;
         }
