@@ -11,6 +11,10 @@ impl Mesh {
         for nodes in self.blocks.iter().flat_map(|block| block.cells()) {
             nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
         }
+        if let Some(directors) = &self.directors {
+            let first = self.node_count();
+            directors.edges.iter().enumerate().for_each(|(e, [a, _])| sets.join(first + e, *a));
+        }
         let mut piece_of_root = vec![usize::MAX; self.point_count()];
         let mut pieces: Vec<Vec<usize>> = Vec::new();
         for point in 0..self.point_count() {
