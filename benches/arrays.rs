@@ -41,6 +41,7 @@ fn main() {
             points: points.clone(),
             blocks: vec![(element.clone(), cells.clone())],
             groups: BTreeMap::new(),
+            cell_groups: BTreeMap::new(),
         };
         let mesh = arrays.build(Gate::default()).expect("the cells are sound");
         let fit = fit_mesh(&mesh, material, &Reference::default(), &named, &mut |_| {}).expect("it has springs");

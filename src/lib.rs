@@ -88,13 +88,24 @@
 
 #![forbid(unsafe_code)]
 
+// The commands name the library as its users do.
+#[cfg(feature = "cli")]
+extern crate self as springfit;
+
+#[cfg(feature = "cli")]
+mod commands;
 #[cfg(feature = "cli")]
 pub mod export;
 pub mod prelude;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod program;
+#[cfg(feature = "cli")]
 pub mod referee;
 #[cfg(feature = "cli")]
 pub mod report;
+#[cfg(feature = "cli")]
+mod terminal;
 
 pub use springfit_bodies::{dynamics, engine, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};

@@ -15,6 +15,7 @@ fn arrays_of(mesh: &Mesh) -> MeshArrays {
         points: mesh.points.clone(),
         blocks: mesh.blocks.iter().map(|block| (block.element.clone(), block.connectivity.clone())).collect(),
         groups: mesh.groups.iter().map(|(name, group)| (name.clone(), group.points.clone())).collect(),
+        cell_groups: BTreeMap::new(),
     }
 }
 

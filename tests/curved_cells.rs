@@ -164,7 +164,13 @@ fn a_mesh_tells_of_a_cell_that_folds() {
     points.extend(element.positions.iter().map(|x| x + 3.0));
     let build = |below: Below| {
         let blocks = vec![(element.clone(), (0..12).collect())];
-        let arrays = MeshArrays { dimension: 2, points: points.clone(), blocks, groups: BTreeMap::new() };
+        let arrays = MeshArrays {
+            dimension: 2,
+            points: points.clone(),
+            blocks,
+            groups: BTreeMap::new(),
+            cell_groups: BTreeMap::new(),
+        };
         arrays.build(Gate { below, ..Gate::default() })
     };
     let mesh = build(Below::Warn).unwrap();

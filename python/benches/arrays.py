@@ -20,7 +20,7 @@ options = parser.parse_args()
 
 box = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[options.cells] * 3)
 points = box.points + 0.1 / options.cells * np.random.default_rng(1).uniform(-1, 1, box.points.shape)
-cells = box.cells[0][1]
+cells = box.cells["tet4"]
 
 
 def python():

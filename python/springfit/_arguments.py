@@ -15,6 +15,22 @@ from ._core import Element, SpringfitError
 #: An element, the name of a shipped one, or the path of an element file.
 ElementLike = Union[str, "os.PathLike[str]", Element]
 
+#: Names of cells in meshio that are none of shipped elements, and the elements that have these cells.
+FOREIGN = {
+    "line": "bar2",
+    "triangle": "tri3",
+    "quad": "quad4",
+    "tetra": "tet4",
+    "hexahedron": "hex8",
+    "wedge": "wedge6",
+    "pyramid": "pyramid5",
+    "line3": "bar3",
+    "triangle6": "tri6",
+    "tetra10": "tet10",
+    "hexahedron20": "hex20",
+    "hexahedron27": "hex27",
+}
+
 #: The states of plane bodies, in errors.
 PLANES = '"stress" or "strain"'
 
@@ -128,6 +144,9 @@ def element_of(given: ElementLike) -> Element:
         return given
     if not isinstance(given, (str, os.PathLike)):
         raise failure("element", "an element, its name or the path of its file", shown(given))
+    known = FOREIGN.get(given) if isinstance(given, str) else None
+    if known is not None:
+        raise failure("element", "a name of springfit's elements", f'"{given}" of meshio; did you mean "{known}"?')
     return Element(os.fspath(given))
 
 

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 import tempfile
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import failure, matrix, places
+from . import _core
+from ._arguments import FOREIGN, along_axes, array, element_of, failure, matrix, places, shown, typed, warn
 from ._core import Element, shipped_elements
+
+if TYPE_CHECKING:
+    from .mesh import Mesh
 
 # meshio's names of the cells that VTK numbers; meshio keeps VTK's order of nodes.
 _MESHIO = {
@@ -92,12 +97,19 @@ def _join(groups: "dict[str, Any]", key: str, places: np.ndarray) -> None:
     groups[key] = np.union1d(groups[key], places) if key in groups else np.unique(places)
 
 
+def hint(name: object) -> str:
+    """What a name of meshio means here, for errors."""
+    return f'; did you mean "{FOREIGN[name]}"?' if isinstance(name, str) and name in FOREIGN else ""
+
+
 def from_meshio(mesh: Any, own: "list[Element]") -> tuple:
     cells: "list[tuple[int, np.ndarray]]" = []
     groups: "dict[str, Any]" = {}
+    # By name, the cells of each block.
+    listed: "dict[str, dict[int, Any]]" = {}
     names = {tuple(np.atleast_1d(v)[:2]): name for name, v in (getattr(mesh, "field_data", None) or {}).items()}
     physical = (mesh.cell_data or {}).get("gmsh:physical", [None] * len(mesh.cells))
-    for block, marks in zip(mesh.cells, physical):
+    for number_of_block, (block, marks) in enumerate(zip(mesh.cells, physical)):
         if block.type == "vertex":
             number = 1
         elif block.type in _MESHIO:
@@ -109,17 +121,36 @@ def from_meshio(mesh: Any, own: "list[Element]") -> tuple:
         for mark in np.unique(marks) if marks is not None else []:
             name = names.get((mark, _dimension(number)))
             if name is not None:
-                _join(groups, name, nodes[np.asarray(marks) == mark])
+                chosen = np.flatnonzero(np.asarray(marks) == mark)
+                _join(groups, name, nodes[chosen])
+                _join(listed.setdefault(name, {}), number_of_block, chosen)
     for name, lists in (getattr(mesh, "cell_sets", None) or {}).items():
         # meshio keeps what else it has read of a Gmsh file under such names.
         if not name.startswith("gmsh:"):
-            for (_, nodes), chosen in zip(cells, lists):
+            for number_of_block, ((_, nodes), chosen) in enumerate(zip(cells, lists)):
                 if chosen is not None:
-                    _join(groups, name, nodes[places(f"cell_sets.{name}", chosen, len(nodes), "cells of the block")])
+                    chosen = places(f"cell_sets.{name}", chosen, len(nodes), "cells of the block")
+                    _join(groups, name, nodes[chosen])
+                    _join(listed.setdefault(name, {}), number_of_block, chosen)
     for name, chosen in (mesh.point_sets or {}).items():
         _join(groups, name, places(f"point_sets.{name}", chosen, len(mesh.points)))
     blocks = _blocks(cells, own)
-    return _space(mesh.points, blocks), blocks, groups
+    return _space(mesh.points, blocks), blocks, groups, _cells_of_groups(cells, blocks, listed)
+
+
+def _cells_of_groups(cells: list, blocks: list, listed: "dict[str, dict[int, Any]]") -> "dict[str, np.ndarray]":
+    """By name, the cells among those of the body, counted as the mesh counts them: those of one element together."""
+    most = max((_dimension(number) for number, _ in cells), default=0)
+    of_body = [place for place, (number, _) in enumerate(cells) if _dimension(number) == most]
+    order = list(dict.fromkeys(element.name for element, _ in blocks))
+    first, total = {}, 0
+    for name in order:
+        for place, (element, nodes) in zip(of_body, blocks):
+            if element.name == name:
+                first[place] = total
+                total += len(nodes)
+    found = {name: [first[place] + chosen for place, chosen in own.items() if place in first] for name, own in listed.items()}
+    return {name: np.concatenate(lists) for name, lists in found.items() if sum(map(len, lists))}
 
 
 def from_pyvista(grid: Any, own: "list[Element]") -> tuple:
@@ -130,7 +161,7 @@ def from_pyvista(grid: Any, own: "list[Element]") -> tuple:
         # Such as polyhedra.
         raise failure("cells", "cells that are lists of nodes", str(error), "unsupported") from error
     blocks = _blocks([(int(number), nodes) for number, nodes in cells.items()], own)
-    return _space(grid.points, blocks), blocks, {}
+    return _space(grid.points, blocks), blocks, {}, {}
 
 
 def from_skfem(mesh: Any) -> tuple:
@@ -141,13 +172,17 @@ def from_skfem(mesh: Any) -> tuple:
         raise failure("mesh", "one of " + ", ".join(names), kind, "unsupported")
     nodes = mesh.t.T
     groups: "dict[str, Any]" = {}
+    cell_groups: "dict[str, Any]" = {}
     for key, owners in (("boundaries", mesh.facets.T), ("subdomains", nodes)):
         for name, chosen in (getattr(mesh, key) or {}).items():
-            _join(groups, name, owners[places(f"{key}.{name}", chosen, len(owners), key)])
+            chosen = places(f"{key}.{name}", chosen, len(owners), key)
+            _join(groups, name, owners[chosen])
+            if key == "subdomains" and chosen.size:
+                cell_groups[name] = chosen
     if kind == "MeshHex1":
         # Corners of the unit cube as scikit-fem numbers them, in VTK's order.
         nodes = nodes[:, [0, 3, 6, 2, 1, 5, 7, 4]]
-    return mesh.p.T, {names[kind]: nodes}, groups
+    return mesh.p.T, {names[kind]: nodes}, groups, cell_groups
 
 
 def from_gmsh(read: Any, scale: float, options: dict) -> Any:
@@ -157,3 +192,162 @@ def from_gmsh(read: Any, scale: float, options: dict) -> Any:
         path = os.path.join(folder, "model.msh")
         gmsh.write(path)
         return read(path, scale=scale, **options)
+
+
+def _vtk_blocks(mesh: "Mesh") -> "list[tuple[int, np.ndarray]]":
+    """The numbers of VTK's cells and their nodes in VTK's order, block after block."""
+    found = []
+    for element, nodes in zip(mesh._core.elements, mesh.cells.values()):
+        if element.vtk is None:
+            raise failure("cells", "elements that name their VTK type in [formats]", element.name, "unsupported")
+        number, order = element.vtk
+        own = np.empty_like(nodes)
+        own[:, order] = nodes
+        found.append((number, own))
+    return found
+
+
+def _in_space(vectors: np.ndarray) -> np.ndarray:
+    found = np.zeros((len(vectors), 3))
+    found[:, : vectors.shape[1]] = vectors
+    return found
+
+
+def to_meshio(mesh: "Mesh") -> Any:
+    meshio = _meshio()
+    names = {number: name for name, number in _MESHIO.items()}
+    blocks = _vtk_blocks(mesh)
+    for number, _ in blocks:
+        if number not in names:
+            raise failure("cells", "cells of " + ", ".join(_MESHIO), f"VTK's cell type {number}", "unsupported")
+    counts = np.cumsum([0, *(len(nodes) for _, nodes in blocks)])
+    sets = {name: [own[(own >= a) & (own < b)] - a for a, b in zip(counts, counts[1:])] for name, own in mesh.cell_groups.items()}
+    cells = [(names[number], nodes) for number, nodes in blocks]
+    return meshio.Mesh(np.array(mesh.points), cells, point_sets=mesh.groups, cell_sets=sets)
+
+
+def _meshio() -> Any:
+    try:
+        import meshio
+    except ImportError as error:
+        raise failure("meshio", "the package meshio: pip install meshio", "none", "unsupported") from error
+    return meshio
+
+
+#: The endings of the files in which meshio keeps groups.
+_WITH_GROUPS = (".inp", ".xdmf", ".xmf")
+
+
+def save(mesh: "Mesh", path: str) -> None:
+    meshio, ending = _meshio(), os.path.splitext(path)[1].lower()
+    known = sorted(meshio.extension_to_filetypes)
+    if ending not in known:
+        raise failure("path", f"an ending of meshio's formats: {', '.join(known)}", f'"{path}"', "unsupported")
+    found = to_meshio(mesh)
+    if ending not in _WITH_GROUPS:
+        if mesh.groups:
+            warn(f"files of {ending} have no groups: {', '.join(_WITH_GROUPS)} keep them")
+        found.point_sets, found.cell_sets = {}, {}
+    if mesh.dimension < 3 and ending != ".inp":
+        # Most formats have three coordinates.
+        found.points = _in_space(found.points)
+    try:
+        meshio.write(path, found)
+    except (meshio.WriteError, KeyError) as error:
+        raise failure("path", "a format that meshio writes, with these cells", str(error) or type(error).__name__, "unsupported") from error
+
+
+def to_pyvista(mesh: "Mesh", u: Any) -> Any:
+    import pyvista
+
+    blocks = _vtk_blocks(mesh)
+    grid = pyvista.UnstructuredGrid({number: nodes for number, nodes in blocks}, _in_space(mesh.points))
+    count = sum(len(nodes) for _, nodes in blocks)
+    for name, own in mesh.cell_groups.items():
+        flags = np.zeros(count, dtype=bool)
+        flags[own] = True
+        grid.cell_data[name] = flags
+    if u is not None:
+        given = matrix("u", u, np.float64)
+        if given.shape != mesh.points.shape:
+            raise failure("u", f"an array of shape {mesh.points.shape}", f"one of shape {given.shape}")
+        grid.point_data["u"] = _in_space(given)
+    return grid
+
+
+def normals(mesh: "Mesh") -> np.ndarray:
+    points, found = mesh.points, []
+    for element, (number, nodes) in zip(mesh._core.elements, _vtk_blocks(mesh)):
+        if element.dimension != mesh.dimension - 1:
+            expected = "cells of one dimension less than the space, as Mesh.boundary has"
+            raise failure("normals", expected, f"{element.name} in {mesh.dimension} dimensions")
+        corners = points[nodes]
+        if mesh.dimension == 2:
+            along = corners[:, 1] - corners[:, 0]
+            own = np.column_stack([along[:, 1], -along[:, 0]])
+        elif number in (5, 22, 34):
+            own = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        else:
+            # Of a quadrangle that is bent: across both diagonals.
+            own = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        found.append(own / np.linalg.norm(own, axis=1, keepdims=True))
+    return np.concatenate(found)
+
+
+def surface_of(surface: Any) -> "tuple[str | None, tuple | None]":
+    """A surface as a path, or as its points and lists of polygons."""
+    if isinstance(surface, (str, os.PathLike)):
+        return os.fspath(surface), None
+    expected = "a file, a surface Mesh, a trimesh.Trimesh, a pyvista.PolyData, or points and triangles"
+    if hasattr(surface, "_core") and hasattr(surface, "cells"):
+        points, polygons = surface.points, list(surface.cells.values())
+    elif hasattr(surface, "vertices") and hasattr(surface, "faces"):
+        points, polygons = surface.vertices, [surface.faces]
+    elif hasattr(surface, "triangulate") and hasattr(surface, "points"):
+        points, polygons = surface.points, [surface.triangulate().faces.reshape(-1, 4)[:, 1:]]
+    elif isinstance(surface, (tuple, list)) and len(surface) == 2:
+        points, polygons = surface[0], [surface[1]]
+    else:
+        raise failure("surface", expected, shown(surface))
+    return None, (matrix("surface", points, np.float64), [matrix("surface", cells, np.int64) for cells in polygons])
+
+
+def voxels(values: Any, spacing: Any, labels: Any, element: Any, origin: Any) -> "_core.Mesh":
+    found = array("array", values)
+    if found.dtype.kind not in "biu":
+        raise failure("array", "integers or flags, a label of each voxel", f"values of type {found.dtype}")
+    if found.ndim not in (2, 3):
+        raise failure("array", "an array of two or three axes", f"one of shape {found.shape}")
+    found = np.ascontiguousarray(found.astype(np.int64))
+
+    def along(key: str, given: Any) -> "list[float]":
+        own = array(key, given)
+        full = np.full(found.ndim, own) if own.ndim == 0 else own
+        if full.shape != (found.ndim,):
+            raise failure(key, f"one number, or {found.ndim}, one for each axis", f"values of shape {full.shape}")
+        if not np.isfinite(typed(key, full, np.float64)).all():
+            raise failure(key, "finite numbers", full.tolist())
+        return along_axes(key, full, np.float64)
+
+    lengths, corner = along("spacing", spacing), along("origin", origin)
+    if min(lengths) <= 0:
+        raise failure("spacing", "lengths above zero, m", min(lengths))
+    names = None
+    if labels is not None:
+        if not isinstance(labels, Mapping) or not labels:
+            raise failure("labels", 'a dictionary of labels by name, such as {"bone": 1}', shown(labels))
+        names = [(name, typed(f"labels.{name}", np.atleast_1d(array(f"labels.{name}", own)), np.int64).tolist()) for name, own in labels.items()]
+        kept = np.unique(np.concatenate([own for _, own in names]))
+        found = np.where(np.isin(found, kept), found, 0)
+        absent = [(name, label) for name, own in names for label in own if label == 0 or not (found == label).any()]
+        if absent:
+            name, label = absent[0]
+            raise failure(f"labels.{name}", "a label above or below zero that some voxel has", label)
+    if not found.any():
+        raise failure("array", "a voxel whose label is not zero", "zeros alone")
+    usual = "hex8" if found.ndim == 3 else "quad4"
+    pad = [1.0] * (3 - found.ndim)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "labels.npy")
+        np.save(path, found)
+        return _core.voxel_mesh(path, element_of(usual if element is None else element), lengths + pad, corner + [0.0 for _ in pad], names)

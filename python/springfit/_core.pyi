@@ -13,17 +13,23 @@ __all__ = [
     "CellConstants",
     "DistributedBody",
     "Element",
+    "FileError",
     "Mesh",
+    "MissingFileError",
     "Network",
     "NetworkShare",
+    "Ran",
     "SpringfitError",
     "Studies",
     "Sweep",
     "__version__",
+    "checked_material",
+    "command_line",
     "compare_cases",
     "compare_element",
     "compare_scene",
     "converge",
+    "filled_mesh",
     "finite_elements",
     "fit",
     "is_comparison",
@@ -36,11 +42,13 @@ __all__ = [
     "stability",
     "stability_of_scene",
     "study_line",
+    "voxel_mesh",
 ]
 
 __version__: str
 
 _Progress: TypeAlias = Callable[[str, int, int], Any]
+_Held: TypeAlias = dict[str, Any]
 _Triplets: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]
 
 class SpringfitError(ValueError):
@@ -50,6 +58,12 @@ class SpringfitError(ValueError):
     file: str | None
     line: int | None
     key: str | None
+
+class FileError(SpringfitError, OSError):  # type: ignore[misc]
+    """A file cannot be read or written."""
+
+class MissingFileError(SpringfitError, FileNotFoundError):  # type: ignore[misc]
+    """A file is not there."""
 
 @final
 class Element:
@@ -85,6 +99,7 @@ class Mesh:
         points: NDArray[np.float64],
         blocks: Sequence[tuple[Element, NDArray[np.int64]]],
         groups: dict[str, NDArray[np.int64]],
+        cell_groups: dict[str, NDArray[np.int64]],
         below: str | None = None,
         least: float | None = None,
     ) -> Mesh: ...
@@ -109,6 +124,14 @@ class Mesh:
     def blocks(self) -> list[tuple[str, NDArray[np.int64]]]: ...
     @property
     def groups(self) -> dict[str, NDArray[np.int64]]: ...
+    @property
+    def cell_groups(self) -> dict[str, NDArray[np.int64]]: ...
+    @property
+    def elements(self) -> list[Element]: ...
+    @property
+    def content(self) -> float: ...
+    def refined(self) -> Mesh: ...
+    def boundary(self) -> list[tuple[str, NDArray[np.int64], NDArray[np.int64]]]: ...
     @property
     def numbers(self) -> NDArray[np.int64] | None: ...
     @property
@@ -163,7 +186,26 @@ def restored_mesh(
     groups: dict[str, NDArray[np.int64]],
     numbers: tuple[str, NDArray[np.uint64]] | None,
     counts: tuple[float, list[int], list[int | None], bool, str | None],
+    cell_groups: dict[str, NDArray[np.int64]],
 ) -> Mesh: ...
+def filled_mesh(
+    path: str | None,
+    surface: tuple[NDArray[np.float64], list[NDArray[np.int64]]] | None,
+    element: Element,
+    cell: float | None,
+    points: int | None,
+    options: tuple[str | None, str | None, bool],
+    scale: float,
+) -> Mesh: ...
+def voxel_mesh(
+    path: str,
+    element: Element,
+    spacing: Sequence[float],
+    origin: Sequence[float],
+    names: list[tuple[str, list[int]]] | None,
+) -> Mesh: ...
+def checked_material(material: Any, keys: list[str]) -> list[float | None]: ...
+def command_line(arguments: list[str]) -> int: ...
 def fit(
     mesh: Mesh,
     material: Any,
@@ -187,14 +229,27 @@ def run(
     scene: Path | dict[str, Any],
     folder: Path,
     settings: dict[str, Any],
+    held: _Held,
     out: Path | None = None,
     progress: _Progress | None = None,
-) -> tuple[str, dict[str, dict[str, NDArray[np.float64]]], list[Path]]: ...
+) -> tuple[str, dict[str, dict[str, NDArray[np.float64]]], list[Path], Ran]: ...
+
+@final
+class Ran:
+    @property
+    def fits(self) -> list[str]: ...
+    def mesh(self) -> Mesh: ...
+    def network(self, fit: int) -> Network: ...
 
 @final
 class Sweep:
     def __new__(
-        cls, scene: Path | dict[str, Any], folder: Path, settings: dict[str, Any], sweep: dict[str, Any] | None = None
+        cls,
+        scene: Path | dict[str, Any],
+        folder: Path,
+        settings: dict[str, Any],
+        held: _Held,
+        sweep: dict[str, Any] | None = None,
     ) -> Sweep: ...
     @property
     def scene(self) -> tuple[str, Path]: ...
@@ -209,7 +264,7 @@ class Studies:
     def push(self, line: str) -> None: ...
 
 def study_line(
-    text: str, path: Path, settings: dict[str, Any], values: str, progress: _Progress | None = None
+    text: str, path: Path, settings: dict[str, Any], values: str, held: _Held, progress: _Progress | None = None
 ) -> str: ...
 
 @final
@@ -235,7 +290,7 @@ class CellConstants:
     def __copy__(self) -> CellConstants: ...
     def __deepcopy__(self, _memo: Any) -> CellConstants: ...
 
-_Given: TypeAlias = tuple[Path | dict[str, Any], Path, dict[str, Any]]
+_Given: TypeAlias = tuple[Path | dict[str, Any], Path, dict[str, Any], _Held]
 
 def compare_scene(given: _Given, progress: _Progress | None = None) -> str: ...
 def compare_cases(comparison: Any, folder: str | PathLike[str], progress: _Progress | None = None) -> str: ...

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ._arguments import array, count, failure, typed, warn
-from .material import Material
+from .material import Material, MaterialLike
 
 #: The step of differences at rest, and the relative difference of stiffnesses above which a warning is given.
 _STEP, _TOLD = 1e-4, 0.01
@@ -134,8 +134,10 @@ def _unmasked(key: str, function: Callable) -> Callable:
     return lambda *given: array(key, function(*given))
 
 
-def warn_of_rest(material: Material, energy: "Callable | None", stress: "Callable | None") -> None:
+def warn_of_rest(material: MaterialLike, energy: "Callable | None", stress: "Callable | None") -> None:
     """Warns where the stiffness of an energy at rest is not that of the material. What a function does wrong is left to the fit."""
+    if not isinstance(material, Material) or not (isinstance(material.young, float) and isinstance(material.poisson, float)):
+        return
     axes = np.eye(3)
     shears = [np.outer(axes[i], axes[j]) + np.outer(axes[j], axes[i]) for i, j in ((0, 1), (1, 2), (2, 0))]
     strains = np.array([np.outer(axis, axis) for axis in axes] + shears + [np.eye(3)])

@@ -1,48 +1,110 @@
-"""Isotropic materials."""
+"""Materials: of all cells, of each cell, and of regions."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Literal
+import os
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Literal, Union
 
-from ._arguments import PLANES, failure, number, word
+import numpy as np
 
-_UNITS = {"young": "Pa", "poisson": "without a unit", "thickness": "m", "area": "m²", "density": "kg/m³"}
+from . import _core
+from ._arguments import PLANES, array, failure, number, shown, typed, word
+
+#: A number, a text with a unit, an expression of x, y and z in m, or a value of each cell.
+Quantity = Union[float, str, np.ndarray, Sequence[float]]
+#: One material of the whole body, or those of its regions: by the name of a group of the mesh, None standing for the rest.
+MaterialLike = Union["Material", Mapping[Any, "Material"]]
+
+#: Quantities that arrays may give by cell, with what they are in errors.
+_QUANTITIES = {
+    "young": "a modulus, Pa",
+    "poisson": "a ratio",
+    "thickness": "a length, m",
+    "area": "an area, m²",
+    "density": "a density, kg/m³",
+}
+#: Those of them that are above zero.
+_POSITIVE = ("young", "thickness", "density")
+#: What else an entry of a scene has.
+_OTHERS = ("orthotropic", "transversely_isotropic", "cubic", "stiffness", "axes", "law", "parameters", "fibre")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Material:
-    """An isotropic, linearly elastic material, and what a body of fewer than three dimensions needs besides.
+    """A linearly elastic material, and what a body of fewer than three dimensions needs besides.
 
-    Values are numbers in these units; texts with units, such as "10 kPa", are of scenes. Their ranges are checked by what takes the
-    material.
+    The keys are those of ``[material]`` in a scene. Quantities are numbers in the units below, texts with units such as ``"10 kPa"``,
+    expressions of x, y and z in metres such as ``"1e4*(1 + z/0.1)"``, which hold at the centroids of the cells, or arrays with one value for each
+    cell. Cells are counted block after block, in the order of :attr:`Mesh.cells`: of a mesh of 10 ``hex8`` and 6 ``wedge6`` the first wedge has
+    the place 10. In a region an array has values for all cells of the mesh, of which those of the region are taken; others may be NaN.
 
-    Attributes:
-        young: Young's modulus, Pa.
+    Args:
+        young: Young's modulus, Pa; an isotropic material has it and ``poisson``.
         poisson: Poisson's ratio, above -1 and below 0.5.
         plane: The state of a plane body or a surface: "stress" (the default) or "strain".
         thickness: Of a plane body or a surface, m. A plane body without it is 1 m thick; a surface in space requires it.
         area: The cross-section of rods, m². Rods without it have 1 m².
         density: kg/m³; gives the points of a network their masses.
+        orthotropic: ``{"young": [E1, E2, E3], "poisson": [ν12, ν13, ν23], "shear": [G12, G13, G23]}`` in place of ``young`` and ``poisson``.
+        transversely_isotropic: ``{"young": [along, across], "poisson": [along, across], "shear": along}``.
+        cubic: ``{"c11": …, "c12": …, "c44": …}``.
+        stiffness: Six rows of six numbers, Pa, in Voigt's notation.
+        axes: Of an anisotropic material: one or two vectors, of numbers, of expressions, or an array of each cell (cells, 3).
+        law: An energy of large deformation, such as "neo-hookean", or the path of a material file. It is for scenes, and the default of
+            ``sampled``.
+        parameters: Of the law, by name; values may be arrays by cell.
+        fibre: The direction of the law's fibres, as one of the axes.
+
+    Numbers that are texts with units are kept in these units: ``Material("10 kPa", 0.3).young`` is 10000.0.
 
     Raises:
-        SpringfitError: A value is no number.
+        SpringfitError: A value has another type or is out of its range, a key is missing, or keys do not go together.
+
+    Examples:
+        >>> import numpy as np, springfit as sf
+        >>> sf.Material("10 kPa", 0.3).young
+        10000.0
+        >>> mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[2, 2, 2])
+        >>> stiff_above = np.where(mesh.centers[:, 2] > 0.5, 5e4, 1e4)
+        >>> net = sf.fit(mesh, sf.Material(young=stiff_above, poisson=0.3))
+        >>> fibres = sf.Material(transversely_isotropic={"young": [5e4, 1e4], "poisson": [0.3, 0.3], "shear": 4e3}, axes=[[0, 0, 1]])
+        >>> net = sf.fit(mesh, fibres, "frobenius")
     """
 
-    young: float
-    poisson: float
-    plane: Literal["stress", "strain"] | None = None
-    thickness: float | None = None
-    area: float | None = None
-    density: float | None = None
+    young: "Quantity | None" = None
+    poisson: "Quantity | None" = None
+    plane: "Literal['stress', 'strain'] | None" = None
+    thickness: "Quantity | None" = None
+    area: "float | str | None" = None
+    density: "Quantity | None" = None
+    orthotropic: "Mapping[str, Any] | None" = None
+    transversely_isotropic: "Mapping[str, Any] | None" = None
+    cubic: "Mapping[str, Any] | None" = None
+    stiffness: "Sequence[Any] | np.ndarray | None" = None
+    axes: "Sequence[Any] | None" = None
+    law: "str | os.PathLike[str] | None" = None
+    parameters: "Mapping[str, Any] | None" = None
+    fibre: "Sequence[Any] | np.ndarray | None" = None
 
     def __post_init__(self) -> None:
-        for name, unit in _UNITS.items():
+        isotropic = all(getattr(self, key) is None for key in ("orthotropic", "transversely_isotropic", "cubic", "stiffness"))
+        for name, what in _QUANTITIES.items():
             value = getattr(self, name)
-            if value is not None or name in ("young", "poisson"):
+            if value is not None or (isotropic and name in ("young", "poisson")):
                 # The class is frozen.
-                object.__setattr__(self, name, number(name, value, f"a number, {unit}"))
+                object.__setattr__(self, name, _quantity(name, value, what))
         word("plane", self.plane, PLANES)
+        if self.law is not None:
+            if not isinstance(self.law, (str, os.PathLike)):
+                raise failure("law", "the name of an energy, or the path of its file", shown(self.law))
+            object.__setattr__(self, "law", os.fspath(self.law))
+        for name, value in zip(_QUANTITIES, _core.checked_material(self, list(_QUANTITIES))):
+            # Texts with units; expressions stay.
+            if isinstance(getattr(self, name), str) and value is not None:
+                object.__setattr__(self, name, value)
 
     @classmethod
     def lame(cls, lam: float, mu: float, **rest: Any) -> "Material":
@@ -50,6 +112,11 @@ class Material:
 
         Raises:
             SpringfitError: μ or the bulk modulus λ + 2 μ/3 is not above zero.
+
+        Examples:
+            >>> import springfit as sf
+            >>> sf.Material.lame(lam=4000.0, mu=4000.0).poisson
+            0.25
         """
         lam, mu = number("lam", lam, "a number, Pa"), number("mu", mu, "a number, Pa")
         if not mu > 0:
@@ -57,3 +124,127 @@ class Material:
         if not 3 * lam + 2 * mu > 0:
             raise failure("lam", f"a number above -2/3 mu = {-2 * mu / 3:g} Pa", lam)
         return cls(young=mu * (3 * lam + 2 * mu) / (lam + mu), poisson=lam / (2 * (lam + mu)), **rest)
+
+    def _entry(self, held: "dict[str, Any]") -> "dict[str, Any]":
+        """The keys of a scene's entry; arrays by cell are held by name."""
+        entry = {key.replace("transversely_isotropic", "transversely-isotropic"): _stated(key, getattr(self, key), held)
+                 for key in (*_QUANTITIES, *_OTHERS) if getattr(self, key) is not None}
+        return entry if self.plane is None else {**entry, "plane": self.plane}
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Material):
+            return NotImplemented
+        return all(_equal(getattr(self, own.name), getattr(other, own.name)) for own in fields(self))
+
+    def __hash__(self) -> int:
+        return hash(tuple(value for value in (getattr(self, own.name) for own in fields(self)) if isinstance(value, (float, str))))
+
+    def __repr__(self) -> str:
+        def text(value: Any) -> str:
+            return f"<{len(value)} values>" if isinstance(value, np.ndarray) else repr(value)
+
+        given = ((own.name, getattr(self, own.name)) for own in fields(self))
+        return f"Material({', '.join(f'{name}={text(value)}' for name, value in given if value is not None)})"
+
+
+def stated(material: Any) -> "tuple[Any, dict[str, Any]]":
+    """What a material, or a dictionary of them by group, is as a scene states it, with the arrays that it holds by name."""
+    held: "dict[str, Any]" = {}
+    if isinstance(material, Material):
+        return material._entry(held), held
+    if not is_regions(material):
+        expected = "a springfit.Material, such as Material(young=1e4, poisson=0.3), or a dictionary of them by group"
+        raise failure("material", expected, shown(material))
+    return regions(material, held), held
+
+
+def is_regions(material: Any) -> bool:
+    """Whether it is a dictionary of materials."""
+    return isinstance(material, Mapping) and len(material) > 0 and all(isinstance(own, Material) for own in material.values())
+
+
+def regions(material: "Mapping[Any, Material]", held: "dict[str, Any]") -> "list[dict[str, Any]]":
+    """The entries of the regions."""
+    entries = []
+    for name, own in material.items():
+        if not isinstance(name, (str, type(None))):
+            raise failure("material", "names of groups of the mesh, and None for the rest", shown(name))
+        entries.append({**own._entry(held), **({} if name is None else {"group": name})})
+    return entries
+
+
+def _quantity(key: str, value: Any, what: str) -> Any:
+    """A number, a text, or a read-only array of one value for each cell."""
+    expected = f"{what}: a number, a text such as \"10 kPa\", or an array with a value for each cell"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (bytes, bool, np.bool_, type(None), Mapping)):
+        raise failure(key, expected, "nothing" if value is None else shown(value))
+    found = array(key, value)
+    if found.dtype.kind not in "iuf" or found.ndim > 1:
+        raise failure(key, expected, shown(value) if found.ndim == 0 else f"an array of type {found.dtype}, shape {found.shape}")
+    if found.ndim == 0:
+        return float(found)
+    if key == "area":
+        raise failure(key, "one area for the rods of a region", f"an array of shape {found.shape}")
+    found = typed(key, found, np.float64)
+    if key == "poisson":
+        wrong, range_ = (found <= -1) | (found > 0.5), "ratios above -1 and below 0.5"
+    else:
+        wrong, range_ = (found <= 0) | np.isinf(found), "finite numbers above zero"
+    # What is not a number may be outside of the region.
+    if wrong.any():
+        cell = int(np.flatnonzero(wrong)[0])
+        raise failure(f"{key}[{cell}]", range_, found[cell])
+    if found is value or found.base is not None:
+        found = found.copy()
+    found.flags.writeable = False
+    return found
+
+
+def _stated(key: str, value: Any, held: "dict[str, Any]") -> Any:
+    """A value as a scene has it; arrays by cell are held by name."""
+    if isinstance(value, np.ndarray) and key in _QUANTITIES:
+        return _held(key, value[:, None], held)
+    if key == "fibre" or key.startswith("axes["):
+        rows = array(key, value) if isinstance(value, np.ndarray) else None
+        return _held(key, _vectors(key, rows), held) if rows is not None and rows.ndim == 2 else value
+    if key == "axes":
+        if isinstance(value, (str, bytes, Mapping)) or not hasattr(value, "__iter__"):
+            raise failure(key, "a list of one or two vectors", shown(value))
+        return [_stated(f"axes[{i}]", axis, held) for i, axis in enumerate(value)]
+    if isinstance(value, Mapping):
+        return {name: _constant(f"{key}.{name}", own, held) for name, own in value.items()}
+    return value
+
+
+def _constant(key: str, value: Any, held: "dict[str, Any]") -> Any:
+    """A constant of a law or a list of them, each a number, a text or an array by cell."""
+    of_cells = isinstance(value, np.ndarray) and value.ndim == 1 and key.startswith("parameters.")
+    if of_cells or (isinstance(value, np.ndarray) and value.ndim == 1 and value.size > 3):
+        return _held(key, typed(key, value, np.float64)[:, None], held)
+    if isinstance(value, (list, tuple)):
+        return [_constant(f"{key}[{i}]", own, held) for i, own in enumerate(value)]
+    return value
+
+
+def _vectors(key: str, rows: np.ndarray) -> np.ndarray:
+    if rows.shape[1] not in (2, 3):
+        raise failure(key, "an array of a vector for each cell, (cells, 3)", f"one of shape {rows.shape}")
+    vectors = np.zeros((len(rows), 3))
+    vectors[:, : rows.shape[1]] = typed(key, rows, np.float64)
+    return vectors
+
+
+def _held(key: str, values: np.ndarray, held: "dict[str, Any]") -> "dict[str, str]":
+    """Holds an array; its name tells its content from others."""
+    values = np.ascontiguousarray(values)
+    name = f"memory:{key}-{zlib.crc32(values.tobytes()):08x}-{values.size}"
+    held[name] = (None, values)
+    return {"file": name}
+
+
+def _equal(a: Any, b: Any) -> bool:
+    if isinstance(a, np.ndarray) or isinstance(b, np.ndarray):
+        return np.array_equal(a, b)
+    return bool(a == b)

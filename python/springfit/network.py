@@ -14,7 +14,7 @@ from . import _core
 from ._arguments import array, failure, matrix, number, shown, typed, warn
 from ._functions import separated, warn_of_rest
 from ._progress import listener
-from .material import Material
+from .material import Material, MaterialLike, is_regions
 from .mesh import Mesh
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ NAMED = 8
 
 def fit(
     mesh: Mesh,
-    material: Material,
+    material: MaterialLike,
     objective: str = "exact",
     *,
     springs: "list[str] | None" = None,
@@ -39,7 +39,7 @@ def fit(
 
     Args:
         mesh: The body.
-        material: What it is made of.
+        material: What it is made of: a :class:`Material`, or a dictionary of them by group for a body of regions, None standing for the rest.
         objective: "exact" (the default: the network is the finite element), "frobenius", "offdiag", "modal", "spectral",
             "divergence", "sampled", or a published method.
         springs: Names of spring groups; all that are not optional, if None.
@@ -67,7 +67,7 @@ def fit(
 
 def sampled(
     mesh: Mesh,
-    material: Material,
+    material: MaterialLike,
     law: "str | os.PathLike[str] | Callable[[np.ndarray], Any] | None" = None,
     *,
     stress: "Callable[[np.ndarray], Any] | None" = None,
@@ -104,7 +104,7 @@ def sampled(
     return fit(mesh, material, "sampled", law=law, stress=stress, force=force, norm=norm, **keys)
 
 
-def whole(mesh: Mesh, material: Material, fix: Any, **keys: Any) -> "Network":
+def whole(mesh: Mesh, material: MaterialLike, fix: Any, **keys: Any) -> "Network":
     """Fits the springs of all cells together to the displacements of the whole object.
 
     Args:
@@ -122,8 +122,9 @@ def check_body(mesh: Any, material: Any) -> None:
     """Raises where one is not what its name says."""
     if not isinstance(mesh, Mesh):
         raise failure("mesh", "a springfit.Mesh, such as Mesh(points, {element: cells})", shown(mesh))
-    if not isinstance(material, Material):
-        raise failure("material", "a springfit.Material, such as Material(young=1e4, poisson=0.3)", shown(material))
+    if not isinstance(material, Material) and not is_regions(material):
+        expected = "a springfit.Material, such as Material(young=1e4, poisson=0.3), or a dictionary of them by group"
+        raise failure("material", expected, shown(material))
 
 
 def held_flags(mesh: Mesh, fix: Any) -> np.ndarray:
@@ -152,7 +153,7 @@ def held_flags(mesh: Mesh, fix: Any) -> np.ndarray:
     return held
 
 
-def stiffness(mesh: Mesh, material: Material) -> "csr_matrix":
+def stiffness(mesh: Mesh, material: MaterialLike) -> "csr_matrix":
     """The stiffness matrix of the finite elements, N/m: a ``scipy.sparse.csr_matrix`` of shape (points·dimension, points·dimension).
 
     The degree of freedom of point p along axis k has the number ``p * dimension + k``.
@@ -161,7 +162,7 @@ def stiffness(mesh: Mesh, material: Material) -> "csr_matrix":
     return _sparse(_core.finite_elements(mesh._core, material), mesh.points.size)
 
 
-def mass(mesh: Mesh, material: Material, share: float = 0.0, total: "float | None" = None) -> "csr_matrix":
+def mass(mesh: Mesh, material: MaterialLike, share: float = 0.0, total: "float | None" = None) -> "csr_matrix":
     """The mass matrix ``(1 - share) * M + share * diag(m)``, kg: a ``scipy.sparse.csr_matrix``, numbered as in :func:`stiffness`.
 
     ``M_ab = ∫ ρ N_a N_b dV`` is the consistent matrix of the finite elements, and ``m`` its diagonal with the mass of each cell (HRZ).

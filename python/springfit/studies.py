@@ -13,10 +13,10 @@ from ._arguments import PLANES, count, failure, number, word
 from ._core import Element
 from ._functions import separated, warn_of_rest
 from ._progress import listener
-from .material import Material
+from .material import MaterialLike
 from .mesh import Mesh
 from .network import check_body
-from .report import Report, SceneLike, given, settings_of
+from .report import Report, SceneLike, given
 
 if TYPE_CHECKING:
     import numpy as np
@@ -70,13 +70,20 @@ def compare(
 
     Raises:
         SpringfitError: The scene, a key or a number is wrong, or an argument is not of what is compared.
+
+    Examples:
+        >>> import springfit as sf
+        >>> table = sf.compare(sf.Element("tri3"), shapes=4)
+        >>> "frobenius" in str(table.iloc[:, 0].tolist())
+        True
     """
     if _is_comparison(what):
         _refuse("a scene or an element", "a comparison", set=set, poisson=poisson, plane=plane, shapes=shapes, iterations=iterations)
         import pandas
 
         with listener(progress) as told:
-            columns = json.loads(_core.compare_cases(*given(what, folder), told))
+            comparison, base, _, _ = given(what, folder)
+            columns = json.loads(_core.compare_cases(comparison, base, told))
         return pandas.DataFrame(dict(columns))
     if isinstance(what, Element):
         _refuse("a scene", "an element", set=set, folder=folder)
@@ -90,7 +97,7 @@ def compare(
             state = word("plane", plane, PLANES)
             counts = (count("shapes", 64 if shapes is None else shapes), count("iterations", 1000 if iterations is None else iterations))
             return pandas.json_normalize(json.loads(_core.compare_element(what, nu, state, *counts, told)))
-        return Report(json.loads(_core.compare_scene((*given(what, folder), settings_of(set)), told)), {})
+        return Report(json.loads(_core.compare_scene(given(what, folder, set), told)), {})
 
 
 def _is_comparison(what: Any) -> bool:
@@ -127,16 +134,23 @@ def converge(
 
     Raises:
         SpringfitError: A scene or a number is wrong, or the finest mesh is too large.
+
+    Examples:
+        >>> import springfit as sf
+        >>> load = {"name": "pull", "group": "xmax", "traction": [10, 0]}
+        >>> body = {"mesh": sf.Mesh.box("quad4", size=[2, 1], cells=[2, 1]), "material": sf.Material(1e4, 0.3)}
+        >>> found = sf.converge({**body, "fix": [{"group": "xmin"}], "load": [load], "fit": [{"objective": "exact"}]}, levels=2)
+        >>> len(found["levels"])
+        2
     """
-    settings = settings_of(set)
     # The folder is that of the dictionaries among both scenes.
     folders = [folder if isinstance(own, Mapping) else None for own in (scene, truth)]
     if folders == [None, None]:
         folders[0] = folder
-    reference = None if truth is None else (*given(truth, folders[1]), settings)
+    reference = None if truth is None else given(truth, folders[1], set)
     levels = None if levels is None else count("levels", levels)
     with listener(progress) as told:
-        return json.loads(_core.converge((*given(scene, folders[0]), settings), levels, reference, told))
+        return json.loads(_core.converge(given(scene, folders[0], set), levels, reference, told))
 
 
 def stability(
@@ -158,6 +172,11 @@ def stability(
 
     Raises:
         SpringfitError: The scene or a key is wrong, or keys are given without a scene.
+
+    Examples:
+        >>> import springfit as sf
+        >>> len(sf.stability(sf.Element("tri3"))) > 10
+        True
     """
     import pandas
 
@@ -167,13 +186,13 @@ def stability(
         if what is None or isinstance(what, Element):
             found = json.loads(_core.stability(what, told))
         else:
-            found = json.loads(_core.stability_of_scene((*given(what, folder), settings_of(set)), told))
+            found = json.loads(_core.stability_of_scene(given(what, folder, set), told))
     return pandas.json_normalize(found["rows"])
 
 
 def learning_curve(
     mesh: Mesh,
-    material: Material,
+    material: MaterialLike,
     law: "str | os.PathLike[str] | Callable[[np.ndarray], Any] | None" = None,
     *,
     counts: "list[int]",
@@ -198,6 +217,13 @@ def learning_curve(
 
     Raises:
         SpringfitError: As by :func:`sampled`; or a count or a seed is wrong, or no shape is held out.
+
+    Examples:
+        >>> import springfit as sf
+        >>> mesh = sf.Mesh.box("tri3", size=[1, 1], cells=[1, 1])
+        >>> curve = sf.learning_curve(mesh, sf.Material(1e4, 0.3), "neo-hookean", springs=["edge"], counts=[5, 10], shapes={"held_out": 10})
+        >>> curve["shapes"].tolist()
+        [5, 10]
     """
     import pandas
 

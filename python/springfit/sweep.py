@@ -14,7 +14,7 @@ from . import _core
 from ._arguments import failure
 from ._core import SpringfitError
 from ._progress import listener
-from .report import SceneLike, given, settings_of
+from .report import SceneLike, given, plain
 
 if TYPE_CHECKING:
     import pandas
@@ -53,28 +53,36 @@ def sweep(
 
     Returns:
         A ``pandas.DataFrame`` with one row for each study, fit and load: the number of the study from 1, its values, and the figures. A
-        study that failed is one row with its ``error``. The rows are in the order of the studies, whatever finished first.
+        study that failed is one row with its ``error``, which is None of others. The rows are in the order of the studies, whatever finished first.
 
     Raises:
         SpringfitError: The scene, its sweep or the records are wrong, or the executor takes no work.
+
+    Examples:
+        >>> import springfit as sf
+        >>> load = {"name": "pull", "group": "xmax", "traction": [10, 0]}
+        >>> body = {"mesh": sf.Mesh.box("quad4", size=[2, 1], cells=[2, 1]), "material": sf.Material(1e4, 0.3)}
+        >>> scene = {**body, "fix": [{"group": "xmin"}], "load": [load], "fit": [{"objective": "exact"}]}
+        >>> table = sf.sweep(scene, {"material.poisson": [0.1, 0.4]})
+        >>> table["material.poisson"].tolist(), table["error"].tolist()
+        ([0.1, 0.4], [None, None])
     """
     import pandas
 
-    scene, base = given(scene, folder)
-    settings = settings_of(set)
+    scene, base, settings, held = given(scene, folder, set)
     plan = None
     if over is not None:
-        over = _plain(dict(over) if isinstance(over, Mapping) else list(over))
+        over = _plain(plain(dict(over) if isinstance(over, Mapping) else list(over), held))
         plan = {"over": over, "design": design, "samples": samples, "seed": seed}
     elif not (design is None and samples is None and seed is None):
         settings |= {f"sweep.{k}": v for k, v in {"design": design, "samples": samples, "seed": seed}.items() if v is not None}
-    core = _core.Sweep(scene, base.resolve(), settings, plan)
+    core = _core.Sweep(scene, base.resolve(), settings, held, plan)
     settings = {key: value for key, value in settings.items() if not key.startswith("sweep.")}
     with tempfile.TemporaryDirectory() as scratch, listener(progress) as told:
         lines = _core.Studies(Path(records or Path(scratch, "studies.jsonl")), core)
         text, path = core.scene
         marks = list(dict.fromkeys(core.marks))
-        waiting = [(text, Path(path).resolve(), settings, mark) for mark in marks if mark not in lines]
+        waiting = [(text, Path(path).resolve(), settings, mark, held) for mark in marks if mark not in lines]
         done = len(marks) - len(waiting)
         for line in _results(executor, waiting):
             lines.push(line)
@@ -83,7 +91,10 @@ def sweep(
                 told("studies", done, len(marks))
         columns, rows = core.table(lines)
         del lines
-    return pandas.DataFrame(json.loads(rows), columns=columns)
+    table = pandas.DataFrame(json.loads(rows), columns=columns)
+    if "error" not in table:
+        table["error"] = None
+    return table
 
 
 def _plain(value: Any) -> Any:
@@ -97,7 +108,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _study(task: "tuple[str, Path, dict, str]") -> str:
+def _study(task: "tuple[str, Path, dict, str, dict]") -> str:
     """The line of one study; runs in the threads and processes of an executor."""
     return _core.study_line(*task)
 

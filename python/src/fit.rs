@@ -1,6 +1,6 @@
 //! `fit` and the finite elements of the same body.
 
-use crate::arguments::{self, found, number, text};
+use crate::arguments::{self, number};
 use crate::arrays::list;
 use crate::entry::fit_entry;
 use crate::error::invalid;
@@ -8,72 +8,35 @@ use crate::functions::{Functions, Given};
 use crate::mesh::Mesh;
 use crate::network::{Network, Triplets, triplets};
 use crate::progress::{self, alone};
+use crate::stated::Stated;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
-use springfit::material::{CellMap, Material, MaterialMap, Plane};
+use springfit::material::MaterialMap;
 use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{
-    BodyConstants, Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, assumed, fit_without_errors,
-    learning_curve as learn, point_masses,
+    Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, fit_without_errors, learning_curve as learn,
+    point_masses,
 };
-
-/// Young's modulus (Pa), Poisson's ratio, the state of a plane body, its thickness (m) or the cross-section of rods (m²), and the density.
-pub struct Constants {
-    young: f64,
-    poisson: f64,
-    plane: Option<String>,
-    thickness: Option<f64>,
-    area: Option<f64>,
-    density: Option<f64>,
-}
-
-impl Constants {
-    /// Those of a `Material`.
-    fn given(material: &Bound<PyAny>) -> PyResult<Constants> {
-        let attribute = |key: &str| {
-            let missing = |_| invalid(material.py(), "material", "a Material", found(material));
-            material.getattr(key).map_err(missing)
-        };
-        let required = |key: &str| number(key, &attribute(key)?);
-        let optional = |key: &str| {
-            let given = attribute(key)?;
-            if given.is_none() { Ok(None) } else { number(key, &given).map(Some) }
-        };
-        let plane = attribute("plane")?;
-        Ok(Constants {
-            young: required("young")?,
-            poisson: required("poisson")?,
-            plane: if plane.is_none() { None } else { Some(text("plane", &plane)?) },
-            thickness: optional("thickness")?,
-            area: optional("area")?,
-            density: optional("density")?,
-        })
-    }
-
-    fn of(&self, mesh: &springfit::mesh::Mesh) -> Result<Material> {
-        let &Constants { young, poisson, thickness, area, .. } = self;
-        let plane = self.plane.as_deref().map(|name| match name {
-            "stress" => Ok(Plane::Stress),
-            "strain" => Ok(Plane::Strain),
-            other => Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
-        });
-        BodyConstants { young, poisson, plane: plane.transpose()?, thickness, area }.material(mesh)
-    }
-}
+use std::borrow::Cow;
 
 /// The material of the mesh, and the fit of these keys for it, with functions in place of some of them.
-fn posed(
-    mesh: &springfit::mesh::Mesh,
+fn posed<'a>(
+    mesh: &'a springfit::mesh::Mesh,
     entry: &FitEntry,
-    constants: &Constants,
+    stated: &Stated,
     functions: Option<&Functions>,
-) -> Result<(Material, NamedFit)> {
+) -> Result<(Cow<'a, springfit::mesh::Mesh>, MaterialMap, NamedFit)> {
     entry.check()?;
-    let material = constants.of(mesh)?;
-    let own = functions.map(|functions| functions.of(material)).transpose()?.unwrap_or_default();
-    Ok((material, entry.fits_with(std::path::Path::new(""), &own)?.remove(0)))
+    let (mesh, map) = stated.on(mesh)?;
+    let uniform = || {
+        let expected = "one isotropic material of all cells, beside functions of Python";
+        map.uniform().ok_or_else(|| Error::expected("material", expected, "one that differs from cell to cell"))
+    };
+    let own = functions.map(|functions| functions.of(uniform()?)).transpose()?.unwrap_or_default();
+    let named = entry.fits_with(std::path::Path::new(""), &own)?.remove(0);
+    Ok((mesh, map, named))
 }
 
 /// Fits the springs of every cell; `keys` are those of a `[[fit]]` of a scene, and `functions` stand for some of them.
@@ -90,25 +53,23 @@ pub fn fit(
 ) -> PyResult<Network> {
     let support = held.map(|held| support(py, mesh, &held)).transpose()?;
     let entry = fit_entry(py, keys)?;
-    let constants = Constants::given(material)?;
-    let functions = functions.map(|given| Functions::new(py, given, constants.young)).transpose()?;
+    let stated = Stated::given(material)?;
+    let functions = functions.map(|given| Functions::new(py, given, stated.young())).transpose()?;
     let ends = functions.as_ref().map(|functions| functions.ends.clone());
     let mesh = mesh.mesh.clone();
     let work = move |told: &mut dyn FnMut(Event)| {
-        let (material, named) = posed(&mesh, &entry, &constants, functions.as_ref())?;
+        let (body, map, named) = posed(&mesh, &entry, &stated, functions.as_ref())?;
         let controls = Controls::default();
-        let map = MaterialMap::from(material);
         let whole = match (named.recipe.whole(), &support) {
-            (Some(_), Some(support)) => Some(WholeBody::new(&mesh, &map, support, &controls)),
+            (Some(_), Some(support)) => Some(WholeBody::new(&body, &map, support, &controls)),
             (Some(_), None) => return Err(Error::expected("fix", "what is held, for whole-object fits", "nothing")),
             (None, _) => None,
         };
         let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
-        let (fit, cells) = fit_without_errors(&mesh, &map, &reference, &named, told)?;
-        let masses = constants.density.map(|density| point_masses(&mesh, density, material)).transpose()?;
-        let assumed = assumed(&mesh, constants.thickness, constants.area);
-        let material = MaterialMap::from(material).with_density(constants.density.map(CellMap::Uniform));
-        let outcome = Outcome::of_fit(String::new(), springfit::mesh::Mesh::clone(&mesh), material, masses, fit);
+        let (fit, cells) = fit_without_errors(&body, &map, &reference, &named, told)?;
+        let masses = map.density().map(|density| point_masses(&body, density, &map)).transpose()?;
+        let assumed = stated.assumption(&body);
+        let outcome = Outcome::of_fit(String::new(), body.into_owned(), map, masses, fit);
         Ok((Outcome { assumed, ..outcome }, cells))
     };
     let (outcome, cells) = match &ends {
@@ -132,16 +93,15 @@ pub fn learning_curve(
     progress: Option<Py<PyAny>>,
     functions: Option<Given>,
 ) -> PyResult<String> {
-    let (entry, constants) = (fit_entry(py, keys)?, Constants::given(material)?);
+    let (entry, stated) = (fit_entry(py, keys)?, Stated::given(material)?);
     let counts = arguments::counts("counts", counts)?;
     let seeds: Vec<u64> = arguments::counts("seeds", seeds)?.into_iter().map(|seed| seed as u64).collect();
-    let functions = functions.map(|given| Functions::new(py, given, constants.young)).transpose()?;
+    let functions = functions.map(|given| Functions::new(py, given, stated.young())).transpose()?;
     let ends = functions.as_ref().map(|functions| functions.ends.clone());
     let mesh = mesh.mesh.clone();
     let work = move |told: &mut dyn FnMut(Event)| {
-        let (material, named) = posed(&mesh, &entry, &constants, functions.as_ref())?;
-        let map = MaterialMap::from(material);
-        let points = learn(&mesh, &map, &Reference::default(), &named, &counts, &seeds, told)?;
+        let (body, map, named) = posed(&mesh, &entry, &stated, functions.as_ref())?;
+        let points = learn(&body, &map, &Reference::default(), &named, &counts, &seeds, told)?;
         serde_json::to_string(&points).map_err(|e| Error::new(e.to_string()))
     };
     match &ends {
@@ -162,8 +122,8 @@ pub fn support(py: Python, mesh: &Mesh, held: &PyReadonlyArray2<bool>) -> PyResu
 /// The stiffness of the finite elements, in triplets of both triangles.
 #[pyfunction]
 pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny>) -> PyResult<Triplets<'py>> {
-    let (constants, mesh) = (Constants::given(material)?, mesh.mesh.clone());
-    let entries = alone(py, move || Ok(model::finite_elements(&mesh, constants.of(&mesh)?.moduli())))?;
+    let (stated, mesh) = (Stated::given(material)?, mesh.mesh.clone());
+    let entries = alone(py, move || stated.on(&mesh).map(|(body, map)| model::finite_elements(&body, map.moduli())))?;
     Ok(triplets(py, &entries))
 }
 
@@ -175,14 +135,14 @@ pub fn masses<'py>(
     material: &Bound<PyAny>,
     share: &Bound<PyAny>,
 ) -> PyResult<Triplets<'py>> {
-    let (constants, share) = (Constants::given(material)?, number("share", share)?);
+    let (stated, share) = (Stated::given(material)?, number("share", share)?);
     let (mesh, d) = (mesh.mesh.clone(), mesh.mesh.dimension);
     let matrix = alone(py, move || {
-        let density = constants.density.ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
-        let density = springfit::range::positive("density", density, "kg/m³")?;
-        let thickness = MaterialMap::from(constants.of(&mesh)?).thicknesses();
-        let lumped = lumped_masses(&mesh, density, thickness.clone(), Lumping::Hrz);
-        ConsistentMasses::of_mesh(&mesh, density, thickness)?.blended(&lumped, share)
+        let (body, map) = stated.on(&mesh)?;
+        let density = map.density().ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
+        let thickness = map.thicknesses();
+        let lumped = lumped_masses(&body, density, thickness.clone(), Lumping::Hrz);
+        ConsistentMasses::of_mesh(&body, density, thickness)?.blended(&lumped, share)
     })?;
     let dofs = |p: usize| (0..d).map(move |k| (p * d + k) as i64);
     let rows = matrix.entries().flat_map(|(a, ..)| dofs(a)).collect();

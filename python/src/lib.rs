@@ -2,11 +2,13 @@
 
 mod arguments;
 mod arrays;
+mod command;
 mod distributed;
 mod element;
 mod ends;
 mod entry;
 mod error;
+mod filled;
 mod fit;
 mod functions;
 mod gradient;
@@ -15,6 +17,7 @@ mod network;
 mod pickled;
 mod progress;
 mod sampled;
+mod stated;
 mod studies;
 mod study;
 mod sweep;
@@ -26,9 +29,13 @@ use pyo3::prelude::*;
 fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("SpringfitError", error::class(module.py())?)?;
+    let [missing, of_files] = error::classes_of_files(module.py())?;
+    module.add("MissingFileError", missing)?;
+    module.add("FileError", of_files)?;
     module.add_class::<element::Element>()?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<network::Network>()?;
+    module.add_class::<study::Ran>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<sweep::Studies>()?;
     module.add_class::<distributed::DistributedBody>()?;
@@ -38,6 +45,10 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(element::parsed_element, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::restored_mesh, module)?)?;
+    module.add_function(wrap_pyfunction!(filled::filled_mesh, module)?)?;
+    module.add_function(wrap_pyfunction!(filled::voxel_mesh, module)?)?;
+    module.add_function(wrap_pyfunction!(stated::checked_material, module)?)?;
+    module.add_function(wrap_pyfunction!(command::command_line, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::learning_curve, module)?)?;
     module.add_function(wrap_pyfunction!(fit::finite_elements, module)?)?;

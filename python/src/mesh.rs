@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::Result;
 use springfit::mesh::{self, BoxMesh, Gate, MeshArrays, MeshSource};
+use springfit::model::masses;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -26,6 +27,9 @@ pub struct Mesh {
 /// `(element, nodes)` of the cells of one type, `nodes` of shape `[cells, nodes of the element]`.
 type Block<'py> = (PyRef<'py, Element>, PyReadonlyArray2<'py, i64>);
 
+/// Places of points or cells, by the name of their group.
+type Places<'py> = BTreeMap<String, PyReadonlyArray1<'py, i64>>;
+
 /// The arguments of [`restored_mesh`].
 type State<'py> = (
     Bound<'py, PyArray2<f64>>,
@@ -33,6 +37,7 @@ type State<'py> = (
     BTreeMap<String, Bound<'py, PyArray1<i64>>>,
     Option<Numbers<'py>>,
     Counts,
+    BTreeMap<String, Bound<'py, PyArray1<i64>>>,
 );
 
 /// The arrays of a mesh: places from 0 in `points`.
@@ -40,7 +45,8 @@ fn arrays_of(
     py: Python,
     points: &PyReadonlyArray2<f64>,
     blocks: &[Block],
-    groups: &BTreeMap<String, PyReadonlyArray1<i64>>,
+    groups: &Places,
+    cell_groups: &Places,
 ) -> PyResult<MeshArrays> {
     let block = |(element, nodes): &Block| {
         let (key, n) = (format!("cells of {}", element.0.name), element.0.nodes());
@@ -50,14 +56,18 @@ fn arrays_of(
         }
         Ok((element.0.clone(), places(py, &key, nodes.as_array().iter())?))
     };
-    let group = |(name, points): (&String, &PyReadonlyArray1<i64>)| {
-        Ok((name.clone(), place_list(py, &format!("groups.{name}"), points)?))
+    let listed = |key: &str, lists: &Places| {
+        let list = |(name, places): (&String, &PyReadonlyArray1<i64>)| {
+            Ok((name.clone(), place_list(py, &format!("{key}.{name}"), places)?))
+        };
+        lists.iter().map(list).collect::<PyResult<BTreeMap<String, Vec<usize>>>>()
     };
     Ok(MeshArrays {
         dimension: points.shape()[1],
         points: rows(points),
         blocks: blocks.iter().map(block).collect::<PyResult<_>>()?,
-        groups: groups.iter().map(group).collect::<PyResult<_>>()?,
+        groups: listed("groups", groups)?,
+        cell_groups: listed("cell_groups", cell_groups)?,
     })
 }
 
@@ -71,19 +81,43 @@ fn elements_of(blocks: &[Block]) -> Vec<Element> {
     blocks.iter().map(|(element, _)| Element::clone(element)).collect()
 }
 
+/// The name of an element, its cells on the boundary, and the cells behind them.
+type Outside<'py> = (String, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray1<i64>>);
+
+impl Mesh {
+    /// Of the library, some of whose elements are these; others are shipped.
+    ///
+    /// # Errors
+    /// An element is neither.
+    pub fn of_library(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
+        let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
+            Some(own) => Ok(own.clone()),
+            None => Element::named(&block.element.name),
+        };
+        let elements = mesh.blocks.iter().map(element).collect::<Result<_>>()?;
+        Ok(Mesh { mesh, elements })
+    }
+
+    /// The elements of its blocks.
+    pub fn own_elements(&self) -> &[Element] {
+        &self.elements
+    }
+}
+
 /// The mesh of a pickle.
 #[pyfunction]
-#[pyo3(signature = (points, blocks, groups, numbers, counts))]
+#[pyo3(signature = (points, blocks, groups, numbers, counts, cell_groups))]
 pub fn restored_mesh(
     py: Python,
     points: PyReadonlyArray2<f64>,
     blocks: Vec<Block>,
-    groups: BTreeMap<String, PyReadonlyArray1<i64>>,
+    groups: Places,
     numbers: Option<ReadNumbers>,
     counts: Counts,
+    cell_groups: Places,
 ) -> PyResult<Mesh> {
     let gate = Gate::named(None, Some(counts.0)).map_err(|error| raised(py, error))?;
-    let arrays = arrays_of(py, &points, &blocks, &groups)?;
+    let arrays = arrays_of(py, &points, &blocks, &groups, &cell_groups)?;
     let mut mesh = alone(py, move || arrays.build(gate))?;
     pickled::restore(py, &mut mesh, numbers, counts)?;
     Ok(Mesh { mesh: Arc::new(mesh), elements: elements_of(&blocks) })
@@ -93,17 +127,18 @@ pub fn restored_mesh(
 impl Mesh {
     /// `points` in metres, `[points, dimension]`; the nodes of cells are places in them, in the order of the element.
     #[staticmethod]
-    #[pyo3(signature = (points, blocks, groups, below=None, least=None))]
+    #[pyo3(signature = (points, blocks, groups, cell_groups, below=None, least=None))]
     fn of_arrays(
         py: Python,
         points: PyReadonlyArray2<f64>,
         blocks: Vec<Block>,
-        groups: BTreeMap<String, PyReadonlyArray1<i64>>,
+        groups: Places,
+        cell_groups: Places,
         below: Option<&Bound<PyAny>>,
         least: Option<&Bound<PyAny>>,
     ) -> PyResult<Mesh> {
         let gate = gate(py, below, least)?;
-        let arrays = arrays_of(py, &points, &blocks, &groups)?;
+        let arrays = arrays_of(py, &points, &blocks, &groups, &cell_groups)?;
         let mesh = Arc::new(alone(py, move || arrays.build(gate))?);
         Ok(Mesh { mesh, elements: elements_of(&blocks) })
     }
@@ -130,12 +165,7 @@ impl Mesh {
             source.space = space.or(source.space);
             mesh::Mesh::resolve_within(&source, &asked, scale, Some(gate)).map_err(|error| error.in_file(&path))
         })?;
-        let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
-            Some(own) => Ok(own.clone()),
-            None => Element::named(&block.element.name),
-        };
-        let elements = mesh.blocks.iter().map(element).collect::<Result<_>>().map_err(|error| raised(py, error))?;
-        Ok(Mesh { mesh: Arc::new(mesh), elements })
+        Mesh::of_library(Arc::new(mesh), &own).map_err(|error| raised(py, error))
     }
 
     /// What the file says besides the body, one sentence each.
@@ -163,7 +193,7 @@ impl Mesh {
         let blocks = self.elements.iter().cloned().zip(self.blocks(py).into_iter().map(|(_, nodes)| nodes)).collect();
         let (numbers, counts) = (pickled::numbers(py, &self.mesh), pickled::counts(&self.mesh));
         let restored = py.import("springfit._core")?.getattr("restored_mesh")?;
-        Ok((restored, (self.points(py), blocks, self.groups(py), numbers, counts)))
+        Ok((restored, (self.points(py), blocks, self.groups(py), numbers, counts, self.cell_groups(py))))
     }
 
     /// It never changes.
@@ -194,10 +224,58 @@ impl Mesh {
         self.mesh.blocks.iter().map(block).collect()
     }
 
+    /// The elements of the blocks.
+    #[getter]
+    fn elements(&self) -> Vec<Element> {
+        self.elements.clone()
+    }
+
     #[getter]
     fn groups<'py>(&self, py: Python<'py>) -> BTreeMap<String, Bound<'py, PyArray1<i64>>> {
         let points = |group: &mesh::Group| list(py, group.points.iter().map(|&p| p as i64).collect());
         self.mesh.groups.iter().map(|(name, group)| (name.clone(), points(group))).collect()
+    }
+
+    /// The cells of each group, counted block after block.
+    #[getter]
+    fn cell_groups<'py>(&self, py: Python<'py>) -> BTreeMap<String, Bound<'py, PyArray1<i64>>> {
+        let mut first = vec![0];
+        self.mesh.blocks.iter().for_each(|block| first.push(first[first.len() - 1] + block.cells().len()));
+        let places = |group: &mesh::Group| {
+            let mut places: Vec<i64> = group.cells.iter().map(|cell| (first[cell.block] + cell.cell) as i64).collect();
+            places.sort_unstable();
+            list(py, places)
+        };
+        let groups = self.mesh.groups.iter().filter(|(_, group)| !group.cells.is_empty());
+        groups.map(|(name, group)| (name.clone(), places(group))).collect()
+    }
+
+    /// The content of all cells: m³, m² of surfaces, m of curves.
+    #[getter]
+    fn content(&self) -> f64 {
+        masses(&self.mesh, 1.0, 1.0).iter().sum()
+    }
+
+    /// The mesh with the edges of all cells halved.
+    fn refined(&self, py: Python) -> PyResult<Mesh> {
+        let mesh = self.mesh.clone();
+        let refined = alone(py, move || mesh.refined())?;
+        Ok(Mesh { mesh: Arc::new(refined), elements: self.elements.clone() })
+    }
+
+    /// The sides on the boundary: for each element of theirs its name, its cells on the points of this mesh, and the cells behind them.
+    fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Vec<Outside<'py>>> {
+        let mesh = self.mesh.clone();
+        let found = alone(py, move || mesh.boundary_cells())?;
+        let mut first = vec![0];
+        self.mesh.blocks.iter().for_each(|block| first.push(first[first.len() - 1] + block.cells().len()));
+        let place = |cell: &mesh::CellIndex| (first[cell.block] + cell.cell) as i64;
+        let block = |(block, behind): (mesh::CellBlock, Vec<mesh::CellIndex>)| {
+            let nodes = block.connectivity.iter().map(|&p| p as i64).collect();
+            let cells = matrix(py, nodes, block.element.nodes());
+            (block.element.name.clone(), cells, list(py, behind.iter().map(place).collect()))
+        };
+        Ok(found.into_iter().map(block).collect())
     }
 
     #[getter]
@@ -215,8 +293,9 @@ impl Mesh {
     #[getter]
     fn quality<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (quality, record) = (&self.mesh.quality, PyDict::new(py));
-        record.set_item("worst", quality.worst.as_ref().map(|worst| worst.quality))?;
-        record.set_item("worst_cell", quality.worst.as_ref().map(|worst| &worst.cell))?;
+        let worst = quality.worst.clone().or_else(|| self.mesh.worst_cell());
+        record.set_item("worst", worst.as_ref().map(|worst| worst.quality))?;
+        record.set_item("worst_cell", worst.as_ref().map(|worst| &worst.cell))?;
         record.set_item("poor", quality.poor)?;
         record.set_item("skipped", quality.skipped)?;
         record.set_item("duplicates", quality.duplicates)?;

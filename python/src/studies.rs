@@ -2,9 +2,10 @@
 
 use crate::arguments::{count, number, optional, text};
 use crate::element::Element;
-use crate::error::raised;
+use crate::error::{raised, unwritten};
 use crate::progress;
-use crate::study::{keyless, settings_of, text_of};
+use crate::stated::{HeldByName, in_memory};
+use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
@@ -13,13 +14,15 @@ use springfit::report::{Report, comparison_values};
 use springfit::study::{self, Comparing, Event, Scene};
 use std::path::PathBuf;
 
-/// The path or the keys of a scene, the folder of its files, and its keys with other values.
-type Given<'py> = (Bound<'py, PyAny>, PathBuf, Bound<'py, PyDict>);
+/// The path or the keys of a scene, the folder of its files, its keys with other values, and what it has in memory.
+type Given<'py> = (Bound<'py, PyAny>, PathBuf, Bound<'py, PyDict>, HeldByName<'py>);
 
-fn scene(py: Python, (scene, folder, settings): &Given) -> PyResult<Scene> {
+/// The scene, and the path that it has as a dictionary.
+fn scene(py: Python, (scene, folder, settings, held): &Given) -> PyResult<(Scene, Option<PathBuf>)> {
     let (text, path) = text_of(py, scene, folder)?;
-    let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
-    scene.map_err(|error| raised(py, keyless(error)))
+    let own = dictionary_path(scene, &path);
+    let scene = Scene::parse_beside(&text, &path, &settings_of(py, settings)?, &in_memory(held));
+    Ok((scene.map_err(|error| raised(py, unwritten(keyless(error), own.as_deref())))?, own))
 }
 
 fn written(document: serde_json::Result<String>) -> Result<String> {
@@ -41,9 +44,10 @@ fn material(element: &Element, poisson: f64, plane: Option<&str>) -> Result<Mate
 #[pyfunction]
 #[pyo3(signature = (given, progress=None))]
 pub fn compare_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
-    let scene = scene(py, &given)?;
+    let (scene, own) = scene(py, &given)?;
     progress::run(py, progress, move |told| {
-        written(serde_json::to_string(&Report::of(&study::compare_scene(&scene, told)?)))
+        let outcome = study::compare_scene(&scene, told).map_err(|error| unwritten(error, own.as_deref()))?;
+        written(serde_json::to_string(&Report::of(&outcome)))
     })
 }
 
@@ -81,7 +85,9 @@ pub fn compare_cases(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let (text, path) = text_of(py, comparison, &folder)?;
-    let comparing = Comparing::parse(&text, &path).map_err(|error| raised(py, keyless(error)))?;
+    let own = dictionary_path(comparison, &path);
+    let comparing = Comparing::parse(&text, &path);
+    let comparing = comparing.map_err(|error| raised(py, unwritten(keyless(error), own.as_deref())))?;
     progress::run(py, progress, move |told: &mut dyn FnMut(Event)| {
         let records: Vec<_> = comparing.cases().iter().map(|case| comparing.record(case, told)).collect();
         match records.iter().find_map(|record| record.error.clone()) {
@@ -108,14 +114,14 @@ pub fn converge(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let levels = optional("levels", levels, count)?;
-    let own = scene(py, &given)?;
-    let truth = truth.map(|truth| scene(py, &truth)).transpose()?;
+    let (own, path) = scene(py, &given)?;
+    let truth = truth.map(|truth| scene(py, &truth)).transpose()?.map(|(truth, _)| truth);
     progress::run(py, progress, move |told: &mut dyn FnMut(Event)| {
         let found = match &truth {
             None => study::converge(&own, levels, told),
             Some(truth) => study::converge_to(&own, truth, levels, told),
         };
-        written(serde_json::to_string(&found?))
+        written(serde_json::to_string(&found.map_err(|error| unwritten(error, path.as_deref()))?))
     })
 }
 
@@ -131,6 +137,9 @@ pub fn stability(py: Python, element: Option<PyRef<Element>>, progress: Option<P
 #[pyfunction]
 #[pyo3(signature = (given, progress=None))]
 pub fn stability_of_scene(py: Python, given: Given, progress: Option<Py<PyAny>>) -> PyResult<String> {
-    let scene = scene(py, &given)?;
-    progress::run(py, progress, move |told| written(serde_json::to_string(&study::stability_of_scene(&scene, told)?)))
+    let (scene, own) = scene(py, &given)?;
+    progress::run(py, progress, move |told| {
+        let found = study::stability_of_scene(&scene, told).map_err(|error| unwritten(error, own.as_deref()))?;
+        written(serde_json::to_string(&found))
+    })
 }

@@ -1,8 +1,9 @@
 //! `sweep`: the studies of a scene, each run by itself, and their table.
 
-use crate::error::{invalid, raised};
+use crate::error::{invalid, raised, unwritten};
 use crate::progress::{self, apart};
-use crate::study::{keyless, settings_of, text_of};
+use crate::stated::{HeldByName, in_memory};
+use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use crate::value::table;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -28,12 +29,13 @@ pub struct Studies(Mutex<StudyLines<StudyRecord>>);
 impl Sweep {
     /// Of a path or a dictionary; `sweep` takes the place of the table `[sweep]`.
     #[new]
-    #[pyo3(signature = (scene, folder, settings, sweep=None))]
+    #[pyo3(signature = (scene, folder, settings, held, sweep=None))]
     fn new(
         py: Python,
         scene: &Bound<PyAny>,
         folder: PathBuf,
         settings: &Bound<PyDict>,
+        held: HeldByName,
         sweep: Option<&Bound<PyDict>>,
     ) -> PyResult<Sweep> {
         let (text, path) = text_of(py, scene, &folder)?;
@@ -42,8 +44,9 @@ impl Sweep {
             let table = toml::Value::Table(table(sweep, "over")?);
             settings.push(Setting::of("sweep", &table).map_err(|error| raised(py, error))?);
         }
-        let sweep =
-            apart(py, || study::Sweep::parse(&text, &path, &settings)).map_err(|error| raised(py, keyless(error)))?;
+        let (own, memory) = (dictionary_path(scene, &path), in_memory(&held));
+        let sweep = apart(py, || study::Sweep::parse(&text, &path, &settings, &memory));
+        let sweep = sweep.map_err(|error| raised(py, unwritten(keyless(error), own.as_deref())))?;
         Ok(Sweep { sweep, text, path })
     }
 
@@ -91,19 +94,20 @@ impl Studies {
 
 /// Runs one study, whose values are a JSON object; returns its line.
 #[pyfunction]
-#[pyo3(signature = (text, path, settings, values, progress=None))]
+#[pyo3(signature = (text, path, settings, values, held, progress=None))]
 pub fn study_line(
     py: Python,
     text: String,
     path: PathBuf,
     settings: &Bound<PyDict>,
     values: &str,
+    held: HeldByName,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let settings = settings_of(py, settings)?;
     let values: toml::Table = serde_json::from_str(values).map_err(|e| invalid(py, "over", "values of TOML", e))?;
     let own = values.iter().map(|(key, value)| Setting::of(key, value)).collect::<Result<_>>();
     let study = Study { settings: own.map_err(|error| raised(py, error))? };
-    let sweep = study::Sweep::of_studies(&text, &path, &settings, vec![study.clone()]);
+    let sweep = study::Sweep::of_studies(&text, &path, &settings, vec![study.clone()]).beside(&in_memory(&held));
     progress::run(py, progress, move |told| Ok(StudyRecord::of(&sweep, &study, &sweep.run_study(&study, told)).line()))
 }

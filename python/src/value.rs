@@ -15,6 +15,11 @@ pub fn table(given: &Bound<PyDict>, name: &str) -> PyResult<Table> {
     keyed(given, name, "", 0)
 }
 
+/// The value at this path.
+pub fn value_of(given: &Bound<PyAny>, path: &str) -> PyResult<Value> {
+    value(given, path, 0)
+}
+
 /// The text of a table, one line for each of its keys.
 pub fn text(table: &Table) -> String {
     table.iter().map(|(key, value)| format!("{} = {}\n", quoted(key), inline(value))).collect()

@@ -43,9 +43,11 @@ def test_bodies_and_materials_are_named(call):
 @pytest.mark.parametrize(
     "keys, key",
     [
-        ({"young": "10 kPa"}, "young"),
+        ({"young": "10 apples"}, "young"),
+        ({"young": b"10 kPa"}, "young"),
         ({"young": None}, "young"),
-        ({"poisson": [0.3]}, "poisson"),
+        ({"poisson": [[0.3]]}, "poisson"),
+        ({"poisson": {"a": 1}}, "poisson"),
         ({"density": np.ma.masked}, "density"),
         ({"thickness": 1j}, "thickness"),
         ({"area": True}, "area"),

@@ -78,7 +78,7 @@ def test_images_and_rectilinear_grids_are_boxes(kind, shape):
     name = {2: "quad4", 3: "hex8"}[d]
     size = [(n - 1) * 0.5 for n in shape][:d]
     box = sf.Mesh.box(name, size=size, cells=[n - 1 for n in shape][:d])
-    assert [(n, len(c)) for n, c in mesh.cells] == [(n, len(c)) for n, c in box.cells] and mesh.quality["turned"] == 0
+    assert [(n, len(c)) for n, c in mesh.cells.items()] == [(n, len(c)) for n, c in box.cells.items()] and mesh.quality["turned"] == 0
     order = lambda m: np.lexsort(m.points.T)
     ours, theirs = (sf.stiffness(m, MATERIAL).toarray().reshape(len(m.points), d, -1, d) for m in (mesh, box))
     a, b = order(mesh), order(box)
@@ -91,7 +91,7 @@ def test_polygons_are_cells_of_surfaces():
     angles = 2 * np.pi * np.arange(5) / 5
     points = [*zip(np.cos(angles), np.sin(angles), np.zeros(5)), (2, 0, 0)]
     mesh = sf.Mesh.from_pyvista(pyvista.PolyData(points, faces=[5, 0, 1, 2, 3, 4, 3, 0, 5, 1]))
-    assert sorted((name, len(cells)) for name, cells in mesh.cells) == [("pentagon5", 1), ("tri3", 1)]
+    assert sorted((name, len(cells)) for name, cells in mesh.cells.items()) == [("pentagon5", 1), ("tri3", 1)]
 
 
 def test_polygons_of_other_numbers_of_corners_are_named():

@@ -30,6 +30,7 @@ mod state;
 mod sweep;
 
 pub use interrupt::answer as answer_interrupts;
+pub use output::typed_as;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;

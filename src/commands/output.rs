@@ -7,6 +7,8 @@ use springfit::error::{Error, Result};
 use springfit::report::{self, Markup, Report, Table};
 use springfit::study::Outcome;
 use springfit::text::printable_lines;
+use std::ffi::OsString;
+use std::sync::OnceLock;
 
 /// The options of a command that prints tables.
 #[derive(Args)]
@@ -96,9 +98,18 @@ impl OutputOptions {
     }
 }
 
+/// The arguments of the program.
+static TYPED: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Keeps the arguments of the program for [`command`].
+pub fn typed_as(arguments: Vec<OsString>) {
+    // A program has one command.
+    let _ = TYPED.set(arguments);
+}
+
 /// The command as it was typed, for files that say where they come from.
 pub fn command() -> String {
-    let words = std::env::args_os().skip(1).map(|word| {
+    let words = TYPED.get().into_iter().flatten().map(|word| {
         let word = word.to_string_lossy();
         match word.chars().any(|c| c.is_whitespace() || c.is_control() || c == '"') {
             true => format!("{word:?}"),

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 38] = [
+const LAYERS: [&str; 40] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -48,6 +48,8 @@ const LAYERS: [&str; 38] = [
     "report",
     "export",
     "referee",
+    "terminal",
+    "commands",
     "program",
 ];
 

@@ -110,6 +110,33 @@ impl MaterialMap {
         })
     }
 
+    /// A body of one region whose isotropic cells are in the state of `like`, with these constants E (Pa) and ν.
+    ///
+    /// # Errors
+    /// A constant is out of its range: with the block and the index of the first such cell.
+    pub fn of_constants(
+        like: Material,
+        young: &CellMap<f64>,
+        poisson: &CellMap<f64>,
+    ) -> std::result::Result<MaterialMap, ((usize, usize), Error)> {
+        let state = like.state();
+        let of = |cell: (usize, usize), young: f64, poisson: f64| {
+            Material::new(young, poisson, state).map_err(|error| (cell, error))
+        };
+        let blocks = match (young, poisson) {
+            (CellMap::Uniform(young), CellMap::Uniform(poisson)) => {
+                return Ok(of((0, 0), *young, *poisson)?.into());
+            }
+            (CellMap::Each(blocks), _) | (_, CellMap::Each(blocks)) => blocks,
+        };
+        let cell = |block, cell| of((block, cell), *young.at(block, cell), *poisson.at(block, cell));
+        let of_block = |(block, values): (usize, &Vec<f64>)| (0..values.len()).map(|own| cell(block, own)).collect();
+        let materials = blocks.iter().enumerate().map(of_block).collect::<std::result::Result<Vec<_>, _>>()?;
+        let materials = CellMap::of_blocks(materials);
+        let moduli = materials.map(|material| Hooke::Isotropic(material.moduli()));
+        Ok(MaterialMap { materials: Some(materials), moduli, ..MaterialMap::from(like) })
+    }
+
     /// Gives the materials the density of each cell, kg/m³, or none.
     pub fn with_density(self, density: Option<CellMap<f64>>) -> MaterialMap {
         MaterialMap { density, ..self }

@@ -1,6 +1,6 @@
 //! Meshes from the arrays of another program.
 
-use super::mesh::{CellBlock, Group, Mesh, sorted};
+use super::mesh::{CellBlock, CellIndex, Group, Mesh, sorted};
 use super::numbering::{NumberOrigin, Numbering};
 use super::quality::Gate;
 use super::resolution::check_size;
@@ -22,6 +22,9 @@ pub struct MeshArrays {
     pub blocks: Vec<(Arc<Element>, Vec<usize>)>,
     /// Indices into `points`. A group has the sides on the boundary and the cells all of whose nodes it has.
     pub groups: BTreeMap<String, Vec<usize>>,
+    /// Indices of cells, counted over all blocks in their order. A group that has no points of its own has those of its cells; one that is in
+    /// `groups` as well has these cells in place of those whose nodes it has.
+    pub cell_groups: BTreeMap<String, Vec<usize>>,
 }
 
 impl MeshArrays {
@@ -32,7 +35,7 @@ impl MeshArrays {
     /// folded over its neighbours, unless the gate skips such cells; the gate refuses a cell, or none is left.
     pub fn build(self, gate: Gate) -> Result<Mesh> {
         let count = self.check()?;
-        let MeshArrays { dimension, points, blocks, groups } = self;
+        let MeshArrays { dimension, points, blocks, groups, cell_groups } = self;
         let mut mesh = Mesh::of_points(dimension, points);
         mesh.numbering = Some(Numbering { origin: NumberOrigin::ArrayPlace, nodes: (0..count as u64).collect() });
         for (mut element, connectivity) in blocks {
@@ -43,6 +46,17 @@ impl MeshArrays {
         }
         let boundary = if groups.is_empty() { Vec::new() } else { mesh.boundary() };
         mesh.groups = groups.into_iter().map(|(name, points)| (name, mesh.group_of(&points, &boundary))).collect();
+        let indices: Vec<CellIndex> = if cell_groups.is_empty() { Vec::new() } else { mesh.cell_indices().collect() };
+        for (name, mut listed) in cell_groups {
+            listed.sort_unstable();
+            listed.dedup();
+            let cells: Vec<CellIndex> = listed.into_iter().map(|cell| indices[cell]).collect();
+            let mut points: Vec<usize> = cells.iter().flat_map(|cell| mesh.cell_nodes(*cell)).copied().collect();
+            points.sort_unstable();
+            points.dedup();
+            let group = mesh.groups.entry(name).or_insert_with(|| Group { points, ..Group::default() });
+            group.cells = cells;
+        }
         mesh.settle(gate)?;
         Ok(mesh)
     }
@@ -73,14 +87,24 @@ impl MeshArrays {
                 return Err(Error::expected(key, expected, format!("one of dimension {}", element.dimension())));
             }
             if connectivity.is_empty() || !connectivity.len().is_multiple_of(n) {
-                return Err(Error::expected(
-                    key,
-                    format!("cells of {n} nodes"),
-                    format!("{} nodes", connectivity.len()),
-                ));
+                let found = match connectivity.len() {
+                    0 => "none".into(),
+                    count => format!("{count} nodes in all"),
+                };
+                return Err(Error::expected(key, format!("one or more cells of {n} nodes"), found));
             }
             if let Some(found) = outside(connectivity) {
-                return Err(Error::expected(key, expected(), found));
+                // Of a program that counts from 1.
+                let from_one = found == count && !self.blocks.iter().any(|(_, nodes)| nodes.contains(&0));
+                let hint = if from_one { "; all are from 1 to that: are they numbered from 1?" } else { "" };
+                return Err(Error::expected(key, expected(), format!("{found}{hint}")));
+            }
+        }
+        let total: usize = self.blocks.iter().map(|(element, nodes)| nodes.len() / element.nodes()).sum();
+        for (name, cells) in &self.cell_groups {
+            if let Some(found) = cells.iter().find(|&&cell| cell >= total) {
+                let expected = format!("places of the {total} cells, from 0");
+                return Err(Error::expected(format!("cell_groups.{name}"), expected, found));
             }
         }
         for (name, points) in &self.groups {
@@ -103,7 +127,8 @@ impl Mesh {
         points: Vec<f64>,
         blocks: Vec<(Arc<Element>, Vec<usize>)>,
     ) -> Result<Mesh> {
-        let arrays = MeshArrays { dimension, points, blocks, groups: BTreeMap::new() };
+        let (groups, cell_groups) = Default::default();
+        let arrays = MeshArrays { dimension, points, blocks, groups, cell_groups };
         arrays.check()?;
         let mut mesh = Mesh::of_points(dimension, arrays.points);
         for (element, connectivity) in arrays.blocks {

@@ -50,7 +50,7 @@ impl Mesh {
     }
 
     /// The element of a side, and the nodes of the cell that are its own, in their order.
-    fn of_side(&self, side: &SideIndex) -> Result<(Arc<Element>, Vec<usize>)> {
+    pub(super) fn of_side(&self, side: &SideIndex) -> Result<(Arc<Element>, Vec<usize>)> {
         let body = &self.blocks[side.cell.block].element;
         let own = &body.cell.sides()[side.side];
         let count = body.sides()[side.side].nodes.len();
@@ -61,7 +61,7 @@ impl Mesh {
             Some((Arc::new(element), nodes))
         });
         placed.ok_or_else(|| {
-            let expected = "cells with sides of a shipped element, for membranes and rods on them";
+            let expected = "cells with sides of a shipped element, for cells on them";
             Error::expected("material", expected, &body.name).of_kind(ErrorKind::Unsupported)
         })
     }

@@ -25,7 +25,7 @@ impl Mesh {
                 poor.push(cell);
             }
         });
-        let named = worst.map(|(quality, cell)| Worst { quality, cell: self.cell_name(cell) });
+        let named = worst.map(|worst| self.named_worst(worst));
         if let (Some(worst), Below::Refuse, false) = (&named, gate.below, poor.is_empty()) {
             let found = format!("{} below it, the least {:.2e} of {}", cells(poor.len()), worst.quality, worst.cell);
             return Err(Error::expected("quality", format!("cells of at least {:e}", gate.least), found));
@@ -49,6 +49,21 @@ impl Mesh {
         self.quality.folding = (!folding.is_empty()).then(|| (folding.len(), self.named(&folding)));
         (self.quality.poor, self.quality.least) = (poor.len(), gate.least);
         Ok(())
+    }
+
+    /// The worst of all cells, also of a mesh that no gate has seen, such as a box; `None` without cells.
+    pub fn worst_cell(&self) -> Option<Worst> {
+        let mut worst: Option<(f64, CellIndex)> = None;
+        self.each_quality(|cell, quality| {
+            if worst.is_none_or(|(least, _)| quality < least) {
+                worst = Some((quality, cell));
+            }
+        });
+        worst.map(|worst| self.named_worst(worst))
+    }
+
+    fn named_worst(&self, (quality, cell): (f64, CellIndex)) -> Worst {
+        Worst { quality, cell: self.cell_name(cell) }
     }
 
     fn each_quality(&self, mut visit: impl FnMut(CellIndex, f64)) {

@@ -38,6 +38,7 @@ mod mesh;
 mod nastran;
 mod numbering;
 mod numpy;
+mod outside;
 mod overlaps;
 mod places;
 mod polytope;

@@ -85,9 +85,9 @@ pub use paper::{
 pub use progress::{Event, Progress};
 pub use run::{engine_limits, run, run_with};
 pub use scene::{
-    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold, LoadCase, LoadKind, MeshInput,
-    MotionRecipe, Output, Part, PrescribedMotion, ReferenceEntry, Scene, Setting, check_unit, load_elements,
-    motion_title, scene_schema,
+    AppliedForce, BoxEntry, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold, InMemory, LoadCase,
+    LoadKind, Materials, MeshInput, MotionRecipe, Output, Part, PrescribedMotion, ReferenceEntry, Scene, Setting,
+    check_unit, load_elements, motion_title, scene_schema,
 };
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;

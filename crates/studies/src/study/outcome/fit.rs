@@ -21,7 +21,7 @@ pub struct MatrixErrors {
 }
 
 /// A fit with its network and its errors.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct FitOutcome {
     /// The fit.

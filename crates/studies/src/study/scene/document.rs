@@ -1,9 +1,9 @@
 //! A scene that has been read and checked.
 
-use super::distribution::Distribution;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::hold::Hold;
+use super::in_memory::InMemory;
 use super::input::MeshInput;
 use super::laws::laws_of_cells;
 use super::lists::{check_fits, read_fits};
@@ -13,17 +13,16 @@ use super::motion_recipe::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
 use super::reference::ReferenceEntry;
-use super::regions::material_map;
 use super::setting::Setting;
 use super::source::SceneSource;
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::file;
-use crate::material::{CellMap, EnergyMap, Material, MaterialMap};
+use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
-use crate::study::body_material::{BodyConstants, assumed};
+use crate::study::body_material::assumed;
 use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
 use crate::text::printable;
@@ -79,7 +78,15 @@ impl Scene {
     /// # Errors
     /// Those of [`Scene::load_with`].
     pub fn parse_with(text: &str, path: &Path, settings: &[Setting]) -> Result<Scene> {
-        let source = SceneSource::new(text, path, settings);
+        Scene::parse_beside(text, path, settings, &InMemory::default())
+    }
+
+    /// Checks the text of a scene as [`Scene::parse_with`] does, some of whose files are names of what is in memory.
+    ///
+    /// # Errors
+    /// Those of [`Scene::load_with`].
+    pub fn parse_beside(text: &str, path: &Path, settings: &[Setting], memory: &InMemory) -> Result<Scene> {
+        let source = SceneSource::new(text, path, settings).beside(memory);
         let alone = || Scene::checked(source.alone()).map(|_| ());
         Scene::checked(source.clone()).map_err(|error| source.explained(error, alone))
     }
@@ -91,6 +98,7 @@ impl Scene {
             fit.check().map_err(|e| e.under(format!("fit[{i}]")))?;
         }
         let mut mesh = entry.mesh;
+        mesh.memory = source.memory.clone();
         mesh.check()?;
         if entry.fit.is_empty() {
             return Err(Error::expected("fit", "at least one [[fit]]", "none"));
@@ -99,6 +107,7 @@ impl Scene {
         let attached: Vec<String> = entry.material.all.iter().filter_map(|entry| entry.group.clone()).collect();
         if let Some(finer) = entry.reference.as_mut().and_then(|reference| reference.mesh.as_mut()) {
             finer.attached.clone_from(&attached);
+            finer.memory = source.memory.clone();
         }
         mesh.attached = attached;
         let fits = read_fits(&entry.fit, path.parent().unwrap_or(Path::new("")))?;
@@ -298,16 +307,9 @@ impl Scene {
     /// A cell is in two regions or in none, a region is empty or unknown, data are wrong or do not cover the mesh, or a value is out of
     /// its range; or a surface in space has no thickness.
     pub fn material_of(&self, mesh: &Mesh) -> Result<MaterialMap> {
-        let entry = self.material.first();
-        if !self.material.is_uniform() || entry.part()? != Part::Everything {
-            let folder = self.path().parent().unwrap_or(Path::new(""));
-            let own = self.mesh.file.as_ref().map(|file| (folder.join(file), self.mesh.scale));
-            return material_map(&self.material, mesh, folder, own).map_err(|e| self.placed(e));
-        }
-        let material = self.constants().and_then(|constants| constants.material(mesh));
-        let material = MaterialMap::from(material.map_err(|e| self.at(&self.material.key(0), e))?);
-        let density = entry.density.as_ref().and_then(Distribution::number);
-        Ok(material.with_density(density.map(CellMap::Uniform)))
+        let folder = self.path().parent().unwrap_or(Path::new(""));
+        let own = self.mesh.file.as_ref().map(|file| (folder.join(file), self.mesh.scale));
+        self.material.on(mesh, folder, own, &self.source.memory).map_err(|e| self.placed(e))
     }
 
     /// The material of a body of this dimension, one metre thick if the scene gives no thickness.
@@ -315,22 +317,8 @@ impl Scene {
     /// # Errors
     /// A constant is out of range, bodies of this dimension have no plane state, or the material differs from cell to cell.
     pub fn material(&self, dimension: usize) -> Result<Material> {
-        let material = self.constants().and_then(|constants| constants.of_dimension(dimension));
+        let material = self.material.constants().and_then(|constants| constants.of_dimension(dimension));
         material.map_err(|e| self.at(&self.material.key(0), e))
-    }
-
-    /// The constants of a material that is the same in all cells.
-    fn constants(&self) -> Result<BodyConstants> {
-        let entry = self.material.first();
-        let several = || Error::new("expected one isotropic material for all cells, found several or another");
-        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
-        let (Some(young), Some(poisson), true) =
-            (number(&entry.young), number(&entry.poisson), self.material.is_uniform())
-        else {
-            return Err(several());
-        };
-        let thickness = entry.thickness.as_ref().and_then(Distribution::number);
-        Ok(BodyConstants { young, poisson, plane: entry.plane, thickness, area: entry.area })
     }
 
     /// The name of the material's law, if the scene gives one; deformations are large then.
@@ -344,7 +332,7 @@ impl Scene {
     /// There is no such law, its file is wrong, or a parameter or a direction of fibres is.
     pub fn laws(&self, mesh: &Mesh, material: &MaterialMap) -> Result<Option<EnergyMap>> {
         let folder = self.path().parent().unwrap_or(Path::new(""));
-        laws_of_cells(&self.material, mesh, material, folder).map_err(|e| self.placed(e))
+        laws_of_cells(&self.material, mesh, material, (folder, &self.source.memory)).map_err(|e| self.placed(e))
     }
 
     /// The scene file, and the files that it names: of the mesh, of elements, laws and data.
@@ -359,7 +347,9 @@ impl Scene {
         files.extend(measured.map(|entry| folder.join(&entry.file)));
         let sampled = self.fits.iter().filter_map(|fit| fit.recipe.sampled());
         files.extend(sampled.flat_map(|recipe| recipe.files()));
-        files.extend(self.material.all.iter().flat_map(MaterialEntry::files).map(|file| folder.join(file)));
+        let memory = &self.source.memory;
+        let data = self.material.all.iter().flat_map(MaterialEntry::files).filter(|file| !memory.has(file));
+        files.extend(data.map(|file| folder.join(file)));
         files
     }
 

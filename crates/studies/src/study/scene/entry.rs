@@ -59,6 +59,13 @@ pub struct SceneFile {
     pub sweep: Option<SweepEntry>,
 }
 
+/// The materials of a body without a scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialFile {
+    pub material: MaterialEntries,
+}
+
 /// How loads are applied at large deformation.
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -1,6 +1,7 @@
 //! The mesh of a scene that fills a surface.
 
 use super::elements::load_element;
+use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Mesh, MeshSource, VoxelMesh};
 use crate::range;
@@ -8,6 +9,7 @@ use crate::text::toml as quoted;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A closed surface in a file, filled with the cells of a lattice, or voxels in a file, divided into cells of an element.
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -68,14 +70,22 @@ impl FillEntry {
     /// The file, a key, the element or the surface is wrong, or there are no cells or too many.
     pub fn build(&self, scale: f64, folder: &Path) -> Result<Mesh> {
         let element = load_element(&self.element, folder)?;
+        let source = MeshSource::read(&folder.join(&self.surface))?;
+        self.of_source(&source, element, scale, folder)
+    }
+
+    /// Fills a surface, or divides voxels, that is read already or in memory, with cells of this element.
+    ///
+    /// # Errors
+    /// Those of [`FillEntry::build`].
+    pub fn of_source(&self, source: &MeshSource, element: Arc<Element>, scale: f64, folder: &Path) -> Result<Mesh> {
         let path = folder.join(&self.surface);
-        let source = MeshSource::read(&path)?;
         let of_file = |e: Error| if e.key() == Some("surface") { e.in_file(&path) } else { e };
         if source.is_solid() {
             self.check_solid(&path)?;
             // What is wrong with cells and points is wrong in the file.
             let of_cells = |e: Error| if e.key() == Some("element") { e } else { e.in_file(&path) };
-            return VoxelMesh { element }.build(&source, scale).map_err(of_cells);
+            return VoxelMesh { element }.build(source, scale).map_err(of_cells);
         }
         let spacing = self.spacing(scale)?;
         let boundary = FillBoundary::named(&self.boundary).map_err(|e| e.at_key("boundary"))?;
@@ -83,7 +93,7 @@ impl FillEntry {
         // A scan may cross itself, and what it encloses is the body.
         let usual = if self.repair { FillLayers::Union } else { FillLayers::default() };
         FillMesh { element, spacing, boundary, layers: layers.unwrap_or(usual), repair: self.repair }
-            .build(&source, scale)
+            .build(source, scale)
             .map_err(of_file)
     }
 

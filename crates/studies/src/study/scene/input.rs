@@ -2,6 +2,7 @@
 
 use super::elements::{load_element, load_elements};
 use super::fill::FillEntry;
+use super::in_memory::InMemory;
 use super::value;
 use crate::bound;
 use crate::error::{Error, Result};
@@ -11,6 +12,7 @@ use crate::study::extent::extent;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A longer body of a file is rarely meant, m.
 const LONGEST: f64 = 10.0;
@@ -52,6 +54,9 @@ pub struct MeshInput {
     /// The groups that materials name: their cells are part of the body also where they have fewer dimensions than it.
     #[serde(skip)]
     pub attached: Vec<String>,
+    /// What names of files mean before files.
+    #[serde(skip)]
+    pub memory: InMemory,
 }
 
 #[derive(Debug, Clone, Deserialize, JsonSchema)]
@@ -120,7 +125,7 @@ impl MeshInput {
     /// A note if the scene has no unit of the mesh file and the size of the mesh suggests that it is not the metre.
     pub fn unit_assumption(&self, mesh: &Mesh) -> Option<String> {
         let longest = extent(mesh).into_iter().fold(0.0, f64::max);
-        let is_of_file = self.file.is_some() || self.fill.is_some();
+        let is_of_file = (self.file.is_some() && self.in_memory().is_none()) || self.fill.is_some();
         (is_of_file && self.scale == 1.0 && longest > LONGEST).then(|| {
             format!("the coordinates of the mesh are taken in metres: the body is {longest:.0} m long; scale = \"mm\" if they are in millimetres")
         })
@@ -145,6 +150,20 @@ impl MeshInput {
             return Err(Error::expected("mesh", "one of \"file\", \"box\", \"disc\", \"fill\"", found));
         }
         range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
+        if self.in_memory().is_some() {
+            let given = [
+                ("mesh.scale", self.scale != 1.0),
+                ("mesh.space", self.space.is_some()),
+                ("mesh.elements", !self.elements.is_empty()),
+                ("mesh.quality", self.quality.is_some()),
+            ];
+            if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+                return Err(Error::at(
+                    key,
+                    "belongs to a mesh that is read, found one from memory, which is in metres",
+                ));
+            }
+        }
         if let Some(space) = self.space {
             if self.file.is_none() && self.generated.is_none() {
                 let problem = "belongs to a mesh in a \"file\" or a \"box\": what else is generated has its own";
@@ -163,13 +182,19 @@ impl MeshInput {
         Ok(())
     }
 
+    /// The mesh that `file` names, if it is in memory.
+    fn in_memory(&self) -> Option<&Arc<Mesh>> {
+        self.memory.mesh(self.file.as_deref()?)
+    }
+
     /// The files that the entry names, relative to `folder`; the names of shipped elements are not files.
     pub fn files(&self, folder: &Path) -> Vec<PathBuf> {
         let of_box = self.generated.iter().map(|entry| &entry.element);
         let of_fill = self.fill.iter().map(|entry| &entry.element);
         let of_disc = self.disc.iter().map(|entry| &entry.element);
         let elements = of_box.chain(of_disc).chain(of_fill).chain(&self.elements);
-        let meshes = self.file.iter().chain(self.fill.iter().map(|entry| &entry.surface));
+        let file = self.file.iter().filter(|file| !self.memory.has(file));
+        let meshes = file.chain(self.fill.iter().map(|entry| &entry.surface));
         let meshes = meshes.flat_map(|file| MeshSource::files(&folder.join(file)));
         meshes.chain(elements.map(|name| folder.join(name))).collect()
     }
@@ -178,6 +203,9 @@ impl MeshInput {
     pub fn title(&self) -> String {
         if let Some(entry) = &self.fill {
             return format!("fill {} with {}", entry.surface.display(), entry.element);
+        }
+        if let Some(mesh) = self.in_memory() {
+            return format!("mesh from memory ({:08x})", mesh.checksum());
         }
         match (&self.file, &self.generated, &self.disc) {
             (Some(file), ..) => format!("read {}", file.display()),
@@ -265,6 +293,9 @@ impl MeshInput {
 
     /// The mesh, a box with its cells halved this number of times, without what is on its sides.
     fn build_body(&self, scene: &Path, halvings: u32) -> Result<Mesh> {
+        if let Some(mesh) = self.in_memory() {
+            return Ok(Mesh::clone(mesh));
+        }
         let folder = scene.parent().unwrap_or(Path::new(""));
         let at = |key: &'static str| move |e: Error| e.placed(|e| e.under(key).in_file(scene));
         if let Some(file) = &self.file {

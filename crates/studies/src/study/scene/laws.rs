@@ -1,6 +1,7 @@
 //! The laws of a scene at large deformation, with the numbers of each cell.
 
 use super::anisotropic::Axis;
+use super::in_memory::InMemory;
 use super::material::{MaterialEntries, MaterialEntry};
 use super::places::{Places, Values};
 use crate::error::{Error, Result};
@@ -18,7 +19,7 @@ pub fn laws_of_cells(
     entries: &MaterialEntries,
     mesh: &Mesh,
     material: &MaterialMap,
-    folder: &Path,
+    (folder, memory): (&Path, &InMemory),
 ) -> Result<Option<EnergyMap>> {
     if entries.all.iter().any(|entry| entry.law.is_none()) {
         return Ok(None);
@@ -28,7 +29,7 @@ pub fn laws_of_cells(
     for (block, own) in index.iter().enumerate() {
         (0..own.len()).for_each(|cell| cells[*material.region().at(block, cell)].push(CellIndex { block, cell }));
     }
-    let places = Places::new(mesh, folder);
+    let places = Places::new(mesh, (folder, memory));
     let mut laws: Vec<(Energy, State)> = Vec::new();
     for (i, (entry, cells)) in entries.all.iter().zip(&cells).enumerate() {
         // What is left of the body may be nothing.

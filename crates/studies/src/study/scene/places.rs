@@ -2,13 +2,14 @@
 
 use super::anisotropic::{AnisotropicLaw, Axis};
 use super::distribution::{DataEntry, Distribution, Source};
+use super::in_memory::InMemory;
 use crate::error::{Error, Result};
 use crate::material::Anisotropy;
 use crate::mesh::{CellIndex, Holder, Interpolation, Mesh, SampleReading, Samples};
 use crate::model::cell_means;
 use crate::study::extent::extent;
 use crate::symbolic::{Program, Scope};
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -41,21 +42,24 @@ impl Values {
 pub(super) struct Places<'a> {
     mesh: &'a Mesh,
     folder: &'a Path,
+    /// What names of files mean before files.
+    memory: &'a InMemory,
     /// The file of the mesh and its scale: data of the same file have it as well.
     own: Option<(PathBuf, f64)>,
     /// What was left out of the data.
     remarks: RefCell<Vec<String>>,
     /// The centroids, by block, `[cells × dimension]`.
-    centroids: Vec<Vec<f64>>,
+    centroids: OnceCell<Vec<Vec<f64>>>,
     /// The largest extent of the mesh, m.
     extent: f64,
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn new(mesh: &'a Mesh, folder: &'a Path) -> Places<'a> {
+    /// Of a mesh; files are relative to the folder, unless their names are of what is in memory.
+    pub(super) fn new(mesh: &'a Mesh, (folder, memory): (&'a Path, &'a InMemory)) -> Places<'a> {
         let extent = extent(mesh).into_iter().fold(0.0, f64::max);
         let (own, remarks) = Default::default();
-        Places { mesh, folder, own, remarks, centroids: cell_means(mesh, &mesh.points), extent }
+        Places { mesh, folder, memory, own, remarks, centroids: OnceCell::new(), extent }
     }
 
     /// With the file of the mesh and its scale.
@@ -70,7 +74,8 @@ impl<'a> Places<'a> {
 
     fn at(&self, cell: CellIndex) -> &[f64] {
         let d = self.mesh.dimension;
-        &self.centroids[cell.block][cell.cell * d..(cell.cell + 1) * d]
+        let centroids = self.centroids.get_or_init(|| cell_means(self.mesh, &self.mesh.points));
+        &centroids[cell.block][cell.cell * d..(cell.cell + 1) * d]
     }
 
     /// The error with the cell in which a value is wrong, if the values differ from cell to cell.
@@ -148,6 +153,10 @@ impl<'a> Places<'a> {
                 };
                 Ok(cells.iter().map(vector).collect())
             }
+            Axis::Data(data) if self.memory.has(&data.file) => {
+                let rows = self.in_memory(data, cells, 3).map_err(|e| e.under(key))?;
+                Ok(rows.iter().map(|v| [v[0], v[1], v[2]]).collect())
+            }
             Axis::Data(data) => {
                 let values = self
                     .samples(data, 3, Accepted::ANY)
@@ -176,7 +185,18 @@ impl<'a> Places<'a> {
         cells.iter().map(value).collect()
     }
 
+    /// The numbers of an array in memory.
+    fn in_memory(&self, data: &DataEntry, cells: &[CellIndex], components: usize) -> Result<Vec<&'a [f64]>> {
+        let values = self.memory.values(&data.file);
+        values
+            .ok_or_else(|| Error::expected("file", "an array of values", "a mesh"))?
+            .of_cells(self.mesh, cells, components)
+    }
+
     fn of_data(&self, data: &DataEntry, cells: &[CellIndex], accepted: Accepted) -> Result<Vec<f64>> {
+        if self.memory.has(&data.file) {
+            return Ok(self.in_memory(data, cells, 1)?.into_iter().map(|values| values[0]).collect());
+        }
         let samples = self.samples(data, 1, accepted)?;
         let of_points = match samples.holder() {
             Holder::Points => samples.of_points(self.mesh, SAME * self.extent),

@@ -1,6 +1,7 @@
 //! The materials of a scene on its mesh: the region of each cell, and the material there.
 
 use super::distribution::Distribution;
+use super::in_memory::InMemory;
 use super::material::{MaterialEntries, MaterialEntry};
 use super::part::Part;
 use super::places::{Accepted, Places, Values};
@@ -12,15 +13,100 @@ use crate::study::body_material::BodyConstants;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+impl MaterialEntries {
+    /// The materials of a body, with their density if the entries give one; `own` is the file of the mesh, if it is one, and its scale, and
+    /// `memory` has what names of files mean before files.
+    ///
+    /// # Errors
+    /// A cell is in two regions or in none, a region is empty or unknown, data are wrong or do not cover the mesh, or a value is out of
+    /// its range; or a surface in space has no thickness.
+    pub fn on(
+        &self,
+        mesh: &Mesh,
+        folder: &Path,
+        own: Option<(PathBuf, f64)>,
+        memory: &InMemory,
+    ) -> Result<MaterialMap> {
+        let entry = self.first();
+        if !self.is_uniform() || entry.part()? != Part::Everything {
+            return match arrays_map(self, mesh, (folder, memory))? {
+                Some(map) => Ok(map),
+                None => material_map(self, mesh, (folder, memory), own),
+            };
+        }
+        let material = self.constants().and_then(|constants| constants.material(mesh));
+        let material = MaterialMap::from(material.map_err(|e| e.under(self.key(0)))?);
+        let density = entry.density.as_ref().and_then(Distribution::number);
+        Ok(material.with_density(density.map(CellMap::Uniform)))
+    }
+
+    /// The constants of a material that is the same in all cells.
+    ///
+    /// # Errors
+    /// It differs from cell to cell.
+    pub fn constants(&self) -> Result<BodyConstants> {
+        let entry = self.first();
+        let several = || Error::new("expected one isotropic material for all cells, found several or another");
+        let number = |values: &Option<Distribution>| values.as_ref().and_then(Distribution::number);
+        let (Some(young), Some(poisson), true) = (number(&entry.young), number(&entry.poisson), self.is_uniform())
+        else {
+            return Err(several());
+        };
+        let thickness = entry.thickness.as_ref().and_then(Distribution::number);
+        Ok(BodyConstants { young, poisson, plane: entry.plane, thickness, area: entry.area })
+    }
+}
+
+/// The materials of a body of one isotropic region whose constants are numbers and arrays in memory, of which there may be one for each of
+/// millions of cells; `None` where they are others.
+fn arrays_map(entries: &MaterialEntries, mesh: &Mesh, from: (&Path, &InMemory)) -> Result<Option<MaterialMap>> {
+    let [entry] = &entries.all[..] else { return Ok(None) };
+    let thickness = entry.thickness.as_ref().map(Distribution::number);
+    if entry.part()? != Part::Everything || entry.anisotropy()?.is_some() || thickness == Some(None) {
+        return Ok(None);
+    }
+    let of = |values: &Distribution| match values.number() {
+        Some(value) => Some(CellMap::Uniform(value)),
+        None => from.1.values(values.file()?)?.of_mesh(mesh),
+    };
+    let (Some(young), Some(poisson)) = (entry.young.as_ref().and_then(of), entry.poisson.as_ref().and_then(of)) else {
+        return Ok(None);
+    };
+    let density = entry.density.as_ref().map(of);
+    if density == Some(None) {
+        return Ok(None);
+    }
+    let under = |e: Error| e.placed(|e| e.under(entries.key(0)));
+    let named = |(block, cell), e| under(Places::new(mesh, from).named(e, CellIndex { block, cell }));
+    let constants = BodyConstants {
+        young: 1.0,
+        poisson: 0.0,
+        plane: entry.plane,
+        thickness: thickness.flatten(),
+        area: entry.area,
+    };
+    let like = constants.material(mesh).map_err(under)?;
+    let map = MaterialMap::of_constants(like, &young, &poisson).map_err(|(cell, e)| named(cell, e))?;
+    let density = density.flatten();
+    let wrong = |density: &CellMap<f64>| {
+        let cell = density.position(|value| !(*value > 0.0 && value.is_finite()))?;
+        Some((cell, range::positive("density", *density.at(cell.0, cell.1), "kg/m³").err()?))
+    };
+    if let Some((cell, error)) = density.as_ref().and_then(wrong) {
+        return Err(named(cell, error));
+    }
+    Ok(Some(map.with_density(density)))
+}
+
 /// The materials of the cells of a mesh; the keys of errors are those of the scene. `own` is the file of the mesh, if it is one, and its scale.
 ///
 /// # Errors
 /// A cell is in two regions or in none, a region is empty or unknown, data are wrong or do not cover the mesh, or a value is out of
 /// its range in some cell.
-pub fn material_map(
+fn material_map(
     entries: &MaterialEntries,
     mesh: &Mesh,
-    folder: &Path,
+    from: (&Path, &InMemory),
     own: Option<(PathBuf, f64)>,
 ) -> Result<MaterialMap> {
     let region = region_of_cells(entries, mesh)?;
@@ -32,7 +118,7 @@ pub fn material_map(
     }
     let mut materials: Vec<Vec<Option<LinearMaterial>>> = sizes.iter().map(|count| vec![None; *count]).collect();
     let mut densities: Vec<Vec<f64>> = sizes.iter().map(|count| vec![0.0; *count]).collect();
-    let places = Places::new(mesh, folder).beside(own);
+    let places = Places::new(mesh, from).beside(own);
     for (i, (entry, cells)) in entries.all.iter().zip(&cells).enumerate() {
         let under = |e: Error| e.placed(|e| e.under(entries.key(i)));
         let values = RegionValues::of(entry, &places, cells).map_err(under)?;

@@ -1,6 +1,7 @@
 //! The text of a scene with what is given beside it, and the place of a fault in them.
 
 use super::entry::SceneFile;
+use super::in_memory::InMemory;
 use super::setting::Setting;
 use crate::error::{Error, Result};
 use crate::file;
@@ -14,11 +15,19 @@ pub struct SceneSource {
     pub path: PathBuf,
     text: Arc<str>,
     pub settings: Vec<Setting>,
+    /// What names of files mean before files.
+    pub memory: InMemory,
 }
 
 impl SceneSource {
     pub fn new(text: &str, path: &Path, settings: &[Setting]) -> SceneSource {
-        SceneSource { path: path.to_path_buf(), text: text.into(), settings: settings.to_vec() }
+        let memory = InMemory::default();
+        SceneSource { path: path.to_path_buf(), text: text.into(), settings: settings.to_vec(), memory }
+    }
+
+    /// With what is in memory.
+    pub fn beside(self, memory: &InMemory) -> SceneSource {
+        SceneSource { memory: memory.clone(), ..self }
     }
 
     /// The file without the settings.

@@ -3,7 +3,7 @@
 use super::entry::SweepEntry;
 use crate::error::{Error, Result};
 use crate::file::{self, Sum};
-use crate::study::scene::{Scene, Setting};
+use crate::study::scene::{InMemory, Scene, Setting};
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::Hasher;
@@ -15,6 +15,8 @@ use std::sync::{Mutex, PoisonError};
 pub struct Sweep {
     text: String,
     path: PathBuf,
+    /// What names of files in the scene mean before files.
+    memory: InMemory,
     title: String,
     /// Those beside the studies' own.
     settings: Vec<Setting>,
@@ -44,21 +46,23 @@ impl Sweep {
     /// # Errors
     /// The scene or its `[sweep]` is wrong, or it has none; the scene is wrong in every study.
     pub fn load(path: &Path, settings: &[Setting]) -> Result<Sweep> {
-        Sweep::parse(&file::read_text(path)?, path, settings)
+        Sweep::parse(&file::read_text(path)?, path, settings, &InMemory::default())
     }
 
-    /// Reads the sweep as [`Sweep::load`] does, from the text of a scene that is at `path`, to which other files are relative.
+    /// Reads the sweep as [`Sweep::load`] does, from the text of a scene that is at `path`, to which other files are relative, unless their names
+    /// are of what is in memory; those tell one content from another.
     ///
     /// # Errors
     /// As there.
-    pub fn parse(text: &str, path: &Path, settings: &[Setting]) -> Result<Sweep> {
-        let scene = Scene::parse_with(text, path, settings)?;
+    pub fn parse(text: &str, path: &Path, settings: &[Setting], memory: &InMemory) -> Result<Sweep> {
+        let scene = Scene::parse_beside(text, path, settings, memory)?;
         let Some(entry) = scene.sweep() else {
             let expected = "a table [sweep] whose \"over\" gives keys of the scene and their values";
             return Err(scene.placed(Error::expected("sweep", expected, "none")));
         };
         let studies = studies_of(entry).map_err(|e| scene.at("sweep", e))?;
-        let sweep = Sweep { title: scene.title().into(), ..Sweep::of_studies(text, path, settings, studies) };
+        let sweep = Sweep::of_studies(text, path, settings, studies);
+        let sweep = Sweep { title: scene.title().into(), memory: memory.clone(), ..sweep };
         // A fault in every study is one of the sweep.
         let mut faults = sweep.studies.iter().map(|study| sweep.scene(study).err());
         match faults.next().flatten() {
@@ -79,12 +83,18 @@ impl Sweep {
         Sweep {
             text: text.into(),
             path: path.into(),
+            memory: InMemory::default(),
             title: String::new(),
             settings: others.cloned().collect(),
             keys,
             studies,
             sums: Mutex::default(),
         }
+    }
+
+    /// The sweep with what is in memory.
+    pub fn beside(self, memory: &InMemory) -> Sweep {
+        Sweep { memory: memory.clone(), ..self }
     }
 
     /// The title of the scene.
@@ -108,7 +118,7 @@ impl Sweep {
     /// It is wrong with these values; the key is that of the scene.
     pub fn scene(&self, study: &Study) -> Result<Scene> {
         let settings: Vec<Setting> = self.settings.iter().chain(&study.settings).cloned().collect();
-        Scene::parse_with(&self.text, &self.path, &settings).map_err(|error| of_study(error, study))
+        Scene::parse_beside(&self.text, &self.path, &settings, &self.memory).map_err(|error| of_study(error, study))
     }
 
     /// A sum of all that a study depends on: the values, the scene and the files that it names. Files are read once.
