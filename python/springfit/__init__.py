@@ -10,9 +10,11 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 """
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
+from .factorized import Factorized
 from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
+from .motion import Motion
 from .network import Network, fit, mass, sampled, stiffness, whole
 from .report import Report, run
 from .studies import compare, converge, learning_curve, stability
@@ -20,9 +22,11 @@ from .sweep import sweep
 
 __all__ = [
     "Element",
+    "Factorized",
     "Gradient",
     "Material",
     "Mesh",
+    "Motion",
     "Network",
     "Report",
     "SpringConstants",

@@ -2,19 +2,25 @@
 
 mod arguments;
 mod arrays;
+mod body;
 mod distributed;
 mod element;
 mod ends;
 mod entry;
+mod equilibrium;
 mod error;
+mod factorized;
 mod fit;
 mod functions;
 mod gradient;
 mod mesh;
+mod motion;
 mod network;
 mod pickled;
 mod progress;
 mod sampled;
+mod sparse;
+mod springs;
 mod studies;
 mod study;
 mod sweep;
@@ -29,6 +35,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<element::Element>()?;
     module.add_class::<mesh::Mesh>()?;
     module.add_class::<network::Network>()?;
+    module.add_class::<factorized::Factorized>()?;
     module.add_class::<sweep::Sweep>()?;
     module.add_class::<sweep::Studies>()?;
     module.add_class::<distributed::DistributedBody>()?;
