@@ -15,8 +15,9 @@ from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
 from .motion import Motion
-from .network import Network, fit, mass, sampled, stiffness, whole
+from .network import fit, mass, sampled, stiffness, whole
 from .report import Report, run
+from .springs import Network
 from .studies import compare, converge, learning_curve, stability
 from .sweep import sweep
 

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     import pyvista
 
-    from .network import Network
+    from .springs import Network
 
 #: What is known of springs from arrays.
 GIVEN: "dict[str, Any]" = {"name": "given", "status": "given", "notes": [], "statistics": {}, "sampled": None}
@@ -57,7 +57,7 @@ def state(net: "Network") -> "tuple[Any, ...]":
 
 def restored(points: Any, springs: Any, constants: Any, rest: Any, contents: Any, masses: Any, mesh: Any, facts: Any) -> "Network":
     """The network of a pickle."""
-    from .network import Network
+    from .springs import Network
 
     points = mesh.points if points is None else points
     net = Network(points, springs, constants, rest=rest, contents=contents, masses=masses, mesh=mesh)

@@ -10,7 +10,7 @@ import numpy as np
 from ._arguments import array, failure, shown, typed
 
 if TYPE_CHECKING:
-    from .network import Network
+    from .springs import Network
 
 #: How many points an error names.
 NAMED = 8

@@ -11,7 +11,7 @@ from ._arguments import warn
 from ._supports import displacement_of, forces_of
 
 if TYPE_CHECKING:
-    from .network import Network
+    from .springs import Network
 
 #: A solution that leaves more of the forces than this is warned of.
 _LEFT = 1e-6

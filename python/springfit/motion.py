@@ -12,7 +12,7 @@ from ._contents import numbers
 from ._supports import displacement_of, forces_of, one_of_each
 
 if TYPE_CHECKING:
-    from .network import Network
+    from .springs import Network
 
 _METHODS = ("implicit-euler", "bdf2", "newmark", "symplectic-euler")
 
@@ -63,7 +63,7 @@ def simulate(
     if not 0.0 < step < float("inf"):
         raise failure("dt", "a time above zero, s", step)
     rayleigh, ratio = _damping(damping)
-    pull = [] if gravity is None else typed("gravity", array("gravity", gravity), np.float64)
+    pull: Any = [] if gravity is None else typed("gravity", array("gravity", gravity), np.float64)
     if gravity is not None and np.shape(pull) != shape[1:]:
         raise failure("gravity", f"{shape[1]} numbers, m/s²", f"values of shape {np.shape(pull)}")
     keys = {

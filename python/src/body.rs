@@ -1,5 +1,10 @@
 //! What a network of Python is made of: a fit with all that belongs to it, or springs that were given.
 
+use crate::ends::Ends;
+use crate::error::{invalid, raised};
+use crate::progress::{alone, apart};
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
 use springfit::error::{Error, Result};
 use springfit::material::CellMap;
 use springfit::mesh::{Mesh, Selection};
@@ -13,7 +18,14 @@ use std::sync::Arc;
 
 /// The springs with their points, and what is known beside them. Copies share it.
 #[derive(Clone)]
-pub enum Body {
+pub struct Body {
+    source: Source,
+    /// Whether laws of force call functions of Python.
+    pub has_functions: bool,
+}
+
+#[derive(Clone)]
+enum Source {
     /// By a fit of the finite elements.
     Fitted(Arc<Outcome>),
     /// From arrays or a file.
@@ -31,39 +43,85 @@ pub struct GivenBody {
 }
 
 impl Body {
+    /// That of the one fit of an outcome.
+    pub fn fitted(outcome: Outcome, has_functions: bool) -> Body {
+        Body { source: Source::Fitted(Arc::new(outcome)), has_functions }
+    }
+
+    pub fn given(given: GivenBody, has_functions: bool) -> Body {
+        Body { source: Source::Given(Arc::new(given)), has_functions }
+    }
+
+    /// These springs on the same points.
+    pub fn with_network(&self, network: model::Network) -> Body {
+        let mesh = match &self.source {
+            Source::Fitted(outcome) => Arc::new(outcome.mesh.clone()),
+            Source::Given(given) => given.mesh.clone(),
+        };
+        let masses = self.masses().map(<[f64]>::to_vec);
+        Body::given(GivenBody { mesh, network, masses }, self.has_functions)
+    }
+
+    /// Evaluates the springs, whose functions may raise exceptions; a function of Python hears signals itself.
+    pub fn evaluated<T: Send>(&self, py: Python, evaluate: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
+        let ends = Arc::new(Ends::default());
+        let result = apart(py, || ends.during(evaluate));
+        ends.check(py)?;
+        result.map_err(|error| raised(py, error))
+    }
+
+    /// As [`Body::evaluated`] where functions of Python are called, otherwise on a thread of its own, which a signal ends.
+    pub fn worked<T: Send + 'static>(
+        &self,
+        py: Python,
+        work: impl FnOnce(&Body) -> Result<T> + Send + 'static,
+    ) -> PyResult<T> {
+        let body = self.clone();
+        if self.has_functions { self.evaluated(py, move || work(&body)) } else { alone(py, move || work(&body)) }
+    }
+
+    /// The support of these components at rest.
+    pub fn support(&self, py: Python, held: &PyReadonlyArray2<bool>) -> PyResult<Support> {
+        let shape = self.shape();
+        if held.shape() != shape {
+            return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
+        }
+        Ok(Support { prescribed: held.as_array().iter().map(|held| held.then_some(0.0)).collect() })
+    }
+
     pub fn mesh(&self) -> &Mesh {
-        match self {
-            Body::Fitted(outcome) => &outcome.mesh,
-            Body::Given(given) => &given.mesh,
+        match &self.source {
+            Source::Fitted(outcome) => &outcome.mesh,
+            Source::Given(given) => &given.mesh,
         }
     }
 
     pub fn network(&self) -> &model::Network {
-        match self {
-            Body::Fitted(outcome) => &outcome.fits[0].network,
-            Body::Given(given) => &given.network,
+        match &self.source {
+            Source::Fitted(outcome) => &outcome.fits[0].network,
+            Source::Given(given) => &given.network,
         }
     }
 
     pub fn masses(&self) -> Option<&[f64]> {
-        match self {
-            Body::Fitted(outcome) => outcome.masses.as_deref(),
-            Body::Given(given) => given.masses.as_deref(),
+        match &self.source {
+            Source::Fitted(outcome) => outcome.masses.as_deref(),
+            Source::Given(given) => given.masses.as_deref(),
         }
     }
 
     /// The fit that made it, if there is one.
     pub fn fit(&self) -> Option<(&Outcome, &FitOutcome)> {
-        match self {
-            Body::Fitted(outcome) => Some((outcome, &outcome.fits[0])),
-            Body::Given(_) => None,
+        match &self.source {
+            Source::Fitted(outcome) => Some((outcome, &outcome.fits[0])),
+            Source::Given(_) => None,
         }
     }
 
     pub fn file(&self) -> NetworkFile<'_> {
-        match self {
-            Body::Fitted(outcome) => NetworkFile::of(outcome, &outcome.fits[0]),
-            Body::Given(given) => NetworkFile::with_masses(&given.mesh, &given.network, given.masses.as_deref()),
+        match &self.source {
+            Source::Fitted(outcome) => NetworkFile::of(outcome, &outcome.fits[0]),
+            Source::Given(given) => NetworkFile::with_masses(&given.mesh, &given.network, given.masses.as_deref()),
         }
     }
 
@@ -102,15 +160,14 @@ impl Body {
         }
     }
 
-    /// The tangent stiffness at positions x, row by row; at rest if there are none. Functions of Python are called on this thread alone,
-    /// `has_functions` says whether there are some.
+    /// The tangent stiffness at positions x, row by row; at rest if there are none. Functions of Python are called on this thread alone.
     ///
     /// # Errors
     /// The springs have no tangent there.
-    pub fn stiffness(&self, x: Option<&[f64]>, has_functions: bool) -> Result<CompressedRows> {
+    pub fn stiffness(&self, x: Option<&[f64]>) -> Result<CompressedRows> {
         let (network, [points, d]) = (self.network(), self.shape());
         let rows = match x {
-            _ if d > 1 && points < u32::MAX as usize && !has_functions => {
+            _ if d > 1 && points < u32::MAX as usize && !self.has_functions => {
                 BlockStiffness::of_network(network, x.unwrap_or(self.points()), None).rows()
             }
             None => CompressedRows::of_lower(points * d, &network.stiffness(self.points())),
@@ -130,9 +187,9 @@ impl Body {
     /// # Errors
     /// The mesh has no such group, or the force does not act on it.
     pub fn group_forces(&self, group: &str, force: Vec<f64>) -> Result<Vec<f64>> {
-        let thickness = match self {
-            Body::Fitted(outcome) => outcome.material.thicknesses(),
-            Body::Given(_) => CellMap::Uniform(1.0),
+        let thickness = match &self.source {
+            Source::Fitted(outcome) => outcome.material.thicknesses(),
+            Source::Given(_) => CellMap::Uniform(1.0),
         };
         nodal_forces(self.mesh(), &Selection::Group(group.into()), &Action::Force(force), thickness)
     }

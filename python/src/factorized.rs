@@ -2,7 +2,6 @@
 
 use crate::body::Body;
 use crate::error::{invalid, raised};
-use crate::network::Network;
 use crate::progress::alone;
 use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyReadonlyArray3, PyUntypedArrayMethods};
@@ -41,13 +40,11 @@ type Solutions<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<f64>>, Opt
 impl Factorized {
     /// # Errors
     /// The support leaves a motion without stiffness, or the factor does not fit into memory.
-    pub fn new(py: Python, network: &Network, support: Support) -> PyResult<Factorized> {
-        let body = &network.body;
+    pub fn new(py: Python, body: &Body, support: Support) -> PyResult<Factorized> {
         if !body.is_held(&support) {
             return Err(invalid(py, "fix", "supports that hold every connected part", "one that can move as it is"));
         }
-        let has_functions = network.has_functions;
-        network.worked(py, move |body| {
+        body.worked(py, move |body| {
             let entries = body.network().stiffness(body.points());
             if entries.iter().any(|entry| !entry.val.is_finite()) {
                 return Err(loose("a spring without a stiffness at rest"));
@@ -55,7 +52,7 @@ impl Factorized {
             let system = System::new(&entries, &support)?.placed(body.points(), body.dimension());
             drop(entries);
             let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
-            let stiffness = Arc::new(body.stiffness(None, has_functions)?);
+            let stiffness = Arc::new(body.stiffness(None)?);
             let (system, support) = (Arc::new(system), Arc::new(support));
             Ok(Factorized { body: body.clone(), stiffness, support, system, factor: Arc::new(factor) })
         })

@@ -1,9 +1,9 @@
 //! The motion of a network.
 
 use crate::arrays::{list, vectors};
+use crate::body::Body;
 use crate::ends::Ends;
 use crate::error::invalid;
-use crate::network::Network;
 use crate::progress::{calling, run_functions};
 use numpy::ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
@@ -12,7 +12,7 @@ use springfit::dynamics::{
     Dampers, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, Step, StepOutcome,
 };
 use springfit::error::{Error, ErrorKind, Result};
-use springfit::model::displaced;
+use springfit::model::{Elastic, displaced};
 use std::sync::Arc;
 
 /// A displacement of this multiple of the size of the body means that the motion has diverged.
@@ -51,24 +51,24 @@ struct States {
 }
 
 /// Moves the network from the positions and velocities that are given.
-pub fn simulate<'py>(py: Python<'py>, network: &Network, keys: MotionKeys) -> PyResult<MotionArrays<'py>> {
-    let [points, d] = network.body.shape();
+pub fn simulate<'py>(py: Python<'py>, body: &Body, keys: MotionKeys) -> PyResult<MotionArrays<'py>> {
+    let [points, d] = body.shape();
     let shape = [points, d];
     let forces = vectors(py, "forces", &keys.forces, shape)?;
     let prescribed = vectors(py, "displacement", &keys.prescribed, shape)?;
     let start = vectors(py, "x0", &keys.start, shape)?;
     let velocity = vectors(py, "v0", &keys.velocity, shape)?;
-    let mut support = network.support(py, &keys.held)?;
+    let mut support = body.support(py, &keys.held)?;
     support.prescribed.iter_mut().zip(prescribed).for_each(|(held, u)| *held = held.map(|_| u));
-    let masses = match (&keys.masses, network.body.masses()) {
-        (Some(masses), _) => crate::springs::masses(py, masses, points)?,
+    let masses = match (&keys.masses, body.masses()) {
+        (Some(masses), _) => crate::given_springs::masses(py, masses, points)?,
         (None, Some(masses)) => masses.to_vec(),
         (None, None) => {
             return Err(invalid(py, "masses", "masses of the points, kg, as the material has no density", "none"));
         }
     };
     let integrator = Integrator::named(&keys.method).map_err(|e| crate::error::raised(py, e.at_key("method")))?;
-    let (body, ends) = (network.body.clone(), Arc::new(Ends::default()));
+    let (body, ends) = (body.clone(), Arc::new(Ends::default()));
     let MotionKeys { gravity, step, steps, every, rayleigh, ratio, callback, .. } = keys;
     let own = ends.clone();
     let work = move |_: &mut dyn FnMut(springfit::study::Event)| -> Result<States> {
@@ -85,8 +85,10 @@ pub fn simulate<'py>(py: Python<'py>, network: &Network, keys: MotionKeys) -> Py
         if !gravity.is_empty() {
             drive = drive.gravity(&gravity);
         }
-        let prepared = network.prepared();
-        let motion = Motion { support, drive, damping, ..Motion::free(&prepared, rest, &masses) };
+        // A function is asked for all springs at once by the network itself.
+        let model: Box<dyn Elastic> =
+            if body.has_functions { Box::new(network.clone()) } else { Box::new(network.prepared()) };
+        let motion = Motion { support, drive, damping, ..Motion::free(&*model, rest, &masses) };
         let options = Options { step, integrator, account: false, ..Options::default() };
         let mut simulation = Simulation::new(motion, options).map_err(named)?;
         let from: Vec<f64> = start.iter().zip(rest).map(|(x, rest)| x - rest).collect();

@@ -4,16 +4,17 @@ use crate::arguments::{numbers, optional, text};
 use crate::arrays::{list, matrix, vectors};
 use crate::body::{Body, GivenBody, undefined};
 use crate::element::Element;
-use crate::ends::Ends;
 use crate::equilibrium::{self, Found, Loads};
 use crate::error::{invalid, raised};
 use crate::factorized::Factorized;
+use crate::given_springs::{self, GivenGroup, GivenLengths};
 use crate::mesh::Mesh;
 use crate::motion::{self, MotionArrays, MotionKeys};
 use crate::progress::{alone, apart};
 use crate::sampled;
+use crate::shapes;
 use crate::sparse::{self, Rows};
-use crate::springs::{self, Changed, GivenGroup, GivenLengths};
+use crate::springs::{self, Changed};
 use numpy::ndarray::Array3;
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
@@ -21,19 +22,15 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::prelude::*;
 use springfit::error::{Error, Result};
 use springfit::export::{target_named, with_warnings, write_files};
 use springfit::fit::{CellFits, Spread};
 use springfit::mesh;
-use springfit::model::{Elastic, Support};
+use springfit::model::Elastic;
 use springfit::report::{self, NetworkFormat, read_network};
 use springfit::study::{Outcome, matrix_errors};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// From so many evaluations on it pays to sort the springs for them.
-const MANY: usize = 200;
 
 /// Springs on points.
 #[pyclass(frozen, module = "springfit._core")]
@@ -41,8 +38,6 @@ pub struct Network {
     pub body: Body,
     /// The springs of the cells, until the errors of their matrices have been asked for.
     cells: Mutex<Vec<CellFits>>,
-    /// Whether its laws of force call functions of Python.
-    pub has_functions: bool,
 }
 
 /// The outcome of a sampled fit as JSON, the errors of its shapes and the ends of its starts by columns.
@@ -54,11 +49,7 @@ type Read = (Network, Option<Mesh>, (Option<String>, Option<String>, Vec<String>
 impl Network {
     /// That of an outcome of one fit.
     pub fn new(outcome: Outcome, cells: Vec<CellFits>, has_functions: bool) -> Network {
-        Network { body: Body::Fitted(Arc::new(outcome)), cells: Mutex::new(cells), has_functions }
-    }
-
-    fn given(given: GivenBody, has_functions: bool) -> Network {
-        Network { body: Body::Given(Arc::new(given)), cells: Mutex::default(), has_functions }
+        Network { body: Body::fitted(outcome, has_functions), cells: Mutex::new(cells) }
     }
 
     /// Computes the errors of the matrices, if it has not been done.
@@ -72,72 +63,11 @@ impl Network {
         }
         Ok(())
     }
+}
 
-    /// Evaluates the springs, whose functions may raise exceptions; a function of Python hears signals itself.
-    fn evaluated<T: Send>(&self, py: Python, evaluate: impl FnOnce() -> Result<T> + Send) -> PyResult<T> {
-        let ends = Arc::new(Ends::default());
-        let result = apart(py, || ends.during(evaluate));
-        ends.check(py)?;
-        result.map_err(|error| raised(py, error))
-    }
-
-    /// As [`Network::evaluated`] where functions of Python are called, otherwise on a thread of its own, which a signal ends.
-    pub fn worked<T: Send + 'static>(
-        &self,
-        py: Python,
-        work: impl FnOnce(&Body) -> Result<T> + Send + 'static,
-    ) -> PyResult<T> {
-        let body = self.body.clone();
-        if self.has_functions { self.evaluated(py, move || work(&body)) } else { alone(py, move || work(&body)) }
-    }
-
-    /// Evaluates each of several shapes, `[shapes, points, dimension]`; those at rest if there are none.
-    fn each_shape<T: Send>(
-        &self,
-        py: Python,
-        x: Option<PyReadonlyArray3<f64>>,
-        evaluate: impl Fn(&dyn Elastic, &[f64]) -> Result<T> + Sync,
-    ) -> PyResult<(Option<usize>, Vec<T>)> {
-        let Some(x) = x else {
-            let own = self.evaluated(py, || evaluate(self.body.network(), self.body.points()))?;
-            return Ok((None, vec![own]));
-        };
-        let [points, d] = self.body.shape();
-        if x.shape()[1..] != [points, d] {
-            let found = format!("{:?}", &x.shape()[1..]);
-            return Err(invalid(py, "x", &format!("an array of shape ({points}, {d}), or many of this shape"), found));
-        }
-        let (count, size) = (x.shape()[0], points * d);
-        let all: Vec<f64> = x.as_array().iter().copied().collect();
-        if let Some(place) = all.iter().position(|value| !value.is_finite()) {
-            let (shape, point) = (place / size, place % size / d);
-            let key = if count == 1 { format!("x[{point}]") } else { format!("x[{shape}, {point}]") };
-            return Err(invalid(py, &key, "finite numbers", all[place]));
-        }
-        let found = self.evaluated(py, || {
-            let network = self.body.network();
-            let shapes = all.par_chunks(size.max(1));
-            match self.has_functions {
-                // Its functions end the call of this thread.
-                true => all.chunks(size.max(1)).map(|x| evaluate(network, x)).collect(),
-                false if count >= MANY => {
-                    let prepared = network.prepared();
-                    shapes.map(|x| evaluate(&prepared, x)).collect::<Result<Vec<T>>>()
-                }
-                false if count > 1 => shapes.map(|x| evaluate(network, x)).collect(),
-                false => all.chunks(size.max(1)).map(|x| evaluate(network, x)).collect(),
-            }
-        })?;
-        Ok((Some(count), found))
-    }
-
-    /// The support of these components at rest, if it holds every piece of the mesh.
-    pub fn support(&self, py: Python, held: &PyReadonlyArray2<bool>) -> PyResult<Support> {
-        let shape = self.body.shape();
-        if held.shape() != shape {
-            return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
-        }
-        Ok(Support { prescribed: held.as_array().iter().map(|held| held.then_some(0.0)).collect() })
+impl From<Body> for Network {
+    fn from(body: Body) -> Network {
+        Network { body, cells: Mutex::default() }
     }
 }
 
@@ -172,9 +102,9 @@ impl Network {
         };
         let elements: Vec<_> = mesh.blocks.iter().map(|block| block.element.clone()).collect();
         let lengths = GivenLengths { springs: &springs, constants: &constants, rest: rest.as_ref() };
-        let network = springs::network(py, (&mesh.points, d), &lengths, &contents, &elements)?;
-        let masses = masses.map(|masses| springs::masses(py, &masses, count)).transpose()?;
-        Ok(Network::given(GivenBody { mesh, network, masses }, false))
+        let network = given_springs::network(py, (&mesh.points, d), &lengths, &contents, &elements)?;
+        let masses = masses.map(|masses| given_springs::masses(py, &masses, count)).transpose()?;
+        Ok(Body::given(GivenBody { mesh, network, masses }, false).into())
     }
 
     /// The network of a JSON file. `elements` are those of its cells that are not shipped.
@@ -194,7 +124,7 @@ impl Network {
             Ok((GivenBody { mesh, network, masses: record.masses }, has_cells, facts))
         })?;
         let mesh = has_cells.then(|| Mesh::of(given.mesh.clone(), &own)).transpose().map_err(|e| raised(py, e))?;
-        Ok((Network::given(given, false), mesh, facts))
+        Ok((Body::given(given, false).into(), mesh, facts))
     }
 
     /// The same springs with other numbers; `others` has those of each group of `others`, or none.
@@ -207,12 +137,7 @@ impl Network {
         others: Vec<Changed>,
     ) -> PyResult<Network> {
         let network = springs::changed(py, self.body.network(), constants.as_ref(), rest.as_ref(), &others)?;
-        let mesh = match &self.body {
-            Body::Fitted(outcome) => Arc::new(outcome.mesh.clone()),
-            Body::Given(given) => given.mesh.clone(),
-        };
-        let masses = self.body.masses().map(<[f64]>::to_vec);
-        Ok(Network::given(GivenBody { mesh, network, masses }, self.has_functions))
+        Ok(self.body.with_network(network).into())
     }
 
     #[getter]
@@ -265,13 +190,13 @@ impl Network {
     #[pyo3(signature = (x=None))]
     fn energy<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray3<f64>>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let evaluate = |model: &dyn Elastic, x: &[f64]| model.energy(x).ok_or_else(|| undefined("an energy"));
-        Ok(list(py, self.each_shape(py, x, evaluate)?.1))
+        Ok(list(py, shapes::each(py, &self.body, x, evaluate)?.1))
     }
 
     /// The forces of the springs on the points of shapes, N.
     #[pyo3(signature = (x=None))]
     fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray3<f64>>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let (count, found) = self.each_shape(py, x, |model, x| {
+        let (count, found) = shapes::each(py, &self.body, x, |model, x| {
             let mut slopes = vec![0.0; x.len()];
             if !model.forces(x, &mut slopes) {
                 return Err(undefined("a force"));
@@ -291,14 +216,13 @@ impl Network {
     fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Rows<'py>> {
         let shape = self.body.shape();
         let x = x.map(|x| vectors(py, "x", &x, shape)).transpose()?;
-        let has_functions = self.has_functions;
-        let found = self.worked(py, move |body| body.stiffness(x.as_deref(), has_functions))?;
+        let found = self.body.worked(py, move |body| body.stiffness(x.as_deref()))?;
         Ok(sparse::rows(py, found))
     }
 
     /// The factor of the stiffness at rest where `held` says which components are prescribed.
     fn factorized(&self, py: Python, held: PyReadonlyArray2<bool>) -> PyResult<Factorized> {
-        Factorized::new(py, self, self.support(py, &held)?)
+        Factorized::new(py, &self.body, self.body.support(py, &held)?)
     }
 
     /// The positions in equilibrium at large deformation.
@@ -315,16 +239,16 @@ impl Network {
         let forces = vectors(py, "forces", &forces, shape)?;
         let given = vectors(py, "displacement", &prescribed, shape)?;
         let start = start.map(|start| vectors(py, "x0", &start, shape)).transpose()?;
-        let mut support = self.support(py, &held)?;
+        let mut support = self.body.support(py, &held)?;
         support.prescribed.iter_mut().zip(given).for_each(|(held, u)| *held = held.map(|_| u));
         let loads = Loads { forces, support, start };
-        let Found { x, is_rounded, inverted } = self.worked(py, move |body| equilibrium::find(body, &loads))?;
+        let Found { x, is_rounded, inverted } = self.body.worked(py, move |body| equilibrium::find(body, &loads))?;
         Ok((matrix(py, x, shape[1]), is_rounded, inverted))
     }
 
     /// The motion from a state, as arrays of the states that are kept.
     fn simulate<'py>(&self, py: Python<'py>, keys: MotionKeys) -> PyResult<MotionArrays<'py>> {
-        motion::simulate(py, self, keys)
+        motion::simulate(py, &self.body, keys)
     }
 
     /// A total force on a group of the mesh as forces on its points, N.
@@ -347,7 +271,7 @@ impl Network {
     /// Writes the springs: .json, .npz, .csv or .vtu.
     fn write(&self, py: Python, path: PathBuf) -> PyResult<()> {
         if NetworkFormat::of(&path).is_ok_and(|format| format.has_errors) {
-            self.evaluated(py, || self.measure())?;
+            self.body.evaluated(py, || self.measure())?;
         }
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
@@ -372,7 +296,7 @@ impl Network {
             return Err(invalid(py, &format!("gravity[{place}]"), "a finite number, m/s²", found));
         }
         let target = target_named(&to).map_err(|error| raised(py, error.at_key("to")))?;
-        self.evaluated(py, || self.measure())?;
+        self.body.evaluated(py, || self.measure())?;
         let body = self.body.clone();
         let (files, left_out) = alone(py, move || {
             body.network().check_formulas()?;
@@ -395,7 +319,8 @@ impl Network {
     fn notes(&self) -> Vec<String> {
         let mesh = report::mesh_notes(self.body.mesh());
         let of_fit = self.body.fit().map(|(outcome, _)| report::notes_beside_summary(outcome));
-        mesh.into_iter().chain(of_fit.into_iter().flatten()).collect()
+        // Python has no table.
+        mesh.into_iter().chain(of_fit.into_iter().flatten()).map(|note| note.replace(report::IN_TABLE, "")).collect()
     }
 
     /// The name of the fit.
@@ -421,7 +346,7 @@ impl Network {
     fn statistics<'py>(&self, py: Python<'py>, measures: bool) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some((_, fit)) = self.body.fit() else { return Ok(None) };
         if measures {
-            self.evaluated(py, || self.measure())?;
+            self.body.evaluated(py, || self.measure())?;
         }
         let record = PyDict::new(py);
         record.set_item("name", &fit.fit.name)?;

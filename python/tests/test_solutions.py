@@ -243,3 +243,35 @@ def test_a_plain_newton_loop_on_the_arrays_finds_the_equilibrium():
         x.ravel()[free] += spsolve(net.stiffness(x)[free][:, free].tocsc(), left)
     expected = net.equilibrium("xmin", weight)
     assert np.abs(x - expected).max() <= 1e-9 * np.abs(expected - net.points).max()
+
+
+def test_matrices_and_solutions_are_those_of_scikit_fem():
+    skfem = pytest.importorskip("skfem")
+    from skfem.helpers import ddot, sym_grad, trace
+    from skfem.models.elasticity import lame_parameters
+
+    mesh = skfem.MeshTet.init_tensor(*(np.linspace(0, a, n) for a, n in ((0.1, 6), (0.02, 3), (0.02, 3))))
+    basis = skfem.Basis(mesh, skfem.ElementVector(skfem.ElementTetP1()))
+    lam, mu = lame_parameters(5e5, 0.3)
+    stiff = skfem.BilinearForm(
+        lambda u, v, w: 2 * mu * ddot(sym_grad(u), sym_grad(v)) + lam * trace(sym_grad(u)) * trace(sym_grad(v))
+    ).assemble(basis)
+    own = sf.Mesh(mesh.p.T, {"tet4": mesh.t.T})
+    assert np.array_equal(own.points, mesh.p.T)
+    for ours in (sf.stiffness(own, MATERIAL), sf.fit(own, MATERIAL).stiffness()):
+        # Its degrees of freedom have the same numbers: point · 3 + axis.
+        assert abs(ours - stiff).max() <= 1e-12 * abs(stiff).max()
+    f = np.zeros(mesh.p.T.shape)
+    f[mesh.p[0] > 0.0999, 2] = -1e-3
+    u = skfem.solve(*skfem.condense(stiff, f.ravel(), D=basis.get_dofs(lambda x: x[0] < 1e-9).flatten()))
+    found = sf.fit(own, MATERIAL).solve(np.flatnonzero(mesh.p[0] < 1e-9), f)
+    assert np.abs(found.ravel() - u).max() <= 1e-9 * np.abs(u).max()
+
+
+@pytest.mark.parametrize("name", ["springs", "factorized", "motion", "network"])
+def test_the_examples_of_docstrings_run(name):
+    import doctest
+    import importlib
+
+    found = doctest.testmod(importlib.import_module(f"springfit.{name}"))
+    assert found.failed == 0 and (found.attempted > 0 or name != "springs")

@@ -68,7 +68,7 @@ pub use load_record::{LoadRecord, MeasuredRecord};
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
-pub use notes::{notes, notes_beside_summary};
+pub use notes::{IN_TABLE, notes, notes_beside_summary};
 pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_table, write_paper};

@@ -10,7 +10,7 @@ pub use crate::network::{
     LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Measuring, Merged, NETWORK_VERSION,
     NetworkDampingRecord, NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts,
     ProvenanceRecord, Shard, ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord,
-    cell_terms, merge_shards, network_csv, network_npz, network_npz_with, network_schema, read_network,
+    cell_terms, merge_shards, network_csv, network_npz, network_npz_with, network_schema, read_network, simplex_term,
 };
 pub use file::NetworkFile;
 pub use format::{NETWORK_FORMATS, NetworkFormat};

@@ -17,6 +17,7 @@ mod elastic;
 mod exact;
 mod fibres;
 mod forces;
+mod functions;
 mod gradients;
 mod integration;
 mod linear;

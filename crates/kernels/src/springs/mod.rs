@@ -12,7 +12,8 @@ mod patch;
 mod vector;
 
 pub use content::Content;
-pub use law::{Force, ForceFunction, Law, LawRoom};
+pub(crate) use law::AskedResponse;
+pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
 pub use vector::{cross, distance, dot, norm, unit};
