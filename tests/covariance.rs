@@ -54,7 +54,11 @@ fn measured(springs: &Springs, s: usize) -> i32 {
             SpringKind::Area => 2,
             SpringKind::Volume => 4,
             SpringKind::Length | SpringKind::Coupling | SpringKind::Measure => 0,
-            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => {
+            SpringKind::PointContent
+            | SpringKind::PointArea
+            | SpringKind::Patch
+            | SpringKind::Fibre
+            | SpringKind::Bend => {
                 unreachable!("no fit has them")
             }
         },

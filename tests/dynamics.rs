@@ -828,7 +828,8 @@ fn bodies_of_finite_elements_move() {
     let spec = BoxMesh { element, size: vec![0.02; 3], cells: vec![2; 3], origin: vec![0.0; 3] };
     let mesh = spec.build().unwrap();
     let energy = Energy::load("neo-hookean", Material::new(10e3, 0.3, State::Solid).unwrap()).unwrap();
-    let body = Body { mesh: &mesh, laws: &(energy.clone(), State::Solid).into() };
+    let laws = (energy.clone(), State::Solid).into();
+    let body = Body::new(&mesh, &laws);
     let masses = masses(&mesh, 1000.0, 1.0);
     let velocity: Vec<f64> = mesh.points.chunks(3).flat_map(|x| [0.1 - 10.0 * x[1], 10.0 * x[0], 2.0 * x[2]]).collect();
     for (integrator, lost) in [(Integrator::newmark(), 1e-3), (Integrator::ImplicitEuler, 1.0)] {

@@ -172,7 +172,8 @@ fn energies_are_those_of_the_body() {
                     continue;
                 }
                 let network = Network::assemble(&mesh, &[found.unwrap()]);
-                let body = Body { mesh: &mesh, laws: &(law.clone(), material.state()).into() };
+                let laws = (law.clone(), material.state()).into();
+                let body = Body::new(&mesh, &laws);
                 let rest = Elastic::energy(&network, &mesh.points).unwrap();
                 let mut tried = 0;
                 while tried < 3 {
@@ -353,7 +354,8 @@ fn frequencies_and_motion_are_those_of_the_body() {
     for element in ["tet4", "hex8"] {
         let mesh = cube(element, [2, 2, 2], [0.02; 3]);
         let network = network(&mesh, material, ExactFit { large: true, ..POINTS });
-        let body = Body { mesh: &mesh, laws: &(law.clone(), State::Solid).into() };
+        let laws = (law.clone(), State::Solid).into();
+        let body = Body::new(&mesh, &laws);
         let masses = lumped_masses(&mesh, 1000.0, 1.0, Lumping::Hrz);
         let mut support = Support::free(&mesh);
         let held: Vec<usize> = (0..mesh.point_count()).filter(|p| mesh.point(*p)[2] == 0.0).collect();
@@ -530,7 +532,8 @@ fn fibres_are_springs() {
             let fit = ExactFit { energy: ExactEnergy::NeoHookean, large: true, ..POINTS };
             let mut network = network(&mesh, material, fit);
             network.others.extend(fibre_springs(&mesh, material, &law).unwrap());
-            let body = Body { mesh: &mesh, laws: &(law.clone(), State::Solid).into() };
+            let laws = (law.clone(), State::Solid).into();
+            let body = Body::new(&mesh, &laws);
             let rest = Elastic::energy(&network, &mesh.points).unwrap();
             let x: Vec<f64> = mesh.points.iter().map(|x| 1.1 * x + 0.05 * random.next()).collect();
             let (found, expected) = (network.respond(&x).unwrap(), body.respond(&x).unwrap());

@@ -73,6 +73,7 @@ mod outputs;
 mod page;
 mod paper;
 mod pieces;
+mod plates;
 mod plot;
 mod prepared;
 mod pressure;

@@ -4,7 +4,7 @@ use springfit::error::ErrorKind;
 use springfit::mesh::Mesh;
 use springfit::model::{BlockStiffness, Support, finite_elements};
 use springfit::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
-use springfit::study::{Outcome, Scene, run};
+use springfit::study::{Hold, Outcome, Scene, run};
 use std::fs;
 use std::path::Path;
 
@@ -32,7 +32,7 @@ fn product(x: &[f64], y: &[f64]) -> f64 {
 fn supports(scene: &Scene, mesh: &Mesh) -> Support {
     let d = mesh.dimension;
     let mut support = Support::free(mesh);
-    for (part, axes) in scene.supports() {
+    for Hold { part, axes, .. } in scene.supports() {
         let all: Vec<usize> = (0..d).collect();
         let points = part.selection(d).and_then(|selection| selection.points(mesh)).unwrap();
         support.fix(&points, axes.as_ref().unwrap_or(&all), d);

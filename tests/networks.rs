@@ -70,6 +70,16 @@ fn measure(network: &NetworkRecord, spring: &SpringRecord, x: &[f64]) -> f64 {
             let values: Vec<f64> = spring.points.iter().flat_map(|p| at(*p)).copied().collect();
             Scope::new(&names).expression(measure.expression.as_ref().unwrap()).unwrap().evaluate(&values)
         }
+        MeasureKind::Turn => {
+            let turn = |cell: &springfit::report::ShareRecord| {
+                let [apex, a, b, director] =
+                    [0, 1, 2, 3].map(|i| nalgebra::Vector3::from_column_slice(at(spring.points[cell.nodes[i]])));
+                let edge = (b - a).normalize();
+                let normal = edge.cross(&(apex - a)).normalize();
+                cell.share * (director - a).dot(&normal).atan2((director - a).dot(&edge.cross(&normal)))
+            };
+            measure.cells.iter().map(turn).sum()
+        }
         MeasureKind::Content => {
             let mut sum = 0.0;
             for (cell, term) in measure.cells.iter().flat_map(|cell| measure.terms.iter().map(move |term| (cell, term)))

@@ -156,7 +156,7 @@ fn a_deformed_cube_carries_the_stress_of_its_energy() {
                 .chunks_exact(3)
                 .flat_map(|x| (f * nalgebra::Vector3::from_column_slice(x)).as_slice().to_vec())
                 .collect();
-            let response = Body { mesh: &mesh, laws: &(energy.clone(), State::Solid).into() }.respond(&x).unwrap();
+            let response = Body::new(&mesh, &(energy.clone(), State::Solid).into()).respond(&x).unwrap();
             let (_, stress, _) = energy.respond(&f);
             for k in 0..3 {
                 let total: f64 = face.iter().map(|p| response.force[3 * p + k]).sum();
@@ -186,7 +186,8 @@ fn newtons_method_converges_quadratically() {
         let material = Material::for_body(mesh.dimension, 1.0, 0.3, None, None).unwrap();
         for (law, _) in SHIPPED.iter().filter(|(law, _)| *law != "st-venant-kirchhoff") {
             let energy = Energy::load(law, material).unwrap();
-            let body = Body { mesh: &mesh, laws: &(energy.clone(), material.state()).into() };
+            let laws = (energy.clone(), material.state()).into();
+            let body = Body::new(&mesh, &laws);
             let (support, forces) = pulled(&mesh, 0.2);
             let found = Newton::default().solve(&body, &mesh.points, &support, &forces).unwrap();
             assert_eq!((found.ending, found.load), (Ending::Converged, 1.0), "{name} {law}");
@@ -222,7 +223,8 @@ fn supports_that_move_are_followed() {
     let mesh = cube("hex8", 2);
     let material = Material::new(1.0, 0.3, State::Solid).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
-    let body = Body { mesh: &mesh, laws: &(energy.clone(), State::Solid).into() };
+    let laws = (energy.clone(), State::Solid).into();
+    let body = Body::new(&mesh, &laws);
     let mut support = Support::free(&mesh);
     // Rollers on three faces: the deformation is homogeneous.
     for (face, axis) in [("xmin", 0), ("ymin", 1), ("zmin", 2)] {

@@ -249,7 +249,7 @@ fn a_body_in_a_fluid_shrinks_evenly() {
         let faces = pressed(&mesh, &Selection::Everything, p);
         let forces = faces.forces(&mesh.points);
         let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
-        let body = Body { mesh: &mesh, laws: &laws };
+        let body = Body::new(&mesh, &laws);
         let applied = Applied { forces: &forces, pressed: Some(&faces) };
         let found = Newton { steps: 4, ..Newton::default() };
         let found = found.solve(&body, &mesh.points, &support, applied).unwrap();
@@ -266,7 +266,7 @@ fn a_pressure_without_a_potential_is_followed() {
     let mesh = grid("hex8", &[4.0, 1.0, 0.5], &[8, 2, 2]);
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
     let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
-    let body = Body { mesh: &mesh, laws: &laws };
+    let body = Body::new(&mesh, &laws);
     let mut support = Support::free(&mesh);
     support.fix(&Selection::Group("xmin".into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
     let faces = pressed(&mesh, &Selection::Group("zmax".into()), 8.0);
@@ -353,7 +353,7 @@ fn a_ball_is_filled_through_its_maximum() {
         let lambda = 1e4 * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
         let material = Material::new(1e4, poisson, State::Solid).unwrap();
         let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
-        let body = Body { mesh: &mesh, laws: &laws };
+        let body = Body::new(&mesh, &laws);
         let volume = |l: f64| 4.0 / 3.0 * PI * (inner * l).powi(3);
         let stretch = 2.2;
         let cavity = Cavity::new(&mesh, &sides, volume(stretch), &CellMap::Uniform(1.0)).unwrap();
@@ -400,7 +400,7 @@ fn a_thin_balloon_is_blown_up() {
     let (young, poisson, thickness) = (1e6, 0.4999, 1e-3);
     let material = Material::new(young, poisson, State::PlaneStress { thickness }).unwrap();
     let laws = (Energy::load("neo-hookean", material).unwrap(), material.state()).into();
-    let body = Body { mesh: &mesh, laws: &laws };
+    let body = Body::new(&mesh, &laws);
     assert!(body.bent().is_none());
     let support = held_by_symmetry(&mesh, 1.0);
     let mu = young / (2.0 * (1.0 + poisson));
@@ -524,7 +524,7 @@ fn a_cavity_at_its_own_volume_stays() {
     let mesh = sphere("hex8", 1.0, 1.3, [2, 1]);
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
     let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
-    let body = Body { mesh: &mesh, laws: &laws };
+    let body = Body::new(&mesh, &laws);
     let sides = at("x^2 + y^2 + z^2 < 1.15^2");
     let start = Cavity::new(&mesh, &sides, 1.0, &CellMap::Uniform(1.0)).unwrap().volume_at(&mesh.points);
     for growth in [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 - 1e-9, 1.0 + 1e-6] {

@@ -38,7 +38,7 @@ impl Held {
     }
 
     fn model(&self) -> Body<'_> {
-        Body { mesh: &self.mesh, laws: &self.laws }
+        Body::new(&self.mesh, &self.laws)
     }
 
     fn stretched(&self, stretch: f64, make: &dyn Fn(u64) -> Vec<NodalLoad>) -> StretchedLoads {

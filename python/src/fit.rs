@@ -165,7 +165,7 @@ pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny
     let (constants, mesh) = (Constants::given(material)?, mesh.mesh.clone());
     let found = alone(py, move || {
         let moduli = constants.of(&mesh)?.moduli();
-        match BlockStiffness::is_of(&mesh) {
+        match BlockStiffness::is_of(&mesh) && mesh.directors.is_none() {
             true => Ok(BlockStiffness::of_body(&mesh, moduli, 2, 0)?.rows()),
             false => Ok(CompressedRows::of_lower(mesh.points.len(), &model::finite_elements(&mesh, moduli))),
         }

@@ -8,7 +8,7 @@ use springfit::element::{Element, SpringKind, coordinate_names};
 use springfit::error::Error;
 use springfit::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use springfit::report::{MeasureKind, MeasureRecord, Measuring, ShareRecord, TermRecord, cell_terms, simplex_term};
-use springfit::springs::{Law, Measure, distance};
+use springfit::springs::{BEND_POINTS, Law, Measure, distance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -184,6 +184,16 @@ impl MeasureRecords {
         if let (Some(name), None) = (&group.element, &element) {
             let expected = "a shipped element, or one of the cells of the mesh";
             return Err(invalid(py, &format!("{key}.element"), expected, format!("\"{name}\"")));
+        }
+        if let (SpringKind::Bend, Some(cells)) = (kind, &group.cells) {
+            let is_turn = |(nodes, _): &(Vec<usize>, f64)| nodes.iter().all(|&a| a < n);
+            if cells.len() != count || n != BEND_POINTS || !cells.iter().flatten().all(is_turn) {
+                let expected = format!("turns for each of {count} springs of {BEND_POINTS} points");
+                return Err(invalid(py, &format!("{key}.cells"), &expected, cells.len()));
+            }
+            found.base = plain(MeasureKind::Turn);
+            found.cells = Some(cells.clone());
+            return Ok(found);
         }
         if let Some(cells) = &group.cells {
             let expected =

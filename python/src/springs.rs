@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::{SpringKind, Tabulation, coordinate_names};
 use springfit::model::{MeasureSpring, Network};
-use springfit::springs::Measure;
+use springfit::springs::{Measure, turn_points};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ fn element_of(measure: &Measure) -> Option<&str> {
     match measure {
         Measure::Content(element) | Measure::PointContent(element, _) => Some(&element.name),
         Measure::Patch(patch) => Some(&patch.element.name),
-        Measure::Length | Measure::Span(_) | Measure::Function(_) => None,
+        Measure::Length | Measure::Span(_) | Measure::Function(_) | Measure::Bend(_) => None,
     }
 }
 
@@ -78,12 +78,16 @@ pub fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyR
         record.set_item("gradients", matrix(py, gradients.collect(), n * own))?;
         record.set_item("weights", list(py, tables.iter().map(|(t, q)| t.point_weight(*q)).collect()))?;
     }
-    if let Measure::Patch(_) = &springs[0].measure {
-        let cells = springs.iter().map(|spring| match &spring.measure {
-            Measure::Patch(patch) => patch.cells.clone(),
-            _ => Vec::new(),
-        });
-        record.set_item("cells", cells.collect::<Vec<_>>())?;
+    let cells_of = |spring: &MeasureSpring| match &spring.measure {
+        Measure::Patch(patch) => Some(patch.cells.clone()),
+        Measure::Bend(bend) => {
+            let turn = |(corner, weight): (usize, &f64)| (turn_points(corner).to_vec(), *weight);
+            Some(bend.weights.iter().enumerate().map(turn).collect())
+        }
+        _ => None,
+    };
+    if cells_of(springs[0]).is_some() {
+        record.set_item("cells", springs.iter().filter_map(|spring| cells_of(spring)).collect::<Vec<_>>())?;
     }
     Ok(record)
 }

@@ -144,7 +144,7 @@ impl Report {
             settings: outcome.settings.clone(),
             extent: extent(mesh),
             assumed: outcome.assumed.clone(),
-            nodes: mesh.point_count(),
+            nodes: mesh.node_count(),
             elements: mesh.cell_count(),
             element_types: mesh.blocks.iter().map(|block| block.element.name.clone()).collect(),
             turned_elements: mesh.reversed,

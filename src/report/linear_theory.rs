@@ -50,10 +50,10 @@ fn moved(outcome: &Outcome) -> Option<&ModelMotion> {
 
 /// That no figure under a load is to be trusted: linear finite elements move by more than the body's own size.
 pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
-    let (d, size) = (outcome.mesh.dimension, extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
+    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     let linear = outcome.loads.iter().filter(|load| load.deformation.is_some());
     let beyond: Vec<String> = linear
-        .map(|load| (load, load.largest_displacement(d)))
+        .map(|load| (load, load.largest_displacement(&outcome.mesh)))
         .filter(|(_, moved)| !(*moved <= size))
         .map(|(load, moved)| format!("{} ({:.0} % of the body)", load.name, 100.0 * moved / size))
         .collect();

@@ -15,7 +15,7 @@ pub(super) fn summary_line(outcome: &Outcome) -> String {
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
     format!(
         "{} points, {}, {}; {}{}",
-        mesh.point_count(),
+        mesh.node_count(),
         cells.join(", "),
         size(&extent(mesh)),
         material_words(outcome),
@@ -112,10 +112,9 @@ fn pressures(outcome: &Outcome) -> Vec<String> {
 
 /// How far the finite elements move under the loads that they reach, which percentages hide.
 fn largest(outcome: &Outcome) -> Option<String> {
-    let d = outcome.mesh.dimension;
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     let moved = |load: &BodyLoad| {
-        let most = load.largest_displacement(d);
+        let most = load.largest_displacement(&outcome.mesh);
         format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
     };
     let loads: Vec<String> = outcome.loads.iter().filter(|load| load.is_reached()).map(moved).collect();

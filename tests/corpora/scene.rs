@@ -25,7 +25,7 @@ fn check_scene(scene: &Scene) {
         let parts = scene
             .supports()
             .iter()
-            .map(|(part, _)| part)
+            .map(|hold| &hold.part)
             .chain(scene.loads().iter().filter_map(|load| load.single()).map(|(part, _)| part));
         for part in parts {
             let selected = part.selection(dimension);

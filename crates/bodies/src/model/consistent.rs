@@ -3,10 +3,11 @@
 //! Theory: page *Dynamics* of the book.
 
 use super::integration::each_cell_points;
+use super::lumping::turning_masses;
 use crate::element::Integrand;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::mesh::{CellBlock, Mesh};
+use crate::mesh::{CellBlock, CellIndex, Mesh};
 
 /// The consistent mass matrix `M_ab = ∫ ρ N_a N_b dV` of a mesh as `GᵀG`, kg. Each quadrature point q is a row of G, with the numbers
 /// `√(ρ w_q |J_q|) N_a(ξ_q)` of the points a of its cell. It is the same in every direction.
@@ -56,6 +57,12 @@ impl ConsistentMasses {
                 }
             },
         );
+        let of = |cell: CellIndex| density.at(cell.block, cell.cell) * thickness.at(cell.block, cell.cell);
+        for (point, mass) in turning_masses(mesh, &of) {
+            all.points.push(point);
+            all.values.push(mass.max(0.0).sqrt());
+            all.starts.push(all.points.len());
+        }
         match negative {
             None => Ok(all),
             Some((index, mass)) => {

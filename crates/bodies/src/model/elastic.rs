@@ -2,6 +2,7 @@
 
 use super::blocks::BlockStiffness;
 use super::network::Network;
+use super::plate::plate_at_large_deformation;
 use super::rows::Rows;
 use super::system::{self, dofs};
 use super::{Entries, Response};
@@ -62,9 +63,16 @@ pub struct Body<'a> {
     pub mesh: &'a Mesh,
     /// The energy per volume and the state of each cell.
     pub laws: &'a EnergyMap,
+    /// What resists bending: the springs of a sheet, which are its finite elements too; none of other bodies.
+    plate: Network,
 }
 
-impl Body<'_> {
+impl<'a> Body<'a> {
+    /// A body at large deformation. A sheet bends as its laws are at rest.
+    pub fn new(mesh: &'a Mesh, laws: &'a EnergyMap) -> Body<'a> {
+        Body { mesh, laws, plate: plate_at_large_deformation(mesh, laws) }
+    }
+
     /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
         inverted(self.mesh, x)
@@ -136,6 +144,12 @@ impl Elastic for Body<'_> {
             }
             Some(())
         })?;
+        if !self.plate.is_empty() {
+            let bent = self.plate.respond(x)?;
+            total.energy += bent.energy;
+            total.force.iter_mut().zip(bent.force).for_each(|(f, own)| *f += own);
+            total.tangent.extend(bent.tangent);
+        }
         Some(total)
     }
 
@@ -149,6 +163,12 @@ impl Elastic for Body<'_> {
             dofs(nodes, self.mesh.dimension).zip(&own).for_each(|(dof, f)| force[dof] += f);
             Some(())
         });
+        if all.is_some() && !self.plate.is_empty() {
+            let mut bent = vec![0.0; x.len()];
+            let has_forces = self.plate.pull(x, &mut bent);
+            force.iter_mut().zip(bent).for_each(|(f, own)| *f += own);
+            return has_forces;
+        }
         all.is_some()
     }
 }

@@ -6,6 +6,7 @@ use super::integration::each_cell_points;
 use crate::element::Integrand;
 use crate::material::CellMap;
 use crate::mesh::{CellIndex, Mesh};
+use crate::springs::{cross, distance, norm};
 
 /// How the mass of a cell is distributed among its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,7 +62,31 @@ pub fn lumped_masses(
             },
         ),
     }
+    let turning = turning_masses(mesh, &of);
+    turning.into_iter().for_each(|(point, mass)| masses[point] += mass);
     masses
+}
+
+/// The masses of the directors of a sheet, by points, kg. A plate of thickness t has the rotary inertia `ρ t³/12` per area; a director at the distance r from an edge
+/// has `m r²` of it for a third of the triangles there. `of` is the mass per area of a cell, kg/m².
+pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec<(usize, f64)> {
+    let Some(directors) = &mesh.directors else { return Vec::new() };
+    let first = mesh.node_count();
+    let mut masses = Vec::new();
+    for (index, (points, gyration)) in mesh.cell_indices().zip(directors.of_cells.iter().zip(&directors.gyration)) {
+        let area = area(mesh, mesh.cell_nodes(index));
+        for &point in points {
+            let [a, b] = directors.edges[point - first].map(|end| mesh.point(end));
+            masses.push((point, of(index) * area / 3.0 * gyration / distance(a, b).powi(2)));
+        }
+    }
+    masses
+}
+
+/// The area of a triangle, m².
+fn area(mesh: &Mesh, nodes: &[usize]) -> f64 {
+    let from = |b: usize| std::array::from_fn(|k| mesh.point(nodes[b])[k] - mesh.point(nodes[0])[k]);
+    norm(&cross(from(1), from(2))) / 2.0
 }
 
 /// The nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix. Each node of a

@@ -3,6 +3,7 @@
 //! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Entries;
+use super::plate::plate_springs;
 use crate::element::Tabulation;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
@@ -59,6 +60,7 @@ pub fn finite_elements(mesh: &Mesh, moduli: impl Into<CellMap<Hooke>>) -> Entrie
             }
         }
     });
+    entries.extend(plate_springs(mesh, &moduli).stiffness(&mesh.points));
     entries
 }
 

@@ -38,6 +38,9 @@ pub enum SpringKind {
     /// The stretch of the fibres at a quadrature point of a cell. For exact networks only.
     #[serde(skip)]
     Fibre,
+    /// A weighted sum of the turns of a triangle from the directors of its edges, in m. For sheets that bend only.
+    #[serde(skip)]
+    Bend,
 }
 
 crate::named!(SpringKind {
@@ -51,6 +54,7 @@ crate::named!(SpringKind {
     "point-area" => PointArea,
     "patch" => Patch,
     "fibre" => Fibre,
+    "bend" => Bend,
 });
 
 /// The longest list of nodes of a spring, that of the polygon of an area.
@@ -144,6 +148,15 @@ impl SpringKind {
                 symmetry: Symmetry::Ordered,
                 in_element_files: true,
                 unit: "J per square of the unit of the measure",
+                formula: None,
+            },
+            SpringKind::Bend => Kind {
+                nodes: 6..=6,
+                least_dimension: 3,
+                content: None,
+                symmetry: Symmetry::Ordered,
+                in_element_files: false,
+                unit: "N/m",
                 formula: None,
             },
             SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => Kind {

@@ -5,12 +5,14 @@
 //!
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
+mod bend;
 mod content;
 mod law;
 mod measure;
 mod patch;
 mod vector;
 
+pub use bend::{BEND_POINTS, Bend, turn_points};
 pub use content::Content;
 pub(crate) use law::AskedResponse;
 pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};

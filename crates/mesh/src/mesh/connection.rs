@@ -7,7 +7,12 @@ impl Mesh {
     /// The points of each connected part, ascending; the parts are in the order of their first points. Two cells are
     /// connected if they share a node: different nodes at one position do not connect cells.
     pub fn pieces(&self) -> Vec<Vec<usize>> {
-        pieces_of(self.point_count(), self.blocks.iter().flat_map(|block| block.cells()))
+        // A director goes with its edge.
+        let first = self.node_count();
+        let edges = self.directors.iter().flat_map(|directors| &directors.edges).enumerate();
+        let of_directors: Vec<[usize; 2]> = edges.map(|(e, [a, _])| [first + e, *a]).collect();
+        let cells = self.blocks.iter().flat_map(|block| block.cells());
+        pieces_of(self.point_count(), cells.chain(of_directors.iter().map(<[usize; 2]>::as_slice)))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The points, cells and groups of a mesh.
 
 use super::annotations::Annotations;
+use super::directors::Directors;
 use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
@@ -8,7 +9,7 @@ use crate::symbolic::Predicate;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Points, cells of known elements, and groups. Every point belongs to a cell, and every cell has a positive volume.
+/// Points, cells of known elements, and groups. Every point is a node of a cell or a director, and every cell has a positive volume.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     /// The dimension of the space, 2 or 3. The cells of a surface or curve have fewer.
@@ -17,6 +18,8 @@ pub struct Mesh {
     pub points: Vec<f64>,
     /// The cells, one block per element type.
     pub blocks: Vec<CellBlock>,
+    /// The directors of a sheet that bends, which are the last points.
+    pub directors: Option<Directors>,
     /// The groups by name.
     pub groups: BTreeMap<String, Group>,
     /// Conditions with what they select, where this was chosen on a coarser mesh of the body, see [`Mesh::choose`].
@@ -118,6 +121,7 @@ impl Mesh {
             dimension,
             points,
             blocks,
+            directors: None,
             groups,
             conditions,
             reversed: 0,

@@ -29,9 +29,9 @@ impl Selection {
             Selection::Group(name) => group(mesh, name)?.points.clone(),
             Selection::Where(condition) => match mesh.conditions.iter().find(|chosen| chosen.condition == *condition) {
                 Some(chosen) => chosen.points.clone(),
-                None => (0..mesh.point_count()).filter(|&p| condition.holds(mesh.point(p))).collect(),
+                None => (0..mesh.node_count()).filter(|&p| condition.holds(mesh.point(p))).collect(),
             },
-            Selection::Everything => (0..mesh.point_count()).collect(),
+            Selection::Everything => (0..mesh.node_count()).collect(),
         })
     }
 

@@ -3,7 +3,7 @@
 use super::record::{MeasureKind, MeasureRecord, ShareRecord, TermRecord};
 use crate::element::{Tabulation, coordinate_names};
 use crate::model::Network;
-use crate::springs::Measure;
+use crate::springs::{Measure, turn_points};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ impl Measures {
 
 fn identity(measure: &Measure) -> Option<Identity> {
     match measure {
-        Measure::Length | Measure::Patch(_) => None,
+        Measure::Length | Measure::Patch(_) | Measure::Bend(_) => None,
         Measure::Content(element) => Some(Identity::Cell(Arc::as_ptr(element) as usize)),
         Measure::PointContent(element, q) => Some(Identity::Point(Arc::as_ptr(element) as usize, *q)),
         Measure::Span(table) => Some(Identity::Shared(Arc::as_ptr(table) as usize)),
@@ -86,6 +86,11 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
             let share = |(nodes, share): &(Vec<usize>, f64)| ShareRecord { nodes: nodes.clone(), share: *share };
             let element = &patch.element;
             content(Some(&element.name), cell_terms(&element.tabulation), patch.cells.iter().map(share).collect())
+        }
+        Measure::Bend(bend) => {
+            let turn =
+                |(corner, share): (usize, &f64)| ShareRecord { nodes: turn_points(corner).to_vec(), share: *share };
+            MeasureRecord { cells: bend.weights.iter().enumerate().map(turn).collect(), ..plain(MeasureKind::Turn) }
         }
         Measure::Function(function) => {
             let names = coordinate_names(points, dimension);

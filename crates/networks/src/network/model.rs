@@ -1,12 +1,12 @@
 //! The springs of a record as a model, which has energy, forces and stiffness.
 
 use super::measures::cell_terms;
-use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord, TermRecord};
+use super::record::{MeasureKind, MeasureRecord, NetworkRecord, ShareRecord, SpringRecord, TermRecord};
 use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{CellBlock, Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
-use crate::springs::{Law, Measure, Patch};
+use crate::springs::{Bend, Law, Measure, Patch, turn_points};
 use crate::symbolic::Scope;
 use smallvec::SmallVec;
 use std::collections::{BTreeMap, HashMap};
@@ -64,6 +64,7 @@ impl Measuring {
                 Ok(Measure::Function(Arc::new(expression)))
             }
             MeasureKind::Content => self.content(record, kind, points),
+            MeasureKind::Turn => bend(record),
         }
     }
 
@@ -117,6 +118,20 @@ impl Measuring {
             gradients: term.gradients.iter().flatten().copied().collect(),
         };
         self.tables.entry(key).or_insert_with(|| Arc::new(table())).clone()
+    }
+}
+
+/// The turns of a triangle about its edges.
+fn bend(record: &MeasureRecord) -> Result<Measure> {
+    let is_turn = |(corner, cell): (usize, &ShareRecord)| cell.nodes == turn_points(corner);
+    match &record.cells[..] {
+        [a, b, c] if record.cells.iter().enumerate().all(is_turn) => {
+            Ok(Measure::Bend(Box::new(Bend { weights: [a.share, b.share, c.share] })))
+        }
+        _ => {
+            let expected = "the turns of a triangle about its three edges";
+            Err(Error::expected("cells", expected, "others").of_kind(ErrorKind::Unsupported))
+        }
     }
 }
 

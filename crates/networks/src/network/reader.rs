@@ -118,6 +118,12 @@ fn check(network: &NetworkRecord) -> Result<()> {
         for (size, term) in sizes.flat_map(|size| measure.terms.iter().map(move |term| (size, term))) {
             length(format!("measures[{m}].terms.gradients"), size, term.gradients.len())?;
         }
+        if measure.kind == MeasureKind::Turn {
+            length("dimension".into(), 3, d)?;
+            for (c, cell) in measure.cells.iter().enumerate() {
+                length(format!("measures[{m}].cells[{c}].nodes"), 4, cell.nodes.len())?;
+            }
+        }
     }
     let mut balance = Balance::of(network);
     for (s, spring) in network.springs.iter().enumerate() {

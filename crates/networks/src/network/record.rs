@@ -288,6 +288,9 @@ pub enum MeasureKind {
     Length,
     /// A sum of determinants; with fewer columns than coordinates, of the areas or lengths that they span.
     Content,
+    /// The sum of the turns of the `cells`, each times its share in m. The nodes of such a cell are the apex of a triangle, the ends a and b of an edge as the triangle runs
+    /// through it, and the director of the edge. The turn is the angle about the edge from the conormal, which points out of the triangle, to the director.
+    Turn,
     /// An expression.
     Expression,
 }

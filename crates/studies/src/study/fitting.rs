@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::fit::{CellFits, SpreadSum, each_element_errors};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
+use crate::model::plate_springs;
 use std::sync::OnceLock;
 
 /// Fits one recipe on every cell, assembles the network, and computes the errors of the matrices; `reference` is required by sampled and
@@ -42,6 +43,10 @@ pub fn fit_without_errors(
 ) -> Result<(FitOutcome, Vec<CellFits>)> {
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let mut fitted = named.recipe.kind().fit(&task, progress)?;
+    if mesh.directors.is_some() {
+        let sheet = plate_springs(mesh, &material.moduli());
+        fitted.network = std::mem::take(&mut fitted.network).joined(sheet);
+    }
     let missing = || Error::at("engine", "belongs to a scene with supports");
     let in_engine =
         |setting| reference.whole.ok_or_else(missing)?.in_engine((&named.name, setting), &mut fitted, progress);

@@ -85,7 +85,7 @@ pub use paper::{
 pub use progress::{Event, Progress};
 pub use run::{engine_limits, run, run_with};
 pub use scene::{
-    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, LoadCase, LoadKind, MeshInput,
+    AppliedForce, BoxEntry, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold, LoadCase, LoadKind, MeshInput,
     MotionRecipe, Output, Part, PrescribedMotion, ReferenceEntry, Scene, Setting, check_unit, load_elements,
     motion_title, scene_schema,
 };

@@ -211,7 +211,7 @@ impl Pulled {
     ) -> Result<Vec<Result<StretchedFit>>> {
         let (total, d) = (fits.len() + 1, self.mesh.dimension);
         progress(Event::stage(BODY, 0, total));
-        let body = self.follow(&Body { mesh: &self.mesh, laws: &self.large.laws })?;
+        let body = self.follow(&Body::new(&self.mesh, &self.large.laws))?;
         let mut found = Vec::new();
         for (done, named) in fits.iter().enumerate() {
             progress(Event::stage(&named.name, done + 1, total));

@@ -1,7 +1,7 @@
 //! One load case on a mesh.
 
 use crate::analysis::metrics::{DisplacementError, displacement_error, product};
-use crate::mesh::Field;
+use crate::mesh::{Field, Mesh};
 use crate::model::{Cavity, PressedFaces, Support};
 use crate::solve::Applied;
 use crate::study::outcome::{Measured, Standard};
@@ -67,9 +67,11 @@ impl Case {
     }
 
     /// The error of displacements: at the measured points if the load was measured, otherwise relative to the finite
-    /// elements.
-    pub fn error(&self, fem: &[f64], found: &[f64], dimension: usize) -> Option<DisplacementError> {
-        let Some(field) = &self.measured else { return displacement_error(fem, found, dimension) };
+    /// elements at the nodes of cells.
+    pub fn error(&self, mesh: &Mesh, fem: &[f64], found: &[f64]) -> Option<DisplacementError> {
+        let dimension = mesh.dimension;
+        let nodes = ..mesh.node_count() * dimension;
+        let Some(field) = &self.measured else { return displacement_error(&fem[nodes], &found[nodes], dimension) };
         let (mut wanted, mut own) = (Vec::new(), Vec::new());
         for (measured, u) in field.displacements.chunks_exact(dimension).zip(found.chunks_exact(dimension)) {
             if measured.iter().any(Option::is_some) {
@@ -81,13 +83,13 @@ impl Case {
     }
 
     /// What errors are relative to, unless it is the finite elements, whose displacements are `fem` and whose work is `work`.
-    pub fn measured(&self, fem: &[f64], work: Option<f64>, dimension: usize) -> Option<Measured> {
+    pub fn measured(&self, mesh: &Mesh, fem: &[f64], work: Option<f64>) -> Option<Measured> {
         let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
-        let points = self.measured.as_ref()?.displacements.chunks_exact(dimension).filter(known).count();
+        let points = self.measured.as_ref()?.displacements.chunks_exact(mesh.dimension).filter(known).count();
         Some(Measured {
             points,
             standard: self.finer.map_or(Standard::Measurement, |finer| finer.standard),
-            error: self.error(fem, fem, dimension),
+            error: self.error(mesh, fem, fem),
             work_error: self.work_error(work, work),
             uncertainty: self.finer.and_then(|finer| finer.uncertainty),
         })

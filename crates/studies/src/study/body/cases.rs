@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Cavity, Component, PressedFaces, Support, nodal_forces, unheld_bodies};
-use crate::study::scene::{LoadKind, MeasuredEntry, Part, Scene};
+use crate::study::scene::{Hold, LoadKind, MeasuredEntry, Part, Scene};
 use std::path::Path;
 
 fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Field> {
@@ -17,7 +17,7 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
 pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
-    for (i, (part, axes)) in scene.supports().iter().enumerate() {
+    for (i, Hold { part, axes, clamp }) in scene.supports().iter().enumerate() {
         let at = |e| scene.at(&format!("fix[{i}]"), e);
         let points = part.selection(d).and_then(|s| s.points(mesh)).map_err(at)?;
         if points.is_empty() {
@@ -29,6 +29,14 @@ pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
             return Err(at(Error::expected("axes", "\"x\" and \"y\" in a plane mesh", "\"z\"")));
         }
         fixed.fix(&points, directions, d);
+        if *clamp {
+            let clamped = mesh.with_directors_of(&points).split_off(points.len());
+            if clamped.is_empty() {
+                let expected = "a sheet with bending = \"plate\" of which both ends of an edge are held";
+                return Err(at(Error::expected("clamp", expected, "none")));
+            }
+            fixed.fix(&clamped, directions, d);
+        }
     }
     Ok(fixed)
 }

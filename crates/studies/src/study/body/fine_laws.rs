@@ -31,7 +31,7 @@ impl FineLaws {
     /// # Errors
     /// A load is not reached, or the equations do not fit into memory.
     pub fn answers(&self, mesh: &Mesh, cases: &[Case], progress: &mut Progress) -> Result<Vec<FinerAnswer>> {
-        let model = Body { mesh, laws: &self.laws };
+        let model = Body::new(mesh, &self.laws);
         let mut all = Vec::new();
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finer body", done, cases.len()));
@@ -52,7 +52,7 @@ impl FineLaws {
     /// # Errors
     /// The equations do not fit into memory.
     pub fn stretched(&self, mesh: &Mesh, support: &Support, make: &MakeLoads, stretch: f64) -> Result<StretchedLoads> {
-        let model = Body { mesh, laws: &self.laws };
+        let model = Body::new(mesh, &self.laws);
         Stretched { model: &model, mesh, newton: self.newton, stretch }.loads(support, make)
     }
 }

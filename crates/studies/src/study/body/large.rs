@@ -56,7 +56,7 @@ impl LargeBody {
         for (done, case) in cases.iter().enumerate() {
             progress(Event::stage("finite elements", done, cases.len()));
             let start = Clock::start();
-            let model = Body { mesh, laws: &body.laws };
+            let model = Body::new(mesh, &body.laws);
             let found = reach(&newton, &model, mesh, case)?;
             body.seconds.push(start.seconds());
             body.followed.push(Followed::of(&found, &model));
@@ -102,7 +102,7 @@ impl LargeBody {
             let model: &dyn Elastic = network;
             let found = reach(&self.newton, model, mesh, case)?;
             let seconds_lem = start.seconds();
-            let followed = Followed::of(&found, &Body { mesh, laws: &self.laws });
+            let followed = Followed::of(&found, &Body::new(mesh, &self.laws));
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
             let known = case.measured.is_some() || complete(&self.followed[i]);
@@ -110,7 +110,7 @@ impl LargeBody {
             let own = compared.and_then(|u| work(case, model, &mesh.points, u));
             loads.push(LoadOutcome {
                 name: case.name.clone(),
-                error: compared.and_then(|u| case.error(&self.displacements[i], u, mesh.dimension)),
+                error: compared.and_then(|u| case.error(mesh, &self.displacements[i], u)),
                 work_error: case.work_error(self.works[i], own),
                 displacement,
                 seconds_fem: self.seconds[i],
@@ -146,7 +146,7 @@ pub(super) fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
     let unsupported = |expected: &str, found: String| {
         Err(Error::expected("material.law", expected, found).of_kind(ErrorKind::Unsupported))
     };
-    if let Some((cell, bend)) = (Body { mesh, laws }).bent() {
+    if let Some((cell, bend)) = Body::new(mesh, laws).bent() {
         let name = &mesh.blocks[cell.block].element.name;
         let found = format!("{name} cell {} that is bent by {bend:.1e} of its size", cell.cell + 1);
         return unsupported("flat cells of surfaces in space; triangles of three nodes always are", found);

@@ -154,7 +154,7 @@ impl LinearBody {
             None => answers,
         };
         let loads = self.answers.iter().zip(answers).zip(cases);
-        let loads = loads.map(|((body, network), case)| outcome(body, network, case, mesh.dimension)).collect();
+        let loads = loads.map(|((body, network), case)| outcome(mesh, (body, network), case)).collect();
         let loose_points = moving_points(&cases[0].support, &stability, mesh);
         Ok(NetworkAnswers { loads, stability: Some(stability), loose_points })
     }
@@ -190,11 +190,11 @@ fn in_engine(
 }
 
 /// The answer of a network to a load beside that of the finite elements.
-fn outcome(body: &BodyAnswer, network: NetworkAnswer, case: &Case, dimension: usize) -> LoadOutcome {
+fn outcome(mesh: &Mesh, (body, network): (&BodyAnswer, NetworkAnswer), case: &Case) -> LoadOutcome {
     let NetworkAnswer { displacement, work, seconds, solved, unsolved } = network;
     LoadOutcome {
         name: case.name.clone(),
-        error: displacement.as_ref().and_then(|u| case.error(&body.displacement, u, dimension)),
+        error: displacement.as_ref().and_then(|u| case.error(mesh, &body.displacement, u)),
         work_error: case.work_error(body.work, work),
         displacement,
         seconds_fem: body.seconds,

@@ -3,7 +3,7 @@
 use crate::mesh::{CellIndex, Group, Mesh, Selection};
 use crate::model::Action;
 use crate::study::extent::extends;
-use crate::study::scene::{Part, Scene};
+use crate::study::scene::{Hold, Part, Scene};
 use std::collections::BTreeSet;
 
 /// What must be known of the parts of a scene on its mesh, one sentence each.
@@ -13,7 +13,7 @@ pub(super) fn part_notes(scene: &Scene, mesh: &Mesh) -> Vec<String> {
 
 /// That a name lists several parts of the body which are not the same part.
 fn of_names(scene: &Scene, mesh: &Mesh) -> Vec<String> {
-    let supports = scene.supports().iter().map(|(part, _)| part.clone());
+    let supports = scene.supports().iter().map(|hold| hold.part.clone());
     let loads = scene.loads().iter().filter_map(|load| Some(load.single()?.0.clone()));
     let materials = scene.material_parts().into_iter().map(|(_, part)| part);
     let gauge = scene.gauge().map(|gauge| gauge.part.clone());
@@ -68,7 +68,7 @@ fn of_tractions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
 
 /// That a condition of a support or of a load on sides and points holds everywhere, or ends within cells.
 fn of_conditions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
-    let supports = scene.supports().iter().enumerate().map(|(i, (part, _))| (format!("fix[{i}]"), part));
+    let supports = scene.supports().iter().enumerate().map(|(i, Hold { part, .. })| (format!("fix[{i}]"), part));
     let loads = scene.loads().iter().filter_map(|load| {
         let (part, action) = load.single()?;
         let is_of_cells = match action {

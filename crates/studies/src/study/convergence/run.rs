@@ -234,7 +234,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<(Vec<bool>, Vec<Vec<Step>>)
     let energy = scene.laws(mesh, material)?;
     let stiffness =
         |linear: &dyn Fn() -> Entries| if prescribed && energy.is_none() { linear() } else { Entries::new() };
-    let body = energy.as_ref().map(|laws| Body { mesh, laws });
+    let body = energy.as_ref().map(|laws| Body::new(mesh, laws));
     let body_stiffness = stiffness(&|| finite_elements(mesh, material.moduli()));
     let mut steps: Vec<Vec<Step>> = Vec::new();
     let compliance = |quantity: &Quantities, u: &[f64], stiffness: &Entries, large: Option<&dyn Elastic>| {

@@ -2,6 +2,7 @@
 
 use super::gauge::{GaugeResult, Reading};
 use crate::analysis::metrics::DisplacementError;
+use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
 use crate::number::or_nan;
 use crate::solve::{Ending, Solved};
@@ -150,9 +151,9 @@ pub struct Followed {
 }
 
 impl BodyLoad {
-    /// The largest displacement of a point of the finite elements, m.
-    pub fn largest_displacement(&self, dimension: usize) -> f64 {
-        self.fem.chunks_exact(dimension).map(norm).fold(0.0, f64::max)
+    /// The largest displacement of a node of the finite elements, m.
+    pub fn largest_displacement(&self, mesh: &Mesh) -> f64 {
+        self.fem.chunks_exact(mesh.dimension).take(mesh.node_count()).map(norm).fold(0.0, f64::max)
     }
 
     /// Whether the finite elements are in equilibrium under the whole load; `fem` is otherwise that of a part of it.

@@ -65,7 +65,7 @@ impl Answers {
             support: case.support.clone(),
             forces: forces(case, followed.as_ref(), &mesh),
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
-            measured: case.measured(&fem, work, mesh.dimension),
+            measured: case.measured(&mesh, &fem, work),
             deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),
             followed,
             fem,

@@ -138,7 +138,7 @@ impl Solved {
         let (body, linear);
         let (model, is_linear): (&dyn Elastic, bool) = match &self.large {
             Some(large) => {
-                body = Body { mesh, laws: &large.laws };
+                body = Body::new(mesh, &large.laws);
                 (&body, false)
             }
             None => {

@@ -3,11 +3,12 @@
 use super::distribution::Distribution;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
+use super::hold::Hold;
 use super::input::MeshInput;
 use super::laws::laws_of_cells;
 use super::lists::{check_fits, read_fits};
 use super::load::{LoadCase, read_loads};
-use super::material::{MaterialEntries, MaterialEntry};
+use super::material::{Bending, MaterialEntries, MaterialEntry};
 use super::motion_recipe::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
@@ -37,7 +38,7 @@ pub struct Scene {
     pub(super) mesh: MeshInput,
     pub(super) material: MaterialEntries,
     pub(super) fits: Vec<NamedFit>,
-    pub(super) supports: Vec<(Part, Option<Vec<usize>>)>,
+    pub(super) supports: Vec<Hold>,
     pub(super) loads: Vec<LoadCase>,
     pub(super) newton: Newton,
     pub(super) solver: StaticSolver,
@@ -183,8 +184,8 @@ impl Scene {
         &self.fits
     }
 
-    /// The parts that are held, and in which directions (all if absent).
-    pub fn supports(&self) -> &[(Part, Option<Vec<usize>>)] {
+    /// What is held.
+    pub fn supports(&self) -> &[Hold] {
         &self.supports
     }
 
@@ -236,9 +237,15 @@ impl Scene {
     /// Reads or generates the mesh.
     ///
     /// # Errors
-    /// The file or an element is wrong, or a cell has no volume.
+    /// The file or an element is wrong, or a cell has no volume; or a mesh that is to bend is no surface of triangles.
     pub fn build_mesh(&self) -> Result<Mesh> {
-        self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))
+        let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
+        if self.material.first().bending != Bending::Plate {
+            return Ok(mesh);
+        }
+        let gyration = self.material_of(&mesh)?.thicknesses().map(|t| t * t / 12.0);
+        let of_cells = mesh.cell_indices().map(|cell| *gyration.at(cell.block, cell.cell)).collect();
+        mesh.with_directors(of_cells).map_err(|e| self.at(&self.material.key(0), e))
     }
 
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
@@ -249,7 +256,7 @@ impl Scene {
             // A pressure on a surface in space acts on cells.
             Some((part.clone(), matches!(action, Action::Body(_) | Action::Pressure(_))))
         });
-        let held = self.supports.iter().map(|(part, _)| (part.clone(), false));
+        let held = self.supports.iter().map(|hold| (hold.part.clone(), false));
         let of_material = self.material_parts().into_iter().map(|(_, part)| (part, true));
         let d = mesh.dimension;
         let conditions =
@@ -263,7 +270,7 @@ impl Scene {
     /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.
     pub fn is_in_metres(&self) -> bool {
         let actions = || self.loads.iter().filter_map(LoadCase::single);
-        let conditions = self.supports.iter().map(|(part, _)| part).chain(actions().map(|(part, _)| part));
+        let conditions = self.supports.iter().map(|hold| &hold.part).chain(actions().map(|(part, _)| part));
         let varies = |action: &Action| match action {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
             Action::Displacement(v) => v.iter().any(|c| matches!(c, Some(Component::Varying(_)))),

@@ -1,6 +1,7 @@
 //! The structure of a scene file, key by key, and the conditions on each entry alone.
 
 use super::gauge::GaugeEntry;
+use super::hold::Hold;
 use super::input::MeshInput;
 use super::load::LoadEntry;
 use super::material::MaterialEntries;
@@ -102,6 +103,9 @@ pub struct FixEntry {
     /// The part is held in these directions, some of `x`, `y` and `z`.
     #[schemars(extend("x-default" = "all"))]
     pub axes: Option<Vec<String>>,
+    /// The edges of a sheet keep their direction where both ends are held; without it the sheet can turn about them. A sheet has `bending = "plate"` in its material.
+    #[serde(default)]
+    pub clamp: bool,
 }
 
 /// The JSON Schema of scene files.
@@ -146,7 +150,7 @@ impl SolverEntry {
 }
 
 impl FixEntry {
-    pub fn check(self) -> Result<(Part, Option<Vec<usize>>)> {
+    pub fn check(self) -> Result<Hold> {
         let part = Part::required(self.group, self.condition)?;
         let axes = match self.axes {
             None => None,
@@ -157,6 +161,6 @@ impl FixEntry {
                 Some(valid.ok_or_else(|| Error::expected("axes", "some of \"x\", \"y\", \"z\"", format!("{axes:?}")))?)
             }
         };
-        Ok((part, axes))
+        Ok(Hold { part, axes, clamp: self.clamp })
     }
 }

@@ -36,9 +36,9 @@ pub struct MeshInput {
     #[serde(default = "one", deserialize_with = "value::mesh_unit")]
     #[schemars(schema_with = "value::mesh_unit_schema")]
     pub scale: f64,
-    /// The mesh of a `file` is in a space of this dimension, 2 or 3. Without the key a surface of a format of surfaces (`.obj`, `.stl`, `.ply`, `.off`,
+    /// The mesh of a `file` or of a `box` is in a space of this dimension, 2 or 3: a box of triangles is a sheet at z = 0 with 3. Without the key a surface of a format of surfaces (`.obj`, `.stl`, `.ply`, `.off`,
     /// `.vtp`) is in space, and other surfaces and curves are in the plane where all their points have one z.
-    #[schemars(extend("x-default" = "by the file"))]
+    #[schemars(extend("x-default" = "by the file or the element"))]
     pub space: Option<usize>,
     /// These element files are searched before the shipped elements; paths are relative to the scene.
     #[serde(default)]
@@ -146,8 +146,9 @@ impl MeshInput {
         }
         range::positive("mesh.scale", self.scale, "metres per mesh unit")?;
         if let Some(space) = self.space {
-            if self.file.is_none() {
-                return Err(Error::at("mesh.space", "belongs to a mesh in a \"file\": what is generated has its own"));
+            if self.file.is_none() && self.generated.is_none() {
+                let problem = "belongs to a mesh in a \"file\" or a \"box\": what else is generated has its own";
+                return Err(Error::at("mesh.space", problem));
             }
             if !(2..=3).contains(&space) {
                 return Err(Error::expected("mesh.space", "2 or 3", space));
@@ -292,6 +293,10 @@ impl MeshInput {
         let factor = 1usize.checked_shl(halvings).unwrap_or(usize::MAX);
         let cells = entry.cells.iter().map(|n| n.saturating_mul(factor)).collect();
         let spec = BoxMesh { element, size: scaled(&entry.size), cells, origin: scaled(&origin) };
-        spec.build().map_err(at("mesh.box"))
+        let mesh = spec.build().map_err(at("mesh.box"))?;
+        match self.space {
+            Some(space) if space != mesh.dimension => mesh.in_space(space).map_err(at("mesh")),
+            _ => Ok(mesh),
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! The fits and loads of a scene, each with a name of its own, and what fits require of the rest.
 
 use super::load::LoadCase;
-use super::material::MaterialEntries;
-use crate::error::{Error, Result};
+use super::material::{Bending, MaterialEntries};
+use crate::error::{Error, ErrorKind, Result};
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
 use crate::study::own_name::{BODY, expect_own_name};
 use std::path::Path;
@@ -39,6 +39,11 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
         if lawless && !has_law {
             let expected = format!("the energy whose forces {place} samples, such as \"neo-hookean\"");
             return Err(Error::expected("material.law", expected, "none"));
+        }
+        let needs_points_alone = fit.recipe.whole().is_some() || fit.engine.is_some();
+        if needs_points_alone && material.first().bending == Bending::Plate {
+            let expected = "fits to cells, without an engine, of a sheet with bending = \"plate\"";
+            return Err(Error::expected(place, expected, "another").of_kind(ErrorKind::Unsupported));
         }
         fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
     }

@@ -83,6 +83,9 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_length")]
     #[schemars(schema_with = "distribution::length_schema", extend("x-default" = "1 m in the plane"))]
     pub thickness: Option<Distribution>,
+    /// A surface in space of triangles resists bending as this says. It is the same in every entry of `[[material]]`.
+    #[serde(default)]
+    pub bending: Bending,
     /// Rods have this cross-section in m², above 0.
     #[serde(default, deserialize_with = "value::optional_area")]
     #[schemars(schema_with = "value::area_schema", extend("x-default" = "1 m²"))]
@@ -100,6 +103,17 @@ pub struct MaterialEntry {
     /// The fibres of the law have this direction: a vector of numbers or expressions of x, y, z in m, or data of a file with three numbers.
     #[schemars(extend("x-type" = "vector", "x-default" = "that of the law"))]
     pub fibre: Option<AxisEntry>,
+}
+
+/// How a surface in space resists bending.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Bending {
+    /// It does not: the surface is a membrane.
+    #[default]
+    None,
+    /// It does as a thin plate of this thickness, with the flexural stiffness `D = E t³/(12 (1 − ν²))`.
+    Plate,
 }
 
 /// One material for the whole body, or one for each region.
@@ -382,6 +396,7 @@ impl MaterialEntries {
                 }
             };
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
+            same("bending", entry.bending == first.bending)?;
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));

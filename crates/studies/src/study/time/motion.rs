@@ -65,7 +65,7 @@ pub fn move_models(
         let damping = planned.damping(None, mesh)?;
         let (mut made, states) = match energy {
             Some(laws) => {
-                let body = Body { mesh, laws };
+                let body = Body::new(mesh, laws);
                 run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
             }
             None => {

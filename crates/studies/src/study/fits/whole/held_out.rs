@@ -99,9 +99,7 @@ impl WholeBody<'_> {
     /// The answers of the finite elements of the mesh.
     fn body_answers(&self, held: &Held, targets: &[Target]) -> Result<ModelAnswers> {
         match (self.laws, self.newton) {
-            (Some(laws), Some(newton)) => {
-                followed_answers(&newton, &Body { mesh: self.mesh, laws }, self.mesh, targets)
-            }
+            (Some(laws), Some(newton)) => followed_answers(&newton, &Body::new(self.mesh, laws), self.mesh, targets),
             _ => linear_answers(&self.equations("supports", &held.support)?, targets),
         }
     }

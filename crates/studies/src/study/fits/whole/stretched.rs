@@ -45,7 +45,7 @@ impl WholeBody<'_> {
             }
             (_, _, Some(laws), Some(newton)) => {
                 progress(Event::stage("made loads", 0, 1));
-                let model = Body { mesh: self.mesh, laws };
+                let model = Body::new(self.mesh, laws);
                 let body = Stretched { model: &model, mesh: self.mesh, newton, stretch };
                 Arc::new(body.loads(&held.support, &|again| make(self.mesh, &held.support, draw(again)))?)
             }
