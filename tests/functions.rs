@@ -7,7 +7,7 @@ use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::fit::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
 use springfit::material::{Energy, Material};
-use springfit::springs::{Force, ForceFunction, Law, Springs};
+use springfit::springs::{AskedForces, Force, ForceFunction, Law, Springs};
 use springfit::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
 use std::sync::Arc;
 
@@ -132,6 +132,25 @@ fn laws_that_are_functions_are_those_of_the_same_expressions() {
             // Differences of the fourth order.
             assert!((own.slope(c, 1.1, &p) / law.slope(c, 1.1, &p) - 1.0).abs() < 1e-9, "{text}");
             assert!((own.energy(c, 1.1, &p) / law.energy(c, 1.1, &p) - 1.0).abs() < 1e-12, "{text}");
+            // Many springs at once are each of them.
+            let far = [0.4, c, 3.0];
+            let asked = [
+                AskedForces { c: &far, rest: 1.1, parameters: p.to_vec() },
+                AskedForces { c: &far[..1], rest: 0.7, parameters: vec![0.3, 0.6] },
+            ];
+            for law in [&own, &law] {
+                let forces = law.forces_of_all(&asked);
+                let pulls = law.pulls_of_all(&asked);
+                let springs =
+                    asked.iter().flat_map(|one| one.c.iter().map(move |c| (*c, one.rest, &one.parameters[..])));
+                for (i, (c, rest, p)) in springs.enumerate() {
+                    let known = [law.energy(c, rest, p), law.force(c, rest, p), law.slope(c, rest, p)];
+                    assert_eq!(forces[i], known[1], "{text}");
+                    for (found, known) in pulls[i].iter().zip(known) {
+                        assert!((found / known - 1.0).abs() < 1e-12, "{text}: {found} {known}");
+                    }
+                }
+            }
         }
         let bounds: Vec<(String, [f64; 2])> = match law.is_linear() {
             true => Vec::new(),

@@ -131,6 +131,14 @@ fn a_network_is_read_as_it_was_and_has_the_energy_that_it_states() {
             let expected = Elastic::energy(&fit.network, &x).unwrap();
             let found = energy(&network, &x);
             assert!((found - expected).abs() <= 1e-9 * expected.abs(), "{}: {found} {expected}", fit.fit.name);
+            // As a model again it answers as it did, to the last bit.
+            let model = network.model(&[]).unwrap();
+            assert_eq!(Elastic::energy(&model, &x).unwrap().to_bits(), expected.to_bits(), "{}", fit.fit.name);
+            let (mut forces, mut known) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+            assert!(model.forces(&x, &mut forces) && fit.network.forces(&x, &mut known));
+            assert_eq!(forces, known, "{}", fit.fit.name);
+            let mesh = network.mesh(&[]).unwrap();
+            assert_eq!(mesh.blocks[0].connectivity, outcome.mesh.blocks[0].connectivity);
             // Every spring of a cell says where it comes from.
             let alone = network.springs.iter().filter(|s| s.groups.is_empty() && s.kind != "patch").count();
             assert_eq!(alone, 0, "{}", fit.fit.name);

@@ -10,19 +10,24 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 """
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
+from .factorized import Factorized
 from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
-from .network import Network, fit, mass, sampled, stiffness, whole
+from .motion import Motion
+from .network import fit, mass, sampled, stiffness, whole
 from .report import Report, run
+from .springs import Network
 from .studies import compare, converge, learning_curve, stability
 from .sweep import sweep
 
 __all__ = [
     "Element",
+    "Factorized",
     "Gradient",
     "Material",
     "Mesh",
+    "Motion",
     "Network",
     "Report",
     "SpringConstants",

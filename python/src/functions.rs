@@ -1,18 +1,19 @@
 //! Functions of Python in place of an energy and of laws of force. They are called on the threads of the fit, for many deformations or
 //! measures at once.
 
-use crate::arguments::check_mask;
+use crate::called::Function;
 use crate::ends::Ends;
 use crate::error::{invalid, raised};
+use crate::laws::{Argument, Force};
 use crate::progress::calling;
 use numpy::ndarray::ArrayD;
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{IntoPyArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use springfit::error::{Error, Result};
 use springfit::fit::{ResidualFunction, ResidualObjective};
 use springfit::material::Material;
-use springfit::springs::{ForceFunction, Law};
+use springfit::springs::Law;
 use springfit::stiffness::{EnergyFunction, StressFunction};
 use springfit::study::FitFunctions;
 use std::sync::Arc;
@@ -26,63 +27,6 @@ const SAME: f64 = 1e-6;
 /// The error of a difference of the fourth order, at most, as a share of what it is apart from one of the second order: where an energy
 /// grows without bound, as at F of no volume, differences are rough.
 const ROUGH: f64 = 0.1;
-
-/// A function with what is said of it in errors.
-#[derive(Debug)]
-struct Function {
-    key: String,
-    call: Py<PyAny>,
-    /// Of the fit; networks are evaluated by other calls.
-    ends: Arc<Ends>,
-}
-
-impl Function {
-    /// The values at `arguments`, an array of this shape; `None` once a function has not returned.
-    fn values<'py>(
-        &self,
-        arguments: impl FnOnce(Python<'py>) -> PyResult<Bound<'py, PyTuple>>,
-        py: Python<'py>,
-        shape: &[usize],
-    ) -> Option<Vec<f64>> {
-        self.called(py, || {
-            let arguments = arguments(py)?;
-            let found = calling(|| self.call.bind(py).call1(arguments))?;
-            let array = self.real(py, &found)?;
-            self.shaped(py, &array, "an array", shape)
-        })
-    }
-
-    /// What `call` gives; `None` once a function has not returned.
-    fn called<T>(&self, _: Python, call: impl FnOnce() -> PyResult<T>) -> Option<T> {
-        let ends = Ends::current(&self.ends);
-        if ends.is_set() {
-            return None;
-        }
-        call().map_err(|exception| ends.set(&self.key, exception)).ok()
-    }
-
-    /// What the function has returned as real numbers.
-    fn real<'py>(&self, py: Python<'py>, found: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        check_mask(&self.key, found)?;
-        let found = py.import("numpy")?.call_method1("asarray", (found,))?;
-        let kind: String = found.getattr("dtype")?.getattr("kind")?.extract()?;
-        if !["f", "i", "u"].contains(&&*kind) {
-            let found = found.getattr("dtype")?;
-            return Err(invalid(py, &self.key, "an array of real numbers from the function", found));
-        }
-        Ok(found.call_method1("astype", ("float64",))?.cast_into()?)
-    }
-
-    /// The numbers of an array of this shape; errors call it by `what`.
-    fn shaped(&self, py: Python, array: &Bound<PyArrayDyn<f64>>, what: &str, shape: &[usize]) -> PyResult<Vec<f64>> {
-        if array.shape() != shape {
-            let shown = |shape: &[usize]| PyTuple::new(py, shape).map(|shape| shape.to_string());
-            let expected = format!("{what} of shape {} from the function", shown(shape)?);
-            return Err(invalid(py, &self.key, &expected, format!("one of shape {}", shown(array.shape())?)));
-        }
-        Ok(array.readonly().as_array().iter().copied().collect())
-    }
-}
 
 /// What a fit minimises: the value of the residual forces of a cell and its gradient.
 #[derive(Debug)]
@@ -192,43 +136,6 @@ impl StressFunction for Energy {
     }
 }
 
-/// An argument of a law of force.
-#[derive(Debug, Clone, Copy)]
-enum Argument {
-    Strain,
-    Measure,
-    Rest,
-    Parameter(usize),
-}
-
-/// A law of force whose arguments are named.
-#[derive(Debug)]
-struct Force {
-    function: Function,
-    arguments: Vec<Argument>,
-}
-
-impl ForceFunction for Force {
-    fn forces(&self, c: &[f64], rest: f64, parameters: &[f64], forces: &mut [f64]) {
-        let found = Python::attach(|py| {
-            let array = |values: Vec<f64>| values.into_pyarray(py).into_any();
-            let argument = |argument: &Argument| match argument {
-                Argument::Strain => array(c.iter().map(|c| (c - rest) / rest).collect()),
-                Argument::Measure => array(c.to_vec()),
-                Argument::Rest => rest.into_pyobject(py).expect("a number is no fault").into_any(),
-                Argument::Parameter(i) => parameters[*i].into_pyobject(py).expect("a number is no fault").into_any(),
-            };
-            let arguments = |py| PyTuple::new(py, self.arguments.iter().map(argument));
-            self.function.values(arguments, py, &[c.len()])
-        });
-        match found {
-            Some(found) => forces.copy_from_slice(&found),
-            // What ended it is raised in place of what follows.
-            None => forces.fill(f64::NAN),
-        }
-    }
-}
-
 /// A law of force: the group of springs, or none for all; the function, its name and the names of its arguments.
 type GivenForce = (Option<String>, Py<PyAny>, String, Vec<String>);
 
@@ -279,7 +186,8 @@ impl Functions {
                 }
             };
             let arguments = names.into_iter().map(argument).collect();
-            let force = Force { function: function(&key, call), arguments };
+            let mut force = Force { function: function(&key, call), arguments, takes_arrays: false };
+            force.takes_arrays = force.tries_arrays(py, parameters.len())?;
             let law = Law::of_function(&name, parameters, Arc::new(force));
             ends.check(py)?;
             let law = law.map_err(|error| raised(py, error.at_key(key)))?;

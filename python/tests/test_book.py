@@ -24,5 +24,5 @@ def test_the_examples_run_in_an_empty_folder(page, tmp_path):
         cwd=tmp_path, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, timeout=300,
     )
     assert run.returncode == 0, run.stderr
-    for written in re.findall(r"""net\.write\("(.*?)"\)""", "".join(blocks)):
+    for written in re.findall(r"""net\.save\("(.*?)"\)""", "".join(blocks)):
         assert (tmp_path / written).exists()

@@ -127,7 +127,7 @@ def test_all_springs_on_lengths_are_drawn(force):
     assert lines.n_lines == len(net) == 20
     ends = lines.points[lines.lines.reshape(-1, 3)[:, 1:]]
     assert np.allclose(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), lines.cell_data["rest"])
-    assert len(lines.cell_data["constant"]) == 20
+    assert len(lines.cell_data["constants"]) == 20
 
 
 def test_springs_on_contents_are_no_lines():

@@ -43,7 +43,7 @@ def same(net, other, tolerance):
         assert kind["kind"] == known["kind"] and np.array_equal(kind["points"], known["points"])
         kind, known = ({**each, **each.get("parameters", {})} for each in (kind, known))
         for key in kind:
-            if key not in ("kind", "unit", "points", "law", "parameters"):
+            if key not in ("kind", "unit", "points", "law", "parameters", "element", "expression"):
                 a, b = np.asarray(kind[key], float), np.asarray(known[key], float)
                 assert np.abs(a - b).max() <= tolerance * np.abs(b).max(), (key, np.abs(a - b).max())
 
@@ -311,3 +311,54 @@ def test_a_function_may_use_the_module():
     assert float(expected) > 0
     for what in ["mesh", "fit", "energy", "stiffness", "sampled"]:
         assert call(what) == expected, what
+
+
+def test_one_call_serves_all_springs_of_a_cell():
+    """And of a network; a function of numbers alone is called for one spring at a time."""
+    asked = []
+
+    def many(s, k, a):
+        asked.append(np.size(s))
+        return k * (np.exp(a * s) - 1)
+
+    def one(s, k, a):
+        asked.append(np.size(s))
+        return k * (np.exp(a * s) - 1) if k > -1e300 else s
+
+    nets, calls, sizes = [], [], []
+    for function in (many, one):
+        asked.clear()
+        nets.append(sf.sampled(box(), MATERIAL, "neo-hookean", force=function, springs=["edge"], shapes=SHAPES, bounds={"a": [0.1, 8.0]}))
+        calls.append(len(asked))
+        sizes.append(sum(asked))
+    same(nets[0], nets[1], 1e-12)
+    # Six springs, each with a force and four around its inner parameter.
+    assert 4 * calls[0] < calls[1] and sizes[0] == pytest.approx(sizes[1], rel=0.01)
+    known = sf.sampled(box(), MATERIAL, "neo-hookean", force="k*(exp(a*s) - 1)", springs=["edge"], shapes=SHAPES, bounds={"a": [0.1, 8.0]})
+    known = known.with_constants(contents=[{"parameters": nets[0].contents[0]["parameters"]}])
+    x = known.points + 0.1 * np.random.default_rng(8).uniform(-1, 1, known.points.shape)
+    fix = known.points[:, 0] < 0.1
+    held = lambda net: net.equilibrium(fix, 5.0 * ~fix[:, None] * [1, 0, 0])
+    moved = lambda net: net.simulate(fix, gravity=[0, 0, -9.81], dt=1e-2, steps=5, masses=np.full(len(net.points), 0.1)).positions
+    slow = lambda net: net.simulate(
+        fix, gravity=[0, 0, -9.81], dt=1e-4, steps=5, masses=np.full(len(net.points), 0.1), method="symplectic-euler"
+    ).positions
+    for answer in (lambda net: net.energy(x), lambda net: net.forces(x), lambda net: net.stiffness(x).toarray(), held, moved, slow):
+        expected, found = np.asarray(answer(known)), np.asarray(answer(nets[0]))
+        assert np.abs(found - expected).max() <= 1e-8 * np.abs(expected).max()
+    asked.clear()
+    nets[0].forces(x)
+    assert asked == [len(nets[0])]
+    asked.clear()
+    nets[0].energy(x)
+    assert len(asked) <= 1 + 20 * len(nets[0]) and asked[0] == 53 * len(nets[0])
+
+
+def test_functions_that_use_what_is_asked_at_once_are_asked_for_one_spring():
+    """Its forces depend on the other strains of a call."""
+    scaled = lambda s, k: k * s + k * 1e-3 * s * (np.abs(s).max() > 10)
+    mixed = lambda s, k: k * (s - 1e-3 * s.mean() * s)
+    net = sf.sampled(box(), MATERIAL, "neo-hookean", force=scaled, springs=["edge"], shapes=SHAPES)
+    known = sf.sampled(box(), MATERIAL, "neo-hookean", force="k*s", springs=["edge"], shapes=SHAPES)
+    same(net, known, 1e-9)
+    assert len(sf.sampled(box(), MATERIAL, "neo-hookean", force=mixed, springs=["edge"], shapes=SHAPES)) == len(net)

@@ -11,6 +11,9 @@ use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
 use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, extent, spurious_modes};
 
+/// What points notes at the table beside them, for those who have none.
+pub const IN_TABLE: &str = " (* in the table)";
+
 /// What a reader must know before trusting a row, one sentence per line.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
     let quality = quality_lines(&outcome.mesh.quality);
@@ -121,7 +124,7 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         let fitted = cells.saturating_sub(fit.reused).max(1);
         notes.push(format!(
             "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each. Each of the others has the shape of one of them and takes its \
-             constants (* in the table)",
+             constants{IN_TABLE}",
             if fitted == 1 { "was" } else { "were" },
             1e6 * fit.seconds_per_element(cells)
         ));

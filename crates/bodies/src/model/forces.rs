@@ -1,5 +1,6 @@
 //! Forces and tangent of a network, written into existing memory, as a simulation requires them at every step.
 
+use super::functions::{function_pulls, function_tensions};
 use super::network::{LengthSpring, MeasureSpring, Network};
 use super::system::dofs;
 use crate::stiffness::gather;
@@ -33,10 +34,18 @@ impl Network {
         };
         let mut total = lengths?;
         let mut local = Vec::new();
+        let mut pulls = None;
         for spring in &self.others {
-            local.resize(spring.points.len() * self.dimension, 0.0);
-            gather(x, self.dimension, &spring.points, &mut local);
-            total += spring.pull(spring.measure.value(&local, self.dimension))[0];
+            let ask = || function_pulls(self.others.iter(), x, self.dimension).into_iter();
+            let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
+            total += match known {
+                Some([energy, ..]) => energy,
+                None => {
+                    local.resize(spring.points.len() * self.dimension, 0.0);
+                    gather(x, self.dimension, &spring.points, &mut local);
+                    spring.pull(spring.measure.value(&local, self.dimension))[0]
+                }
+            };
         }
         total.is_finite().then_some(total)
     }
@@ -56,16 +65,20 @@ impl Network {
     /// Adds the forces of some of the other springs; false if one has no force.
     pub(super) fn add_others<'a>(
         &self,
-        springs: impl IntoIterator<Item = &'a MeasureSpring>,
+        springs: impl IntoIterator<Item = &'a MeasureSpring, IntoIter: Clone>,
         x: &[f64],
         force: &mut [f64],
     ) -> bool {
         let (d, mut sound) = (self.dimension, true);
         let mut local = Vec::new();
+        let springs = springs.into_iter();
+        let (all, mut tensions) = (springs.clone(), None);
         for spring in springs {
             local.resize(spring.points.len() * d, 0.0);
             gather(x, d, &spring.points, &mut local);
-            let tension = spring.tension(spring.measure.value(&local, d));
+            let ask = || function_tensions(all.clone(), x, d).into_iter();
+            let known = spring.function().and_then(|_| tensions.get_or_insert_with(ask).next());
+            let tension = known.unwrap_or_else(|| spring.tension(spring.measure.value(&local, d)));
             let gradient = spring.measure.gradient(&local, d);
             sound &= tension.is_finite();
             dofs(&spring.points, d).zip(&gradient).for_each(|(dof, g)| force[dof] += tension * g);
@@ -93,11 +106,14 @@ impl Network {
         }?;
         let mut values = others.iter_mut();
         let mut local = Vec::new();
+        let mut pulls = None;
         for spring in &self.others {
             local.resize(spring.points.len() * d, 0.0);
             gather(x, d, &spring.points, &mut local);
             let Jet { value, gradient, hessian } = spring.measure.jet(&local, d);
-            let [energy, tension, slope] = spring.pull(value);
+            let ask = || function_pulls(self.others.iter(), x, d).into_iter();
+            let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
+            let [energy, tension, slope] = known.unwrap_or_else(|| spring.pull(value));
             let (slope, bend) = if definite { (slope.max(0.0), 0.0) } else { (slope, tension) };
             total += energy;
             for (a, row) in dofs(&spring.points, d).enumerate() {

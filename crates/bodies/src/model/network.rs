@@ -160,6 +160,11 @@ impl MeasureSpring {
         }
     }
 
+    /// The law of force, if it is a function of the program, which is quicker when it is asked for many springs at once.
+    pub(super) fn function(&self) -> Option<&SpringLaw> {
+        self.law.as_deref().filter(|own| own.law.is_function())
+    }
+
     /// The force of [`MeasureSpring::pull`] alone; the energy of a law is an integral.
     pub fn tension(&self, c: f64) -> f64 {
         match &self.law {

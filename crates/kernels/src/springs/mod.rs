@@ -14,7 +14,8 @@ mod vector;
 
 pub use bend::{BEND_POINTS, Bend, turn_points};
 pub use content::Content;
-pub use law::{Force, ForceFunction, Law, LawRoom};
+pub(crate) use law::AskedResponse;
+pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
 pub use vector::{cross, distance, dot, norm, unit};

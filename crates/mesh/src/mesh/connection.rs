@@ -7,24 +7,30 @@ impl Mesh {
     /// The points of each connected part, ascending; the parts are in the order of their first points. Two cells are
     /// connected if they share a node: different nodes at one position do not connect cells.
     pub fn pieces(&self) -> Vec<Vec<usize>> {
-        let mut sets = DisjointSets::new(self.point_count());
-        for nodes in self.blocks.iter().flat_map(|block| block.cells()) {
-            nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
-        }
-        if let Some(directors) = &self.directors {
-            let first = self.node_count();
-            directors.edges.iter().enumerate().for_each(|(e, [a, _])| sets.join(first + e, *a));
-        }
-        let mut piece_of_root = vec![usize::MAX; self.point_count()];
-        let mut pieces: Vec<Vec<usize>> = Vec::new();
-        for point in 0..self.point_count() {
-            let piece = &mut piece_of_root[sets.root(point)];
-            if *piece == usize::MAX {
-                *piece = pieces.len();
-                pieces.push(Vec::new());
-            }
-            pieces[*piece].push(point);
-        }
-        pieces
+        // A director goes with its edge.
+        let first = self.node_count();
+        let edges = self.directors.iter().flat_map(|directors| &directors.edges).enumerate();
+        let of_directors: Vec<[usize; 2]> = edges.map(|(e, [a, _])| [first + e, *a]).collect();
+        let cells = self.blocks.iter().flat_map(|block| block.cells());
+        pieces_of(self.point_count(), cells.chain(of_directors.iter().map(<[usize; 2]>::as_slice)))
     }
+}
+
+/// The points that groups of points, such as cells or springs, connect with each other, each piece ascending.
+pub fn pieces_of<'a>(points: usize, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+    let mut sets = DisjointSets::new(points);
+    for nodes in groups {
+        nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
+    }
+    let mut piece_of_root = vec![usize::MAX; points];
+    let mut pieces: Vec<Vec<usize>> = Vec::new();
+    for point in 0..points {
+        let piece = &mut piece_of_root[sets.root(point)];
+        if *piece == usize::MAX {
+            *piece = pieces.len();
+            pieces.push(Vec::new());
+        }
+        pieces[*piece].push(point);
+    }
+    pieces
 }

@@ -60,6 +60,7 @@ pub use annotations::{Annotations, Section};
 pub use arrays::MeshArrays;
 pub use boxes::BoxMesh;
 pub use carrier::Carrier;
+pub use connection::pieces_of;
 pub use directors::Directors;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;

@@ -7,6 +7,7 @@ mod json;
 mod lines;
 mod lists;
 mod measures;
+mod model;
 mod npz;
 mod origins;
 mod part;
@@ -19,9 +20,11 @@ pub use csv::{network_csv, write_points};
 pub use division::Division;
 pub use json::write_json;
 pub use lists::{CellList, ListedRecord, Lists, SpringList};
+pub use measures::cell_terms;
+pub use model::Measuring;
 pub use npz::{ArrayFile, network_npz, network_npz_with, write_npz};
 pub use part::Shard;
-pub use parts::{ContentPart, LengthPart, Parts};
+pub use parts::{ContentPart, LengthPart, Parts, simplex_term};
 pub use reader::read_network;
 pub use record::{
     CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LoadErrorsRecord, MaterialDataRecord,

@@ -1,6 +1,7 @@
 //! The springs of a network that programs with springs between two points and volume springs hold.
 
-use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord};
+use super::measures::point_term;
+use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord, TermRecord};
 use crate::element::{SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{LengthSpring, MeasureSpring, Network};
@@ -130,6 +131,12 @@ fn simplex_table(d: usize) -> Tabulation {
         values: vec![1.0 / (d + 1) as f64; d + 1],
         gradients: (0..=d).flat_map(|a| (0..d).map(move |k| (a, k))).map(gradient).collect(),
     }
+}
+
+/// What springs on the area of a triangle in the plane or the volume of a tetrahedron measure; none for other kinds and numbers of points.
+pub fn simplex_term(kind: SpringKind, points: usize, d: usize) -> Option<TermRecord> {
+    let is_simplex = points == d + 1 && matches!((kind, d), (SpringKind::Area, 2) | (SpringKind::Volume, 3));
+    is_simplex.then(|| point_term(&simplex_table(d), 0))
 }
 
 /// The fit that has springs of the right kind.

@@ -7,6 +7,7 @@ use super::cell::{Sample, SampledCell, Sums};
 use super::sampling::Part;
 use crate::error::Result;
 use crate::scalar::{Packed, PackedWork, widest};
+use crate::springs::{AskedResponse, Law};
 
 /// The number of shapes is filled up to a multiple of this, which every width of registers divides.
 pub const SIDE: usize = 8;
@@ -144,27 +145,36 @@ impl Block {
     }
 
     fn add(&self, cell: &SampledCell, unknowns: &[f64], chosen: &[bool], curved: &mut Curved) {
-        let laws: Vec<Vec<f64>> = (0..self.springs.len()).map(|s| self.law(cell, s, unknowns, chosen)).collect();
+        let laws = self.laws(cell, unknowns, chosen);
         curved.sums.size += self.size;
         curved.sums.reduced += self.reduced;
         widest(Add { block: self, cell, laws: &laws, chosen, curved });
     }
 
-    /// What the law of spring s gives at the shapes: T, its derivatives in its parameters, and the second derivatives,
+    /// What the law of each spring gives at the shapes: T, its derivatives in its parameters, and the second derivatives,
     /// `[values × shapes]`. If only some of its parameters are chosen, only the derivatives in these; the others are
-    /// zero.
-    fn law(&self, cell: &SampledCell, s: usize, unknowns: &[f64], chosen: &[bool]) -> Vec<f64> {
-        let (own, rest) = (cell.of_spring(s, unknowns), cell.rest(s));
-        let values = 1 + own.len() + own.len() * (own.len() + 1) / 2;
-        let mut all = vec![0.0; values * self.shapes];
-        let Some(law) = cell.law(s) else { return all };
-        let chosen = &chosen[cell.places(s)];
-        let whole = chosen.iter().all(|chosen| *chosen);
-        let mut wanted: Vec<bool> =
-            (0..values).map(|i| whole || (1..=own.len()).contains(&i) && chosen[i - 1]).collect();
-        // A law without chosen parameters pulls whatever these are.
-        wanted[0] |= chosen.iter().all(|chosen| !chosen);
-        law.respond::<SIDE>(&self.springs[s].measures, (rest, own), &wanted, &mut all);
+    /// zero. A law is asked once for all springs that have it.
+    fn laws(&self, cell: &SampledCell, unknowns: &[f64], chosen: &[bool]) -> Vec<Vec<f64>> {
+        let of_spring = |s: usize| cell.of_spring(s, unknowns);
+        let values = |s: usize| 1 + of_spring(s).len() + of_spring(s).len() * (of_spring(s).len() + 1) / 2;
+        let mut all: Vec<Vec<f64>> = (0..self.springs.len()).map(|s| vec![0.0; values(s) * self.shapes]).collect();
+        let mut asked: Vec<(&Law, Vec<AskedResponse>)> = Vec::new();
+        for (s, results) in all.iter_mut().enumerate() {
+            let Some(law) = cell.law(s) else { continue };
+            let (own, chosen) = (of_spring(s), &chosen[cell.places(s)]);
+            let whole = chosen.iter().all(|chosen| *chosen);
+            let mut wanted: Vec<bool> =
+                (0..values(s)).map(|i| whole || (1..=own.len()).contains(&i) && chosen[i - 1]).collect();
+            // A law without chosen parameters pulls whatever these are.
+            wanted[0] |= chosen.iter().all(|chosen| !chosen);
+            let one =
+                AskedResponse { c: &self.springs[s].measures, rest: cell.rest(s), parameters: own, wanted, results };
+            match asked.iter_mut().find(|(known, _)| std::ptr::eq(*known, law)) {
+                Some((_, springs)) => springs.push(one),
+                None => asked.push((law, vec![one])),
+            }
+        }
+        asked.iter_mut().for_each(|(law, springs)| law.respond_all::<SIDE>(springs));
         all
     }
 }

@@ -8,7 +8,7 @@ use super::placed::Placed;
 use super::sampling::Part;
 use crate::error::Result;
 use crate::fit::dense::inner;
-use crate::springs::Force;
+use crate::springs::{AskedResponse, Force};
 use rayon::prelude::*;
 
 /// The error of the springs' forces at one shape of a cell.
@@ -165,7 +165,8 @@ impl SampledCell<'_> {
                 let mut wanted = vec![false; values];
                 wanted[0] = true;
                 let mut all = vec![0.0; values * measures.len()];
-                law.respond::<SIDE>(&measures, (rest, own), &wanted, &mut all);
+                let one = AskedResponse { c: &measures, rest, parameters: own, wanted, results: &mut all };
+                law.respond_all::<SIDE>(&mut [one]);
                 all.truncate(count);
                 all
             }

@@ -10,6 +10,48 @@ pub trait ForceFunction: Debug + Send + Sync {
     /// Writes the force `T` of one spring at each measure `c`, `[measures]`; `rest` is its measure at rest. The force is that of
     /// [`Law`](super::Law), NaN where it is undefined.
     fn forces(&self, c: &[f64], rest: f64, parameters: &[f64], forces: &mut [f64]);
+
+    /// Writes the forces of several springs, one after the other, for functions that are quicker when they are asked for many at once.
+    fn forces_of_all(&self, asked: &[AskedForces], forces: &mut [f64]) {
+        let mut left = forces;
+        for one in asked {
+            let (own, others) = left.split_at_mut(one.c.len());
+            self.forces(one.c, one.rest, &one.parameters, own);
+            left = others;
+        }
+    }
+}
+
+/// The forces of one spring that a [`ForceFunction`] is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskedForces<'a> {
+    /// What the spring measures, `[measures]`.
+    pub c: &'a [f64],
+    /// Its measure at rest.
+    pub rest: f64,
+    /// The parameters of its law.
+    pub parameters: Vec<f64>,
+}
+
+/// What is asked of a law for one spring, see [`Law::respond_all`](super::Law::respond_all).
+pub struct AskedResponse<'a> {
+    /// What the spring measures, `[measures]`.
+    pub c: &'a [f64],
+    /// Its measure at rest.
+    pub rest: f64,
+    /// The parameters of its law.
+    pub parameters: &'a [f64],
+    /// Which values are wanted: T, its derivatives in the parameters, and the second derivatives row by row.
+    pub wanted: Vec<bool>,
+    /// `[values × measures]`; those that are not wanted are left as they are.
+    pub results: &'a mut [f64],
+}
+
+/// A row of results as a sum of forces at several parameters.
+struct Combination {
+    /// Which of the forces that are asked for, and its weight.
+    terms: Vec<(usize, f64)>,
+    divisor: f64,
 }
 
 /// The step of a difference of the fourth order, relative to the variable: its error and that of rounding are some 1e-12 there.
@@ -24,7 +66,9 @@ const ROUNDING: f64 = 1e-12;
 /// The weights of the values at −2h, −h, h and 2h in `12 h` times the slope, and in `12 h²` times the bend without its middle, −30.
 const SLOPE: [f64; 4] = [1.0, -8.0, 8.0, -1.0];
 const BEND: [f64; 4] = [-1.0, 16.0, 16.0, -1.0];
-const AROUND: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+const AROUND: [f64; AROUND_COUNT] = [-2.0, -1.0, 1.0, 2.0];
+/// How many values a difference has.
+pub const AROUND_COUNT: usize = 4;
 
 /// The function and the parameters in which it is linear.
 #[derive(Debug, Clone)]
@@ -76,27 +120,61 @@ impl Function {
 
     /// `dT/dc`, to some 1e-11.
     pub fn slope(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        let h = STEP * if rest == 0.0 { c.abs() } else { rest.abs() };
-        let forces = self.forces(&AROUND.map(|share| c + share * h), rest, parameters);
-        forces.iter().zip(SLOPE).map(|(t, weight)| t * weight).sum::<f64>() / (12.0 * h)
+        let forces = self.forces(&self.around_measure(c, rest), rest, parameters);
+        self.slope_of(&forces, c, rest)
     }
 
-    /// The values of [`Law::respond`](super::Law::respond).
-    pub fn respond(&self, c: &[f64], (rest, parameters): (f64, &[f64]), wanted: &[bool], results: &mut [f64]) {
-        let count = parameters.len();
-        let mut rows = results.chunks_exact_mut(c.len()).zip(wanted);
-        let mut set = |found: &dyn Fn() -> Vec<f64>| {
-            if let Some((row, true)) = rows.next() {
-                row.copy_from_slice(&found());
+    /// The measures around c whose forces give the slope.
+    pub fn around_measure(&self, c: f64, rest: f64) -> [f64; AROUND_COUNT] {
+        AROUND.map(|share| c + share * measure_step(c, rest))
+    }
+
+    /// The slope by the forces at these measures.
+    pub fn slope_of(&self, forces: &[f64], c: f64, rest: f64) -> f64 {
+        forces.iter().zip(SLOPE).map(|(t, weight)| t * weight).sum::<f64>() / (12.0 * measure_step(c, rest))
+    }
+
+    /// Writes what is wanted of several springs. The function is asked once for all of them, and for all of its derivatives.
+    pub fn respond_all(&self, responses: &mut [AskedResponse]) {
+        let mut asked: Vec<AskedForces> = Vec::new();
+        let mut rows: Vec<(usize, usize, Combination)> = Vec::new();
+        for (place, response) in responses.iter().enumerate() {
+            let count = response.parameters.len();
+            let mut plan = Plan { function: self, asked: &mut asked, first: 0, c: response.c, rest: response.rest };
+            plan.first = plan.asked.len();
+            let mut wanted = response.wanted.iter().enumerate().filter(|(_, wanted)| **wanted).map(|(row, _)| row);
+            let seconds: Vec<[usize; 2]> = (0..count).flat_map(|i| (0..=i).map(move |j| [i, j])).collect();
+            rows.extend(wanted.by_ref().map(|row| {
+                let combination = match row {
+                    0 => Combination { terms: plan.force(response.parameters, 1.0), divisor: 1.0 },
+                    row if row <= count => plan.first(response.parameters, row - 1),
+                    row => plan.second(response.parameters, seconds[row - 1 - count]),
+                };
+                (place, row, combination)
+            }));
+        }
+        let starts: Vec<usize> =
+            asked.iter().scan(0, |next, one| Some(std::mem::replace(next, *next + one.c.len()))).collect();
+        let mut forces = vec![f64::NAN; asked.iter().map(|one| one.c.len()).sum()];
+        self.function.forces_of_all(&asked, &mut forces);
+        for (place, row, Combination { terms, divisor }) in rows {
+            let response = &mut responses[place];
+            let n = response.c.len();
+            let row = &mut response.results[row * n..(row + 1) * n];
+            row.fill(0.0);
+            for (asked, weight) in terms {
+                let own = &forces[starts[asked]..starts[asked] + n];
+                row.iter_mut().zip(own).for_each(|(sum, t)| *sum += weight * t);
             }
-        };
-        set(&|| self.forces(c, rest, parameters));
-        for i in 0..count {
-            set(&|| self.first(c, rest, parameters, i));
+            row.iter_mut().for_each(|sum| *sum /= divisor);
         }
-        for (i, j) in (0..count).flat_map(|i| (0..=i).map(move |j| (i, j))) {
-            set(&|| self.second(c, rest, parameters, [i, j]));
-        }
+    }
+
+    /// The forces of several springs, one after the other.
+    pub fn forces_of_all(&self, asked: &[AskedForces]) -> Vec<f64> {
+        let mut forces = vec![f64::NAN; asked.iter().map(|one| one.c.len()).sum()];
+        self.function.forces_of_all(asked, &mut forces);
+        forces
     }
 
     /// `∂T/∂p_i`.
@@ -106,26 +184,6 @@ impl Function {
         }
         let h = step(parameters[i]);
         self.around(c, rest, parameters, (i, h), SLOPE, 12.0 * h)
-    }
-
-    /// `∂²T/∂p_i∂p_j`.
-    fn second(&self, c: &[f64], rest: f64, parameters: &[f64], [i, j]: [usize; 2]) -> Vec<f64> {
-        match [self.outer[i], self.outer[j]] {
-            [true, true] => vec![0.0; c.len()],
-            [true, false] => self.first(c, rest, &self.unit(parameters, i), j),
-            [false, true] => self.first(c, rest, &self.unit(parameters, j), i),
-            [false, false] if i == j => {
-                let h = step(parameters[i]);
-                let sum = self.around(c, rest, parameters, (i, h), BEND, 1.0);
-                let middle = self.forces(c, rest, parameters);
-                sum.iter().zip(middle).map(|(sum, t)| (sum - 30.0 * t) / (12.0 * h * h)).collect()
-            }
-            [false, false] => {
-                let h = step(parameters[j]);
-                let slope = |sign: f64| self.first(c, rest, &moved(parameters, j, sign * h), i);
-                slope(1.0).iter().zip(slope(-1.0)).map(|(above, below)| (above - below) / (2.0 * h)).collect()
-            }
-        }
     }
 
     /// The sum of the forces around parameter i with these weights, over `divisor`.
@@ -181,6 +239,78 @@ impl Function {
     }
 }
 
+/// The forces of one spring that are asked for, each once.
+struct Plan<'p, 'a> {
+    function: &'p Function,
+    asked: &'p mut Vec<AskedForces<'a>>,
+    /// The first that is asked for this spring.
+    first: usize,
+    c: &'a [f64],
+    rest: f64,
+}
+
+impl Plan<'_, '_> {
+    fn ask(&mut self, parameters: Vec<f64>) -> usize {
+        let own = &self.asked[self.first..];
+        if let Some(known) = own.iter().position(|one| one.parameters == parameters) {
+            return self.first + known;
+        }
+        self.asked.push(AskedForces { c: self.c, rest: self.rest, parameters });
+        self.asked.len() - 1
+    }
+
+    /// T times a weight. In outer parameters it is linear, `T = Σ_i p_i T_i`, so that the forces `T_i` at units serve all of their values.
+    fn force(&mut self, parameters: &[f64], weight: f64) -> Vec<(usize, f64)> {
+        let outer = &self.function.outer;
+        if !outer.contains(&true) {
+            return vec![(self.ask(parameters.to_vec()), weight)];
+        }
+        let acting = (0..parameters.len()).filter(|&i| outer[i] && parameters[i] != 0.0);
+        acting.map(|i| (self.ask(self.function.unit(parameters, i)), weight * parameters[i])).collect()
+    }
+
+    /// The sum of the forces around parameter i with these weights.
+    fn around(&mut self, parameters: &[f64], (i, h): (usize, f64), weights: [f64; 4]) -> Vec<(usize, f64)> {
+        let at = |(share, weight): (&f64, f64)| self.force(&moved(parameters, i, share * h), weight);
+        AROUND.iter().zip(weights).flat_map(at).collect()
+    }
+
+    /// `∂T/∂p_i`.
+    fn first(&mut self, parameters: &[f64], i: usize) -> Combination {
+        if self.function.outer[i] {
+            return Combination { terms: self.force(&self.function.unit(parameters, i), 1.0), divisor: 1.0 };
+        }
+        let h = step(parameters[i]);
+        Combination { terms: self.around(parameters, (i, h), SLOPE), divisor: 12.0 * h }
+    }
+
+    /// `∂²T/∂p_i∂p_j`.
+    fn second(&mut self, parameters: &[f64], [i, j]: [usize; 2]) -> Combination {
+        let outer = &self.function.outer;
+        match [outer[i], outer[j]] {
+            [true, true] => Combination { terms: Vec::new(), divisor: 1.0 },
+            [true, false] => self.first(&self.function.unit(parameters, i), j),
+            [false, true] => self.first(&self.function.unit(parameters, j), i),
+            [false, false] if i == j => {
+                let h = step(parameters[i]);
+                let mut terms = self.around(parameters, (i, h), BEND);
+                terms.extend(self.force(parameters, -30.0));
+                Combination { terms, divisor: 12.0 * h * h }
+            }
+            [false, false] => {
+                let h = step(parameters[j]);
+                let above = self.first(&moved(parameters, j, h), i);
+                let below = self.first(&moved(parameters, j, -h), i);
+                let below_terms = below.terms.into_iter().map(|(asked, weight)| (asked, -weight));
+                Combination {
+                    terms: above.terms.into_iter().chain(below_terms).collect(),
+                    divisor: above.divisor * 2.0 * h,
+                }
+            }
+        }
+    }
+}
+
 /// Whether `a + b = c + d` up to rounding.
 fn balanced([a, b, c, d]: [&[f64]; 4]) -> bool {
     (0..a.len()).all(|i| {
@@ -188,6 +318,11 @@ fn balanced([a, b, c, d]: [&[f64]; 4]) -> bool {
         // NaN is not linear.
         (a[i] + b[i] - c[i] - d[i]).abs() <= ROUNDING * size
     })
+}
+
+/// The step of a difference in the measure.
+fn measure_step(c: f64, rest: f64) -> f64 {
+    STEP * if rest == 0.0 { c.abs() } else { rest.abs() }
 }
 
 /// The step of a difference in an inner parameter.

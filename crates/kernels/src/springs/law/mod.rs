@@ -3,31 +3,23 @@
 //!
 //! Theory: page *Sampled fits* of the book.
 
+mod energy;
 mod formula;
 mod function;
 
 pub use formula::LawRoom;
-pub use function::ForceFunction;
+pub(crate) use function::AskedResponse;
+pub use function::{AskedForces, ForceFunction};
 
 use super::Springs;
 use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Scope, variables_of};
 use formula::Formula;
 use function::Function;
-use gauss_quad::GaussLegendre;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// The variables of a law besides its parameters: the strain `s = (c − c₀)/c₀`, `c` and `c₀`.
 const VARIABLES: [&str; 3] = ["s", "c", "c0"];
-/// The number of points of the quadrature that integrates the force; it is exact for polynomials up to degree 31.
-const POINTS: usize = 16;
-/// A change of the measure by this share of its value at rest is integrated without subdivision.
-const SMOOTH: f64 = 0.1;
-/// The relative agreement of a quadrature with that of its two halves at which it is accepted; about 50 rounding
-/// errors.
-const KNOWN: f64 = 1e-14;
-/// The largest number of halvings of the interval.
-const HALVINGS: usize = 10;
 /// Strains at which a law is tested for being linear in its parameters.
 const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
 /// What rounding may leave between a function and the sum over its parameters, relative to the force.
@@ -156,32 +148,32 @@ impl Law {
     pub fn force_each<const N: usize>(&self, at: &[[f64; N]], room: &mut LawRoom<N>) -> [f64; N] {
         match &self.body {
             Body::Formula(formula) => formula.force_each(at, room),
-            Body::Function(function) => std::array::from_fn(|i| {
-                let own: Vec<f64> = at.iter().map(|values| values[i]).collect();
-                function.forces(&own[..1], own[1], &own[2..])[0]
-            }),
+            Body::Function(function) => {
+                let own = |i: usize| AskedForces {
+                    c: std::slice::from_ref(&at[0][i]),
+                    rest: at[1][i],
+                    parameters: at[2..].iter().map(|values| values[i]).collect(),
+                };
+                let forces = function.forces_of_all(&(0..N).map(own).collect::<Vec<_>>());
+                std::array::from_fn(|i| forces[i])
+            }
         }
     }
 
     /// T, its derivatives in the parameters p, and its second derivatives in `p_i` and `p_j`, j ≤ i, row by row, at the measures
-    /// c of one spring, whose number is a multiple of N; `results` is `[values × measures]`, and those values that are not
-    /// `wanted` are left as they are.
-    pub(crate) fn respond<const N: usize>(
-        &self,
-        c: &[f64],
-        spring: (f64, &[f64]),
-        wanted: &[bool],
-        results: &mut [f64],
-    ) {
+    /// c of each of several springs, whose number is a multiple of N. A function is asked once for all springs.
+    pub(crate) fn respond_all<const N: usize>(&self, asked: &mut [AskedResponse]) {
         let formula = match &self.body {
             Body::Formula(formula) => formula,
-            Body::Function(function) => return function.respond(c, spring, wanted, results),
+            Body::Function(function) => return function.respond_all(asked),
         };
-        let (mut room, mut rows) = (LawRoom::default(), vec![[0.0; N]; wanted.len()]);
-        for (i, each) in c.as_chunks::<N>().0.iter().enumerate() {
-            formula.respond_each(each, spring, wanted, &mut room, &mut rows);
-            for (row, values) in results.chunks_exact_mut(c.len()).zip(&rows) {
-                row[i * N..(i + 1) * N].copy_from_slice(values);
+        for AskedResponse { c, rest, parameters, wanted, results } in asked {
+            let (mut room, mut rows) = (LawRoom::default(), vec![[0.0; N]; wanted.len()]);
+            for (i, each) in c.as_chunks::<N>().0.iter().enumerate() {
+                formula.respond_each(each, (*rest, *parameters), wanted, &mut room, &mut rows);
+                for (row, values) in results.chunks_exact_mut(c.len()).zip(&rows) {
+                    row[i * N..(i + 1) * N].copy_from_slice(values);
+                }
             }
         }
     }
@@ -204,6 +196,19 @@ impl Law {
                     .enumerate()
                     .for_each(|(i, slope)| *slope = function.first(&[c], rest, parameters, i)[0]);
             }
+        }
+    }
+
+    /// The forces of several springs, one after the other. A function is asked once.
+    pub fn forces_of_all(&self, asked: &[AskedForces]) -> Vec<f64> {
+        match &self.body {
+            Body::Formula(_) => {
+                let each = |one: &AskedForces| -> Vec<f64> {
+                    one.c.iter().map(|&c| self.force(c, one.rest, &one.parameters)).collect()
+                };
+                asked.iter().flat_map(each).collect()
+            }
+            Body::Function(function) => function.forces_of_all(asked),
         }
     }
 
@@ -232,45 +237,6 @@ impl Law {
         let expected = format!("{} to be linear in its parameters as at values of about 1", self.text);
         Err(Error::expected("force", expected, format!("another force at {}", values.join(", ")))
             .of_kind(ErrorKind::Infeasible))
-    }
-
-    /// The energy `∫ T dc` from rest, by a quadrature that is refined until it agrees with that of its halves.
-    pub fn energy(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
-        let whole = self.work([rest, c], rest, parameters);
-        if (c - rest).abs() <= SMOOTH * rest.abs() {
-            whole
-        } else {
-            self.refined([rest, c], whole, rest, parameters, HALVINGS)
-        }
-    }
-
-    fn refined(&self, [from, to]: [f64; 2], whole: f64, rest: f64, parameters: &[f64], halvings: usize) -> f64 {
-        let middle = from + (to - from) / 2.0;
-        let halves = [[from, middle], [middle, to]];
-        let works = halves.map(|half| self.work(half, rest, parameters));
-        let sum = works[0] + works[1];
-        if halvings == 0 || !sum.is_finite() || (sum - whole).abs() <= KNOWN * (works[0].abs() + works[1].abs()) {
-            return sum;
-        }
-        (0..2).map(|i| self.refined(halves[i], works[i], rest, parameters, halvings - 1)).sum()
-    }
-
-    /// `∫ T dc` by one rule without refinement.
-    fn work(&self, [from, to]: [f64; 2], rest: f64, parameters: &[f64]) -> f64 {
-        static RULE: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
-        let points = POINTS.try_into().expect("there are points");
-        let rule = RULE.get_or_init(|| GaussLegendre::new(points).iter().map(|(x, w)| (*x, *w)).collect());
-        let half = (to - from) / 2.0;
-        let places = rule.iter().map(|(x, _)| from + half * (1.0 + x));
-        match &self.body {
-            Body::Formula(formula) => {
-                rule.iter().zip(places).map(|((_, w), c)| w * half * formula.force(c, rest, parameters)).sum()
-            }
-            Body::Function(function) => {
-                let forces = function.forces(&places.collect::<Vec<_>>(), rest, parameters);
-                rule.iter().zip(forces).map(|((_, w), t)| w * half * t).sum()
-            }
-        }
     }
 }
 
