@@ -96,7 +96,7 @@ pub mod referee;
 #[cfg(feature = "cli")]
 pub mod report;
 
-pub use springfit_bodies::{dynamics, engine, model, positive, solve, whole};
+pub use springfit_bodies::{calibration, dynamics, engine, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};
 #[cfg(feature = "cli")]
 pub use springfit_generate::generate;
