@@ -107,7 +107,7 @@ pub mod report;
 #[cfg(feature = "cli")]
 mod terminal;
 
-pub use springfit_bodies::{dynamics, engine, model, positive, solve, whole};
+pub use springfit_bodies::{calibration, dynamics, engine, model, positive, solve, whole};
 pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};
 #[cfg(feature = "cli")]
 pub use springfit_generate::generate;

@@ -11,6 +11,7 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
 from .factorized import Factorized
+from .calibration import Calibration, calibrate
 from .gradients import Gradient, SpringConstants
 from .material import Material
 from .mesh import Mesh
@@ -22,6 +23,7 @@ from .studies import compare, converge, learning_curve, stability
 from .sweep import sweep
 
 __all__ = [
+    "Calibration",
     "Element",
     "Factorized",
     "Gradient",
@@ -33,6 +35,7 @@ __all__ = [
     "SpringConstants",
     "SpringfitError",
     "__version__",
+    "calibrate",
     "compare",
     "converge",
     "fit",

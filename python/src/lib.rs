@@ -3,6 +3,7 @@
 mod arguments;
 mod arrays;
 mod body;
+mod calibration;
 mod called;
 mod command;
 mod distributed;
@@ -66,6 +67,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fit::masses, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
+    module.add_function(wrap_pyfunction!(calibration::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_scene, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_cases, module)?)?;
     module.add_function(wrap_pyfunction!(studies::is_comparison, module)?)?;

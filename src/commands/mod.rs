@@ -1,5 +1,6 @@
 //! The subcommands: each file has the arguments of one, with their help texts, and what it does.
 
+mod calibrate;
 mod check;
 mod compare;
 mod completions;
@@ -64,6 +65,7 @@ commands! {
     Run: run::Run,
     Fit: Box<fit::Fit>,
     Merge: merge::Merge,
+    Calibrate: calibrate::Calibrate,
     Check: check::Check,
     Export: export::Export,
     Derive: derive::Derive,

@@ -1,6 +1,7 @@
 //! What a person or a program reads of an outcome.
 
 mod agreement;
+mod calibration;
 mod catalogue;
 mod check;
 mod compare;
@@ -46,6 +47,7 @@ mod summary;
 mod surface;
 mod table;
 
+pub use calibration::{CALIBRATION_FILES, calibration_tables, calibration_text, write_calibration};
 pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, materials_table};
 pub use check::{check_table, check_text};
 pub use compare::{

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 40] = [
+const LAYERS: [&str; 41] = [
     "shipped",
     "numerics",
     "multigrid",
@@ -40,6 +40,7 @@ const LAYERS: [&str; 40] = [
     "dynamics",
     "engine",
     "whole",
+    "calibration",
     "network",
     "analysis",
     "study",

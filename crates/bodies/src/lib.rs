@@ -10,9 +10,11 @@
 //! | [`engine`] | what a network answers in an engine that ends its iterations early |
 //! | [`positive`] | the nearest network without negative springs to an exact network |
 //! | [`whole`] | spring constants fitted to the displacements of the whole object |
+//! | [`calibration`] | moduli of a body from measurements, with intervals |
 
 #![forbid(unsafe_code)]
 
+pub mod calibration;
 pub mod dynamics;
 pub mod engine;
 pub mod model;

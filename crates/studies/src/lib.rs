@@ -8,7 +8,7 @@ pub mod study;
 
 // The layers below, by the same names as everywhere.
 use springfit_analysis::analysis;
-use springfit_bodies::{dynamics, engine, model, positive, solve, whole};
+use springfit_bodies::{calibration, dynamics, engine, model, positive, solve, whole};
 use springfit_foundation::{bound, clock, error, file, named, number, quantity, random, range, scalar, symbolic, text};
 use springfit_kernels::{element, fit, material, springs, stiffness};
 use springfit_mesh::mesh;

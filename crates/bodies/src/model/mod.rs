@@ -75,7 +75,7 @@ pub(crate) use size::ADVICE;
 pub use size::check_body;
 pub use support::{Support, Unheld, unheld_bodies, unheld_parts};
 pub(crate) use system::dofs;
-pub use system::{content, finite_elements};
+pub use system::{cell_places, content, each_cell_forces, finite_elements};
 pub use tension::RestTension;
 
 use faer::sparse::Triplet;

@@ -47,11 +47,7 @@ pub fn finite_elements(mesh: &Mesh, moduli: impl Into<CellMap<Hooke>>) -> Entrie
     let d = mesh.dimension;
     let mut entries = Entries::with_capacity(body_entries(mesh));
     each_cell(mesh, |cell, nodes, geometry| {
-        let mut r = geometry.stiffness(moduli.at(cell.block, cell.cell));
-        let table = &mesh.blocks[cell.block].element.tabulation;
-        if table.dimension < d {
-            r = in_space(table, &mesh.points, nodes, &r);
-        }
+        let r = cell_stiffness(mesh, (cell, nodes, geometry), moduli.at(cell.block, cell.cell));
         for (i, row) in dofs(nodes, d).enumerate() {
             for (j, column) in dofs(nodes, d).enumerate() {
                 if row >= column {
@@ -62,6 +58,50 @@ pub fn finite_elements(mesh: &Mesh, moduli: impl Into<CellMap<Hooke>>) -> Entrie
     });
     entries.extend(plate_springs(mesh, &moduli).stiffness(&mesh.points));
     entries
+}
+
+/// The stiffness of a cell in the space of its mesh, `[nodes · dimension]²`, N/m.
+fn cell_stiffness(
+    mesh: &Mesh,
+    (cell, nodes, geometry): (CellIndex, &[usize], &Geometry),
+    moduli: &Hooke,
+) -> DMatrix<f64> {
+    let r = geometry.stiffness(moduli);
+    let table = &mesh.blocks[cell.block].element.tabulation;
+    if table.dimension < mesh.dimension { in_space(table, &mesh.points, nodes, &r) } else { r }
+}
+
+/// Calls `visit(cell, nodes, forces)` with the forces `K_e u` of every cell for each of several moduli of it, which `moduli` lists, and each of
+/// several displacements u, `[moduli][displacements]` of `[nodes · dimension]`, N.
+pub fn each_cell_forces(
+    mesh: &Mesh,
+    displacements: &[&[f64]],
+    moduli: &dyn Fn(CellIndex) -> Vec<Hooke>,
+    visit: &mut dyn FnMut(CellIndex, &[usize], &[Vec<Vec<f64>>]),
+) {
+    let d = mesh.dimension;
+    each_cell(mesh, |cell, nodes, geometry| {
+        let of = |hooke: &Hooke| -> Vec<Vec<f64>> {
+            let r = cell_stiffness(mesh, (cell, nodes, geometry), hooke);
+            let product = |u: &&[f64]| {
+                let local: Vec<f64> = dofs(nodes, d).map(|dof| u[dof]).collect();
+                (0..local.len()).map(|i| local.iter().enumerate().map(|(j, u)| r[(i, j)] * u).sum()).collect()
+            };
+            displacements.iter().map(product).collect()
+        };
+        let forces: Vec<Vec<Vec<f64>>> = moduli(cell).iter().map(of).collect();
+        visit(cell, nodes, &forces);
+    });
+}
+
+/// The length, area or volume of each cell, by block, and its middle, the mean of its nodes.
+pub fn cell_places(mesh: &Mesh) -> Vec<Vec<(f64, Vec<f64>)>> {
+    let mut places: Vec<Vec<(f64, Vec<f64>)>> = mesh.blocks.iter().map(|_| Vec::new()).collect();
+    each_cell(mesh, |cell, nodes, geometry| {
+        let mean = |k: usize| nodes.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / nodes.len() as f64;
+        places[cell.block].push((geometry.content(), (0..mesh.dimension).map(mean).collect()));
+    });
+    places
 }
 
 /// `Q R Qᵀ` of a cell of a surface or curve; Q maps the displacements in its own plane or line into space.

@@ -22,6 +22,8 @@ pub struct Embedding {
     points: usize,
     /// The number of given points outside all cells, whose values are extrapolated from the nearest cell.
     pub outside: usize,
+    /// How many times as large, about its centre, the cell of each given point has to be to have it; 1 for a point that it has.
+    pub multiples: Vec<f64>,
 }
 
 /// The largest distance of a point from the centre of its cell, as a multiple of that of the border in its direction. Meshes of one
@@ -50,6 +52,7 @@ impl Embedding {
         let bins = Bins::of(mesh);
         let found: Vec<Option<Found>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
         let (mut rows, mut cells, mut outside) = (Vec::with_capacity(found.len()), Vec::with_capacity(found.len()), 0);
+        let mut multiples = Vec::with_capacity(found.len());
         for (found, x) in found.into_iter().zip(points.chunks_exact(d)) {
             let far = || {
                 Error::expected(
@@ -58,12 +61,13 @@ impl Embedding {
                     format!("one at {x:?} m"),
                 )
             };
-            let (row, cell, inside) = found.ok_or_else(far)?;
-            outside += usize::from(!inside);
+            let (row, cell, multiple) = found.ok_or_else(far)?;
+            outside += usize::from(multiple > 0);
+            multiples.push(if multiple > 0 { MULTIPLES[multiple] } else { 1.0 });
             rows.push(row);
             cells.push(cell);
         }
-        Ok(Embedding { rows, cells, dimension: d, points: mesh.point_count(), outside })
+        Ok(Embedding { rows, cells, dimension: d, points: mesh.point_count(), outside, multiples })
     }
 
     /// The values at the given points of values at the points of the mesh, both `[points · dimension]`.
@@ -93,8 +97,8 @@ impl Embedding {
     }
 }
 
-/// The shape functions at a point that do not vanish, the cell, and whether it has the point.
-type Found = (Vec<(usize, f64)>, CellIndex, bool);
+/// The shape functions at a point that do not vanish, the cell, and the index of the least multiple of it that has the point.
+type Found = (Vec<(usize, f64)>, CellIndex, usize);
 
 /// The cells by the bins that their surroundings meet.
 struct Bins {
@@ -152,14 +156,14 @@ impl Bins {
             let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
             // One that is not finite is kept.
             let row: Vec<(usize, f64)> = values.filter(|(_, n)| !(n.abs() <= 1e-14)).collect();
-            row.iter().all(|(_, n)| n.is_finite()).then_some((row, cell, multiple == 0))
+            row.iter().all(|(_, n)| n.is_finite()).then_some((row, cell, multiple))
         };
         let found = best.and_then(row);
         // The functions of pyramids have no value at the apex.
-        if !matches!(found, Some((.., true)))
+        if !matches!(found, Some((.., 0)))
             && let Some((node, cell)) = near.iter().find_map(|(_, of)| Some((of.node_at(mesh, &place)?, of.cell)))
         {
-            return Some((vec![(node, 1.0)], cell, true));
+            return Some((vec![(node, 1.0)], cell, 0));
         }
         found
     }

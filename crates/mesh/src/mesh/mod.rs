@@ -64,7 +64,7 @@ pub use connection::pieces_of;
 pub use directors::Directors;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;
-pub use field::{Accepted, Field, Holder, Interpolation, NamedState, SampleReading, Samples};
+pub use field::{Accepted, Field, Holder, Interpolation, NamedState, SampleReading, Samples, Scattered};
 pub use fill::{FaceCrossings, FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Fragments, Repair};
 pub use formats::{MESH_FORMATS, MeshFormat, listed_endings};
 pub use mesh::{CellBlock, CellIndex, Chosen, Group, Mesh, SideIndex};

@@ -10,6 +10,7 @@
 
 mod body;
 mod body_material;
+mod calibration;
 mod checkpoint;
 mod choice;
 mod compare;
@@ -47,6 +48,9 @@ pub use crate::analysis::statistics;
 pub use crate::analysis::tensor::{NetworkMaterial, SpringOwners, network_material};
 pub use body::{Case, LargeBody};
 pub use body_material::{BodyConstants, assumed};
+pub use calibration::{
+    CalibratedLoad, CalibratedRegion, CalibrationOutcome, MeshStep, Readings, Seen, Value, calibrate, calibrate_with,
+};
 pub use checkpoint::Controls;
 pub use compare::{
     Case as ComparedCase, CaseRecord, Comparing, MethodOutcome, MethodRecord, compare_element, compare_scene,
@@ -85,9 +89,9 @@ pub use paper::{
 pub use progress::{Event, Progress};
 pub use run::{engine_limits, run, run_with};
 pub use scene::{
-    AppliedForce, BoxEntry, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold, InMemory, LoadCase,
-    LoadKind, Materials, MeshInput, MotionRecipe, Output, Part, PrescribedMotion, ReferenceEntry, Scene, Setting,
-    check_unit, load_elements, motion_title, scene_schema,
+    AppliedForce, BoxEntry, CalibrationRecipe, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold,
+    InMemory, LoadCase, LoadKind, Materials, MeshInput, MotionRecipe, Output, Part, PrescribedMotion, Reaction,
+    ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
 };
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;

@@ -10,10 +10,12 @@ mod raw;
 mod reading;
 mod rows;
 mod samples;
+mod scattered;
 mod states;
 mod table;
 
 pub use displacements::Field;
 pub use raw::Holder;
 pub use samples::{Accepted, Interpolation, SampleReading, Samples};
+pub use scattered::Scattered;
 pub use states::NamedState;

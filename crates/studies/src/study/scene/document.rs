@@ -1,5 +1,6 @@
 //! A scene that has been read and checked.
 
+use super::calibrate::CalibrationRecipe;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
 use super::hold::Hold;
@@ -45,6 +46,7 @@ pub struct Scene {
     pub(super) gauge: Option<Gauge>,
     pub(super) motion: Option<MotionRecipe>,
     pub(super) output: Output,
+    pub(super) calibration: Option<CalibrationRecipe>,
     pub(super) sweep: Option<SweepEntry>,
 }
 
@@ -100,8 +102,8 @@ impl Scene {
         let mut mesh = entry.mesh;
         mesh.memory = source.memory.clone();
         mesh.check()?;
-        if entry.fit.is_empty() {
-            return Err(Error::expected("fit", "at least one [[fit]]", "none"));
+        if entry.fit.is_empty() && entry.calibrate.is_none() {
+            return Err(Error::expected("fit", "at least one [[fit]], or [calibrate]", "none"));
         }
         entry.material.check()?;
         let attached: Vec<String> = entry.material.all.iter().filter_map(|entry| entry.group.clone()).collect();
@@ -149,6 +151,7 @@ impl Scene {
         if let Some(sweep) = &entry.sweep {
             sweep.check().map_err(|e| e.under("sweep"))?;
         }
+        let calibration = entry.calibrate.map(|e| e.check().map_err(|e| e.under("calibrate"))).transpose()?;
         let stem = path.file_stem().map(|s| printable(&s.to_string_lossy()).into_owned()).unwrap_or_default();
         Ok(Scene {
             source,
@@ -164,6 +167,7 @@ impl Scene {
             gauge: entry.gauge.map(|gauge| gauge.check().map_err(|e| e.under("gauge"))).transpose()?,
             motion,
             output: entry.output,
+            calibration,
             sweep: entry.sweep,
         })
     }
@@ -238,6 +242,11 @@ impl Scene {
         &mut self.output
     }
 
+    /// Which moduli are found from measurements, if the scene says so.
+    pub fn calibration(&self) -> Option<&CalibrationRecipe> {
+        self.calibration.as_ref()
+    }
+
     /// Which studies a sweep makes of the scene, if it says so.
     pub fn sweep(&self) -> Option<&SweepEntry> {
         self.sweep.as_ref()
@@ -259,7 +268,7 @@ impl Scene {
 
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
     /// in this dimension are left to the places where they are asked.
-    fn choose(&self, mesh: &mut Mesh) {
+    pub(in crate::study) fn choose(&self, mesh: &mut Mesh) {
         let loaded = self.loads.iter().filter_map(|load| {
             let (part, action) = load.single()?;
             // A pressure on a surface in space acts on cells.
@@ -299,6 +308,14 @@ impl Scene {
     pub(in crate::study) fn material_parts(&self) -> Vec<(String, Part)> {
         let all = self.material.all.iter().enumerate();
         all.filter_map(|(i, entry)| Some((self.material.key(i), entry.part().ok()?))).collect()
+    }
+
+    /// The names of the regions of a material map of this scene, in their order.
+    pub(in crate::study) fn region_names(&self, map: &MaterialMap) -> Vec<String> {
+        match map.regions() {
+            [only] if only.is_empty() => vec![self.material.first().name.clone().unwrap_or_else(|| "body".into())],
+            regions => regions.to_vec(),
+        }
     }
 
     /// The materials of the meshed body, with their density if the scene gives one.

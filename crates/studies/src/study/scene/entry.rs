@@ -1,5 +1,6 @@
 //! The structure of a scene file, key by key, and the conditions on each entry alone.
 
+use super::calibrate::CalibrateEntry;
 use super::gauge::GaugeEntry;
 use super::hold::Hold;
 use super::input::MeshInput;
@@ -34,7 +35,7 @@ pub struct SceneFile {
     pub material: MaterialEntries,
     /// Each `[[fit]]` is one way to find the constants of the springs.
     #[serde(default)]
-    #[schemars(extend("x-default" = "required, one or more"))]
+    #[schemars(extend("x-default" = "required, one or more, without `[calibrate]`"))]
     pub fit: Vec<FitEntry>,
     /// `[newton]` says how loads are followed at large deformation; it needs a law of the material.
     pub newton: Option<NewtonEntry>,
@@ -55,6 +56,8 @@ pub struct SceneFile {
     /// `[output]` says what is written and computed besides the tables.
     #[serde(default)]
     pub output: Output,
+    /// `[calibrate]` says which moduli `springfit calibrate` finds from the measurements of the loads; other commands run the scene as it is.
+    pub calibrate: Option<CalibrateEntry>,
     /// `[sweep]` has the studies of `springfit sweep`; other commands run the scene as it is.
     pub sweep: Option<SweepEntry>,
 }

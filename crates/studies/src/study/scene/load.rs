@@ -22,6 +22,19 @@ pub struct LoadCase {
     pub kind: LoadKind,
     /// The file of displacements that were measured under it, if there is one.
     pub measured: Option<MeasuredEntry>,
+    /// The forces that were measured under it.
+    pub reactions: Vec<Reaction>,
+}
+
+/// A force that was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reaction {
+    /// It holds the points of this group.
+    pub group: String,
+    /// Its components, N; `None` where it was not measured.
+    pub force: Vec<Option<f64>>,
+    /// The standard deviation of the noise of each, N.
+    pub sigma: Option<f64>,
 }
 
 /// What acts under a load.
@@ -109,6 +122,42 @@ pub struct LoadEntry {
     pub sum: Option<Vec<String>>,
     /// `measured` has displacements that were measured under this load.
     pub measured: Option<MeasuredEntry>,
+    /// Each entry is a force that was measured under this load, for `springfit calibrate`.
+    #[serde(default)]
+    #[schemars(extend("x-default" = "none"))]
+    pub reactions: Vec<ReactionEntry>,
+}
+
+/// A force that was measured.
+#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReactionEntry {
+    /// The force holds the points of this group of the mesh, which are held or moved under the load.
+    pub group: String,
+    /// The components of the force on the body in N, each a number or `"free"` where it was not measured.
+    #[schemars(with = "Vec<serde_json::Value>", extend("x-type" = "vector"))]
+    pub force: Vec<PrescribedComponent>,
+    /// The noise of each component has this standard deviation in N, above 0.
+    #[schemars(extend("x-default" = "unknown"))]
+    pub sigma: Option<f64>,
+}
+
+impl ReactionEntry {
+    fn check(self) -> Result<Reaction> {
+        let component = |given: PrescribedComponent| match given.0 {
+            None => Ok(None),
+            Some(Varying::Number(value)) if value.is_finite() => Ok(Some(value)),
+            Some(_) => Err(Error::expected("force", "numbers of N, or \"free\"", "another")),
+        };
+        let force: Vec<Option<f64>> = self.force.into_iter().map(component).collect::<Result<_>>()?;
+        if force.iter().all(Option::is_none) {
+            return Err(Error::expected("force", "a component that was measured", "none"));
+        }
+        if let Some(sigma) = self.sigma.filter(|sigma| !(*sigma > 0.0 && sigma.is_finite())) {
+            return Err(Error::expected("sigma", "a standard deviation above zero, N", sigma));
+        }
+        Ok(Reaction { group: self.group, force, sigma: self.sigma })
+    }
 }
 
 /// A file of displacements.
@@ -221,6 +270,9 @@ impl LoadEntry {
             let component = |(i, v)| component(v).map_err(|e| e.under(format!("{key}[{i}]")));
             v.into_iter().enumerate().map(component).collect()
         };
+        let reaction =
+            |(i, entry): (usize, ReactionEntry)| entry.check().map_err(|e| e.under(format!("reactions[{i}]")));
+        let reactions: Vec<Reaction> = self.reactions.into_iter().enumerate().map(reaction).collect::<Result<_>>()?;
         let mut actions = Vec::new();
         if let Some(v) = self.traction {
             actions.push(Action::Traction(varying("traction", v, "Pa")?));
@@ -261,7 +313,7 @@ impl LoadEntry {
             if !actions.is_empty() || self.group.is_some() || self.condition.is_some() {
                 return Err(Error::at("sum", "stands alone: the loads that it names have parts and actions"));
             }
-            return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured });
+            return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured, reactions });
         }
         if actions.len() != 1 {
             let expected = "one of \"traction\", \"pressure\", \"volume\", \"force\", \"body\", \"gravity\", \"displacement\", or \"sum\"";
@@ -277,6 +329,11 @@ impl LoadEntry {
             Action::Body(_) => Part::optional(self.group, self.condition)?,
             _ => Part::required(self.group, self.condition)?,
         };
-        Ok(LoadCase { name, kind: LoadKind::Single { part, action, is_acceleration }, measured: self.measured })
+        Ok(LoadCase {
+            name,
+            kind: LoadKind::Single { part, action, is_acceleration },
+            measured: self.measured,
+            reactions,
+        })
     }
 }

@@ -34,6 +34,9 @@ use std::path::PathBuf;
     { "required": ["stiffness"] },
 ]))]
 pub struct MaterialEntry {
+    /// Reports name the region so.
+    #[schemars(extend("x-default" = "its group or condition, or `rest`"))]
+    pub name: Option<String>,
     /// The cells of this group of the mesh have the material.
     #[schemars(extend("x-default" = "the rest"))]
     pub group: Option<String>,
@@ -208,7 +211,8 @@ impl MaterialEntry {
 
     /// The name of the region in reports.
     pub fn name(&self) -> String {
-        self.group.clone().or_else(|| self.condition.clone()).unwrap_or_else(|| "rest".into())
+        let place = || self.group.clone().or_else(|| self.condition.clone());
+        self.name.clone().or_else(place).unwrap_or_else(|| "rest".into())
     }
 
     /// The quantities that may differ from place to place, with their keys.

@@ -1,6 +1,7 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
 mod anisotropic;
+mod calibrate;
 mod constants;
 mod distribution;
 mod document;
@@ -28,6 +29,7 @@ mod source;
 pub(in crate::study) mod value;
 mod variants;
 
+pub use calibrate::CalibrationRecipe;
 pub use document::Scene;
 pub(in crate::study) use elements::load_element;
 pub use elements::load_elements;
@@ -37,7 +39,7 @@ pub use gauge::Gauge;
 pub use hold::Hold;
 pub use in_memory::{CellValues, InMemory};
 pub use input::{BoxEntry, DiscEntry, MeshInput, check_unit};
-pub use load::{LoadCase, LoadKind, MeasuredEntry};
+pub use load::{LoadCase, LoadKind, MeasuredEntry, Reaction};
 pub use materials::Materials;
 pub use motion_recipe::{AppliedForce, DampingRecipe, ForcePrecision, MotionRecipe, PrescribedMotion, motion_title};
 pub use output::Output;

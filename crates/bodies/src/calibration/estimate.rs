@@ -1,0 +1,191 @@
+//! Few moduli by least squares, and their covariance.
+//!
+//! Theory: page *Calibration* of the book.
+
+use super::limit::{Limit, Limiting, Rest};
+use crate::error::{Error, ErrorKind, Result};
+use crate::springs::dot;
+use crate::whole::{Determination, ninety_five};
+use nalgebra::{DMatrix, DVector};
+
+/// What was found of few moduli.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Estimate {
+    /// The unknowns.
+    pub theta: Vec<f64>,
+    /// Their covariance by noise; `None` of pairs that the measurements do not determine.
+    pub covariance: Vec<Vec<Option<f64>>>,
+    /// Deviations on either side that hold 95 % of the noise.
+    pub reach: f64,
+    /// The deviation of each unknown that the error of the extrapolated meshes causes; `None` without a finer mesh.
+    pub mesh: Option<Vec<f64>>,
+    /// By how much each unknown changes from each mesh to the next, by linearisation, `[meshes − 1][unknowns]`.
+    pub changes: Vec<Vec<f64>>,
+    /// The ratio of the last two changes of the answers; `None` with fewer than three meshes.
+    pub ratio: Option<f64>,
+    /// What the error of the meshes gives to the sum of the squares of the residuals.
+    pub left: f64,
+    /// The residuals `(y − u)/σ`.
+    pub residuals: Vec<f64>,
+    /// The root of `Σ r²/(n − m)`: 1 where noise is known and the model explains the measurements.
+    pub misfit: f64,
+    /// Combinations of unknowns that the measurements hardly see.
+    pub weak: Vec<Vec<usize>>,
+    /// Steps that were taken.
+    pub steps: usize,
+    /// Where the search has ended before the optimum, why.
+    pub fault: Option<Fault>,
+}
+
+/// Why a search has ended before its optimum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// The largest number of steps.
+    Steps,
+    /// No step is better, though the gradient promises one.
+    Stalled,
+}
+
+/// Steps at most.
+const STEPS: usize = 60;
+/// A step that counts as none: far below any interval.
+const SETTLED: f64 = 1e-7;
+/// The largest change of an unknown in a step, a logarithm.
+const LARGEST: f64 = 1.5;
+/// The unknowns that make the sum of squares least. `noise` says whether the weights are those of known noise.
+///
+/// # Errors
+/// There are as many unknowns as measurements, or no equilibrium at the first guess.
+pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bool) -> Result<Estimate> {
+    let m = limit.unknowns.count();
+    if limit.observations.len() <= m {
+        return Err(Error::expected(
+            "measured",
+            format!("more than {m} numbers, one for each unknown"),
+            limit.observations.len(),
+        ));
+    }
+    let nothing = || {
+        Error::expected("load", "loads under which the body has an equilibrium", "none").of_kind(ErrorKind::Infeasible)
+    };
+    let finest = limit.levels.len() - 1;
+    let mut theta = vec![0.0; m];
+    let mut now = limit.at(&theta, finest)?.ok_or_else(nothing)?;
+    let square = |at: &Limiting| {
+        let r = limit.residuals(&at.values());
+        dot(&r, &r)
+    };
+    let (mut damping, mut fault, mut steps) = (0.0, Some(Fault::Steps), 0);
+    for count in 0..STEPS {
+        if !goes_on(count) {
+            break;
+        }
+        steps = count + 1;
+        let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
+        let before = square(&now);
+        let mut found = None;
+        for _ in 0..12 {
+            let step = damped(&columns, &residuals, damping);
+            let largest = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+            if largest < SETTLED {
+                fault = None;
+                break;
+            }
+            let length = (LARGEST / largest).min(1.0);
+            let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
+            if let Some(next) = limit.at(&tried, finest)?
+                && square(&next) < before
+            {
+                found = Some((tried, next));
+                break;
+            }
+            damping = if damping == 0.0 { 1e-4 } else { 10.0 * damping };
+        }
+        let Some((tried, next)) = found else {
+            // Near the optimum rounding decides.
+            let step = damped(&columns, &residuals, 0.0);
+            let near = step.iter().all(|s| s.abs() < 1e-4);
+            fault = fault.filter(|_| !near).map(|_| Fault::Stalled);
+            break;
+        };
+        (theta, now) = (tried, next);
+        damping = if damping < 1e-4 { 0.0 } else { damping / 10.0 };
+    }
+    let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
+    let known = Determination::by(&columns, &residuals, residuals.len(), noise.then_some(1.0))?;
+    let size = if noise { 1.0 } else { known.residual };
+    let inverse = inverse(&columns);
+    let covariance = (0..m).map(|p| {
+        let entry = |q: usize| known.deviations[p].and(known.deviations[q]).map(|_| size * size * inverse[(p, q)]);
+        (0..m).map(entry).collect()
+    });
+    let covariance: Vec<Vec<Option<f64>>> = covariance.collect();
+    let pulled = |change: &[f64]| -> Vec<f64> {
+        let weighed: Vec<f64> = change.iter().zip(&limit.weights).map(|(c, w)| c * w).collect();
+        let slopes = DVector::from_iterator(m, columns.iter().map(|column| dot(column, &weighed)));
+        (&inverse * slopes).iter().map(|change| -change).collect()
+    };
+    let changes: Vec<Vec<f64>> = (0..limit.levels.len() - 1).map(|level| pulled(&now.change(level))).collect();
+    // The errors of meshes move all unknowns together.
+    let spread = |rest: Rest, last: &[f64], before: Option<&Vec<f64>>| -> Vec<f64> {
+        let before = |p: usize| before.map_or(0.0, |before| before[p]);
+        last.iter().enumerate().map(|(p, last)| rest.spread(*last, before(p))).collect()
+    };
+    let mesh = now
+        .rest
+        .zip(changes.last())
+        .map(|(rest, last)| spread(rest, last, changes.len().checked_sub(2).map(|before| &changes[before])));
+    let left = now.rest.map_or(0.0, |rest| {
+        let [last, before] = now.changes();
+        let all = spread(rest, &last, Some(&before));
+        all.iter().zip(&limit.weights).map(|(c, w)| (c * w).powi(2)).sum()
+    });
+    Ok(Estimate {
+        theta,
+        covariance,
+        reach: ninety_five((!noise).then_some(residuals.len() - m)),
+        mesh,
+        changes,
+        ratio: now.rest.and_then(|rest| rest.ratio),
+        left,
+        misfit: known.residual,
+        residuals,
+        weak: known.weak,
+        steps,
+        fault,
+    })
+}
+
+/// The step of Levenberg and Marquardt in units in which each unknown changes the residuals alike.
+fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
+    let m = columns.len();
+    let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
+    let scaled = |p: usize, q: usize| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]);
+    let normal = DMatrix::from_fn(m, m, |p, q| scaled(p, q) + if p == q { damping } else { 0.0 });
+    let slopes = DVector::from_fn(m, |p, _| dot(&columns[p], residuals) / norms[p]);
+    let eigen = normal.symmetric_eigen();
+    let mut step = vec![0.0; m];
+    for (value, vector) in
+        eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|(value, _)| **value > 1e-12)
+    {
+        let along = vector.dot(&slopes) / value;
+        (0..m).for_each(|p| step[p] += along * vector[p] / norms[p]);
+    }
+    step
+}
+
+/// `(JᵀJ)⁻¹` of what the measurements see.
+fn inverse(columns: &[Vec<f64>]) -> DMatrix<f64> {
+    let m = columns.len();
+    let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
+    let normal = DMatrix::from_fn(m, m, |p, q| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]));
+    let eigen = normal.symmetric_eigen();
+    let mut sum = DMatrix::zeros(m, m);
+    for (value, vector) in
+        eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|(value, _)| **value > 1e-14)
+    {
+        sum += vector * vector.transpose() / *value;
+    }
+    DMatrix::from_fn(m, m, |p, q| sum[(p, q)] / (norms[p] * norms[q]))
+}

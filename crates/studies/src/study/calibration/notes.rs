@@ -1,0 +1,44 @@
+//! What a calibration has to say to its reader.
+
+use super::outcome::CalibrationOutcome;
+
+impl CalibrationOutcome {
+    pub(super) fn sentences(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        if self.by_noise_alone && self.unknowns != "cells" {
+            all.push(
+                "intervals are those by noise alone: a mesh that is not refined has an error that they do not have"
+                    .into(),
+            );
+        }
+        if !self.hardly_seen.is_empty() {
+            all.push(format!(
+                "the measurements hardly see {}: intervals reach beyond the factor 2",
+                self.hardly_seen.join("; or of ")
+            ));
+        }
+        match (self.misfit, self.is_unexplained) {
+            (Some(misfit), true) => all.push(format!(
+                "residuals are {misfit:.2} times the stated noise: the model does not explain these measurements, and deviations by noise are \
+                 multiplied by it"
+            )),
+            (Some(misfit), false) => all.push(format!("residuals are {misfit:.2} times the stated noise")),
+            (None, _) => {}
+        }
+        if let (Some(misfit), true) = (self.misfit, self.unknowns == "cells" && self.is_unfinished) {
+            all.push(format!("no weight of the prior reaches the noise: residuals are {misfit:.2} times as large"));
+        } else if self.is_unfinished {
+            all.push("the search has ended before the optimum: neither moduli nor intervals are to be trusted".into());
+        }
+        if let Some(ratio) = self.ratio.filter(|ratio| *ratio > SLOW) {
+            all.push(format!(
+                "answers change from mesh to mesh by {ratio:.2} of the change before: where that is not below 0.5, a finer mesh of the scene is \
+                 needed"
+            ));
+        }
+        all
+    }
+}
+
+/// The ratio of the changes of successive meshes from which on they are too coarse to be extrapolated.
+const SLOW: f64 = 0.55;

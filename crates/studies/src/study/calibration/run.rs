@@ -1,0 +1,269 @@
+//! Calibrates the body of a scene.
+
+use super::meshes::{level, meshes};
+use super::outcome::{CalibratedLoad, CalibrationOutcome, MeshStep};
+use super::readings::{Observed, Readings};
+use super::regions::{Spread, regions};
+use crate::calibration::{Asked, Estimate, FieldEstimate, Laws, Limit, Unknown, Unknowns, estimate, estimate_field};
+use crate::clock::Clock;
+use crate::error::{Error, ErrorKind, Result};
+use crate::material::MaterialMap;
+use crate::mesh::Mesh;
+use crate::named::unknown;
+use crate::study::body::applied_cases;
+use crate::study::checkpoint::Controls;
+use crate::study::progress::{Event, Progress};
+use crate::study::scene::{CalibrationRecipe, Scene};
+
+/// Residuals that are as large by chance with a smaller probability are more than noise.
+const UNLIKELY: f64 = 0.01;
+/// What a field has for the error of meshes: one refinement, whose difference is extrapolated.
+const OF_FIELD: usize = 1;
+
+/// Finds the moduli of the body of a scene from its measurements, as its `[calibrate]` says.
+///
+/// # Errors
+/// The scene has no measurements or wrong ones, a place is outside of the body, or a load has no equilibrium.
+pub fn calibrate(scene: &Scene, progress: &mut Progress) -> Result<CalibrationOutcome> {
+    calibrate_with(scene, None, &Readings::new(), &Controls::default(), progress)
+}
+
+/// Calibrates as [`calibrate`] does, with another mesh than that of the scene and measurements that the scene does not name.
+///
+/// # Errors
+/// Those of [`calibrate`].
+pub fn calibrate_with(
+    scene: &Scene,
+    mesh: Option<Mesh>,
+    readings: &Readings,
+    controls: &Controls,
+    progress: &mut Progress,
+) -> Result<CalibrationOutcome> {
+    let start = Clock::start();
+    let usual = CalibrationRecipe {
+        asked: Asked::Young,
+        known: Vec::new(),
+        loads: None,
+        prior: Default::default(),
+        refinements: None,
+    };
+    let recipe = scene.calibration().unwrap_or(&usual);
+    let mesh = match mesh {
+        Some(mut mesh) => {
+            scene.choose(&mut mesh);
+            mesh
+        }
+        None => scene.build_mesh()?,
+    };
+    let base = scene.material_of(&mesh)?;
+    base.materials().map_err(|_| {
+        let expected = "isotropic materials, where moduli are found";
+        scene.placed(Error::expected("material", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported))
+    })?;
+    if scene.law().is_some() && recipe.asked == Asked::Cells {
+        let expected = "\"young\" or \"moduli\" of a material with a law";
+        return Err(scene.at("calibrate", Error::expected("unknowns", expected, "\"cells\"")));
+    }
+    let is_known = known_regions(&scene.region_names(&base), recipe).map_err(|e| scene.at("calibrate", e))?;
+    let (_, cases) = applied_cases(scene, &mesh, &base)?;
+    let supports: Vec<_> = cases.into_iter().map(|case| case.support).collect();
+    let observed = Observed::of(scene, &mesh, &supports, readings, recipe.loads.as_deref())?;
+    let (weights, noise) = observed.weights()?;
+    if recipe.asked == Asked::Cells && !noise {
+        let expected = "the noise of all measurements, by which the prior of a field is weighed";
+        return Err(scene.placed(Error::expected("sigma", expected, "none")));
+    }
+    let laws = |mesh: &Mesh, materials: &MaterialMap| {
+        let none = || Error::expected("material.law", "a law", "none");
+        scene.laws(mesh, materials)?.ok_or_else(none)
+    };
+    let laws: Option<&Laws> = scene.law().map(|_| &laws as &Laws);
+    let cells = mesh.cell_count();
+    let wanted = recipe.refinements.or((recipe.asked == Asked::Cells).then_some(OF_FIELD));
+    let mut levels = Vec::new();
+    let mut first: Option<Mesh> = None;
+    for mesh in meshes(scene, mesh, wanted)? {
+        levels.push(level(scene, mesh.clone(), (recipe.asked, first.as_ref()), &observed, laws)?);
+        first = first.or(Some(mesh));
+    }
+    let unknowns = Unknowns::new(recipe.asked, &is_known, cells);
+    let limit = Limit { levels, unknowns, observations: observed.observations, weights };
+    let mut goes_on = |steps: usize| {
+        progress(Event::stage("calibrate", steps, steps + 1));
+        !controls.cancelled()
+    };
+    let mut outcome = match recipe.asked {
+        Asked::Cells => {
+            let found = estimate_field(&limit, recipe.prior, &mut goes_on)?;
+            of_field(&limit, &base, found)
+        }
+        Asked::Young | Asked::Moduli => {
+            let found = estimate(&limit, noise, &mut goes_on)?;
+            of_regions(&limit, &base, (&scene.region_names(&base), &is_known), noise, found)
+        }
+    };
+    outcome.scene = scene.title().into();
+    outcome.unknowns = recipe.asked.name().into();
+    outcome.seconds = start.seconds();
+    outcome.notes = outcome.sentences();
+    Ok(outcome)
+}
+
+/// Whether each region keeps its moduli.
+fn known_regions(names: &[String], recipe: &CalibrationRecipe) -> Result<Vec<bool>> {
+    let names = || names.iter().map(String::as_str);
+    for name in &recipe.known {
+        if names().all(|known| known != name) {
+            let expected = format!("entries of [[material]] ({})", names().collect::<Vec<_>>().join(", "));
+            return Err(unknown(expected, names(), name).at_key("known"));
+        }
+    }
+    let is_known: Vec<bool> = names().map(|name| recipe.known.iter().any(|known| known == name)).collect();
+    if is_known.iter().all(|known| *known) {
+        return Err(Error::expected("known", "a region whose moduli are not known", "all of them"));
+    }
+    Ok(is_known)
+}
+
+fn of_field(limit: &Limit, base: &MaterialMap, found: FieldEstimate) -> CalibrationOutcome {
+    let mut young = Vec::new();
+    for (block, cells) in limit.levels[0].mesh.blocks.iter().enumerate() {
+        for cell in 0..cells.cells().len() {
+            let guess = base.isotropic(block, cell).map_or(f64::NAN, |material| material.young());
+            young.push(guess * found.theta[young.len()].exp());
+        }
+    }
+    let mut outcome = empty(limit, &found.residuals, true);
+    outcome.misfit = Some(found.misfit);
+    outcome.chi_square = Some(found.residuals.iter().map(|r| r * r).sum());
+    outcome.degrees_of_freedom = None;
+    outcome.young_by_cell = young;
+    outcome.deviation_by_cell = found.deviations;
+    outcome.prior_weight = Some(found.weight);
+    outcome.steps = found.steps;
+    outcome.is_unfinished = !found.is_within_noise;
+    outcome
+}
+
+fn of_regions(
+    limit: &Limit,
+    base: &MaterialMap,
+    (names, is_known): (&[String], &[bool]),
+    noise: bool,
+    found: Estimate,
+) -> CalibrationOutcome {
+    let freedom = found.residuals.len() - limit.unknowns.count();
+    let square: f64 = found.residuals.iter().map(|r| r * r).sum();
+    // What is left of the error of the meshes is no fault of the model.
+    let probability = noise.then(|| beyond((square - found.left).max(0.0), freedom));
+    let is_unexplained = probability.is_some_and(|probability| probability < UNLIKELY);
+    let excess = if is_unexplained { found.misfit.max(1.0) } else { 1.0 };
+    let region = |region: usize| &names[region];
+    let name = |unknown: &Unknown| match unknown {
+        Unknown::Young(r) => format!("E of {}", region(*r)),
+        Unknown::Poisson(r) => format!("nu of {}", region(*r)),
+        Unknown::Cell(cell) => format!("E of cell {}", cell + 1),
+    };
+    let unknowns: Vec<String> = limit.unknowns.all.iter().map(name).collect();
+    let correlation = |p: usize, q: usize| {
+        let covariance = found.covariance[p][q]?;
+        let sizes = found.covariance[p][p]? * found.covariance[q][q]?;
+        (sizes > 0.0).then(|| (covariance / sizes.sqrt()).clamp(-1.0, 1.0))
+    };
+    let all = 0..unknowns.len();
+    let mut weak: Vec<String> =
+        found.weak.iter().map(|own| own.iter().map(|p| unknowns[*p].clone()).collect::<Vec<_>>().join(", ")).collect();
+    weak.dedup();
+    let mut outcome = empty(limit, &found.residuals, noise);
+    outcome.regions = regions(base, (names, is_known), &limit.unknowns, &Spread { estimate: &found, excess });
+    outcome.correlations = all.clone().map(|p| all.clone().map(|q| correlation(p, q)).collect()).collect();
+    outcome.names = unknowns;
+    outcome.hardly_seen = weak;
+    outcome.chi_square = noise.then_some(square);
+    outcome.degrees_of_freedom = Some(freedom);
+    outcome.misfit = noise.then_some(found.misfit);
+    outcome.probability = probability;
+    outcome.is_unexplained = is_unexplained;
+    outcome.by_noise_alone = found.mesh.is_none();
+    outcome.ratio = found.ratio;
+    for (step, changes) in outcome.meshes.iter_mut().zip(&found.changes) {
+        step.changes = changes.clone();
+    }
+    outcome.steps = found.steps;
+    outcome.is_unfinished = found.fault.is_some();
+    outcome
+}
+
+/// What all calibrations have.
+fn empty(limit: &Limit, residuals: &[f64], noise: bool) -> CalibrationOutcome {
+    let meshes = limit.levels.iter().map(|level| MeshStep {
+        cells: level.mesh.cell_count(),
+        unknowns: level.mesh.points.len(),
+        changes: Vec::new(),
+    });
+    CalibrationOutcome {
+        scene: String::new(),
+        unknowns: String::new(),
+        regions: Vec::new(),
+        names: Vec::new(),
+        correlations: Vec::new(),
+        hardly_seen: Vec::new(),
+        loads: loads(limit, residuals, noise),
+        measurements: residuals.len(),
+        chi_square: None,
+        degrees_of_freedom: None,
+        misfit: None,
+        probability: None,
+        is_unexplained: false,
+        by_noise_alone: true,
+        ratio: None,
+        meshes: meshes.collect(),
+        young_by_cell: Vec::new(),
+        deviation_by_cell: Vec::new(),
+        prior_weight: None,
+        steps: 0,
+        is_unfinished: false,
+        seconds: 0.0,
+        notes: Vec::new(),
+    }
+}
+
+fn loads(limit: &Limit, residuals: &[f64], noise: bool) -> Vec<CalibratedLoad> {
+    let mut all = Vec::new();
+    for (index, load) in limit.levels[0].loads.iter().enumerate() {
+        for force in [false, true] {
+            let own: Vec<usize> = (0..residuals.len())
+                .filter(|&i| limit.observations[i].load == index && limit.observations[i].quantity.is_force() == force)
+                .collect();
+            if own.is_empty() {
+                continue;
+            }
+            let rms =
+                |of: &dyn Fn(usize) -> f64| (own.iter().map(|&i| of(i).powi(2)).sum::<f64>() / own.len() as f64).sqrt();
+            all.push(CalibratedLoad {
+                load: load.name.clone(),
+                quantity: if force { "forces" } else { "displacements" }.into(),
+                measurements: own.len(),
+                size: rms(&|i| limit.observations[i].value),
+                residual: rms(&|i| residuals[i] / limit.weights[i]),
+                sigma: noise.then(|| rms(&|i| 1.0 / limit.weights[i])),
+                misfit: noise.then(|| rms(&|i| residuals[i])),
+            });
+        }
+    }
+    all
+}
+
+/// The probability that χ² of so many degrees of freedom is larger (Wilson and Hilferty 1931).
+fn beyond(square: f64, freedom: usize) -> f64 {
+    let k = freedom.max(1) as f64;
+    let share = 2.0 / (9.0 * k);
+    let z = ((square / k).cbrt() - (1.0 - share)) / share.sqrt();
+    // Half of the complementary error function, by Abramowitz and Stegun 1964, 7.1.26, to 1e-7.
+    let x = z.abs() / std::f64::consts::SQRT_2;
+    let t = 1.0 / (1.0 + 0.327_591_1 * x);
+    let series =
+        t * (0.254_829_592 + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
+    let tail = 0.5 * series * (-x * x).exp();
+    if z > 0.0 { tail } else { 1.0 - tail }
+}
