@@ -10,7 +10,8 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 """
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
-from .gradients import Gradient, SpringConstants
+from .adjoint import Statics, StaticsGradient, StaticsSolution
+from .gradients import Gradient, SpringBlock, SpringConstants, SpringValues
 from .material import Material
 from .mesh import Mesh
 from .network import Network, fit, mass, sampled, stiffness, whole
@@ -25,7 +26,12 @@ __all__ = [
     "Mesh",
     "Network",
     "Report",
+    "SpringBlock",
     "SpringConstants",
+    "SpringValues",
+    "Statics",
+    "StaticsGradient",
+    "StaticsSolution",
     "SpringfitError",
     "__version__",
     "compare",

@@ -165,7 +165,7 @@ def test_meshes_are_copied_and_pickled(scenes):
 
 
 def test_constants_and_networks_are_copied():
-    constants = sf.SpringConstants("quad4", MESH.cells[0][1], "modal", higher=0.3, plane="strain")
+    constants = sf.SpringConstants(MESH.cells, "modal", higher=0.3, plane="strain")
     known = constants(MESH.points, 1e4, 0.3)[0]
     for other in (copy.deepcopy(constants), pickle.loads(pickle.dumps(constants))):
         assert np.array_equal(other(MESH.points, 1e4, 0.3)[0], known)
