@@ -11,9 +11,11 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
 from .adjoint import Statics, StaticsGradient, StaticsSolution
+from .factorized import Factorized
 from .gradients import Gradient, SpringBlock, SpringConstants, SpringValues
 from .material import Material
 from .mesh import Mesh
+from .motion import Motion
 from .network import Network, fit, mass, sampled, stiffness, whole
 from .report import Report, run
 from .studies import compare, converge, learning_curve, stability
@@ -21,9 +23,11 @@ from .sweep import sweep
 
 __all__ = [
     "Element",
+    "Factorized",
     "Gradient",
     "Material",
     "Mesh",
+    "Motion",
     "Network",
     "Report",
     "SpringBlock",

@@ -382,7 +382,8 @@ class SpringConstants:
         points, *moduli = (torch.as_tensor(value, dtype=first.dtype, device=first.device) for value in given)
         moduli = [value.expand(self._count) if value.ndim == 0 else value for value in moduli]
         self._check(moduli)
-        return SpringValues(*of_torch("constants", self._products)(points, *lame(*moduli, self.dimension, self.plane)))
+        lam, mu = lame(moduli[0], moduli[1], moduli[2], self.dimension, self.plane)
+        return SpringValues(*of_torch("constants", self._products)(points, lam, mu))
 
     def jax(self, points: Any, young: Any, poisson: Any, thickness: Any = 1.0) -> SpringValues:
         """As the call, on arrays of JAX: ``jax.jit``, ``jax.grad``, ``jax.jvp``, ``jax.jacfwd``, ``jax.jacrev`` and ``jax.hessian`` pass through, and
@@ -396,7 +397,8 @@ class SpringConstants:
         moduli = [jnp.asarray(value, float) for value in (young, poisson, thickness)]
         self._check(moduli)
         moduli = [jnp.broadcast_to(value, (self._count,)) for value in moduli]
-        return SpringValues(*self._functions[kind](points, *lame(*moduli, self.dimension, self.plane)))
+        lam, mu = lame(moduli[0], moduli[1], moduli[2], self.dimension, self.plane)
+        return SpringValues(*self._functions[kind](points, lam, mu))
 
     @cached_property
     def _functions(self) -> "dict[Any, Any]":

@@ -1,30 +1,32 @@
 //! The statics of springs whose numbers are arrays, with derivatives: one factor serves the solution and its gradient.
 
 use crate::arrays::{list, matrix, places, vectors};
+use crate::body::{Body, GivenBody};
+use crate::equilibrium::{self, Loads};
 use crate::error::{invalid, raised};
+use crate::factorized::{Factorized, loose};
 use crate::gradient::CellConstants;
-use crate::progress::{alone, apart};
+use crate::network::Network;
+use crate::progress::alone;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
-use springfit::model::{Elastic, Entries, LengthSpring, MeasureSpring, Network, NetworkNumbers, Support, displaced};
-use springfit::solve::{Ending, Factor, Newton, System};
+use springfit::mesh::Mesh;
+use springfit::model::{self, CompressedRows, Elastic, Entries, LengthSpring, MeasureSpring, NetworkNumbers, Support};
+use springfit::solve::System;
 use springfit::springs::Measure;
 use std::sync::Arc;
-
-/// The share of the forces that a solution may leave; springs that leave more have a motion without stiffness.
-const LEFT: f64 = 1e-3;
 
 /// A list of numbers of NumPy.
 type Numbers<'py> = PyReadonlyArray1<'py, f64>;
 /// The constants and rest lengths of springs between two points, and the constants and rest measures of the others.
 type Given<'py> = (Numbers<'py>, Numbers<'py>, Numbers<'py>, Numbers<'py>);
-/// As [`Given`], returned, with a vector for each point.
-type Found<'py> = (
-    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>),
-    Bound<'py, PyArray2<f64>>,
-);
+/// The numbers of [`Given`], returned.
+type Found<'py> =
+    (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// These, and a vector for each point.
+type FoundWithPoints<'py> = (Found<'py>, Bound<'py, PyArray2<f64>>);
 
 /// What springs measure, on points that may move.
 #[pyclass(frozen, module = "springfit._core")]
@@ -38,14 +40,10 @@ pub struct SpringBody {
 
 /// Springs at an equilibrium, or at rest, with the factor of their tangent there under some supports.
 #[pyclass(frozen, module = "springfit._core")]
-pub struct Tangent(Arc<At>);
-
-struct At {
-    network: Network,
-    x: Vec<f64>,
-    tangent: Entries,
-    system: System,
-    factor: Factor,
+pub struct Tangent {
+    at: Factorized,
+    /// The positions, `[points × dimension]`, m.
+    x: Arc<Vec<f64>>,
 }
 
 #[pymethods]
@@ -83,6 +81,17 @@ impl SpringBody {
         Ok(SpringBody { points, dimension, pairs, others })
     }
 
+    /// Those of a network, whose springs on other measures have no law of force.
+    #[staticmethod]
+    fn of_network(py: Python, network: &Network) -> PyResult<SpringBody> {
+        let own = network.body.network();
+        own.check_sensitivities(false).map_err(|error| raised(py, error))?;
+        let [points, dimension] = network.body.shape();
+        let pairs = own.lengths.iter().map(|spring| spring.points).collect();
+        let others = own.others.iter().map(|s| (s.kind, s.points.to_vec(), s.measure.clone())).collect();
+        Ok(SpringBody { points, dimension, pairs, others })
+    }
+
     /// The springs at rest, whose tangent is that of small displacements.
     fn at_rest(
         &self,
@@ -92,12 +101,19 @@ impl SpringBody {
         held: PyReadonlyArray2<bool>,
     ) -> PyResult<Tangent> {
         let x = self.vectors(py, "points", &points)?;
-        let (network, support) = (self.network(py, &numbers)?, self.support(py, &held, None)?);
-        let at = alone(py, move || {
-            let tangent = network.stiffness(&x);
-            At::new(network, x, tangent, &support)
-        })?;
-        Ok(Tangent(Arc::new(at)))
+        let support = self.support(py, &held, None)?;
+        let body = self.body(x.clone(), self.network(py, &numbers)?);
+        alone(py, move || {
+            if !body.is_held(&support) {
+                return Err(Error::expected(
+                    "fix",
+                    "supports that hold every connected part",
+                    "one that can move as it is",
+                ));
+            }
+            let tangent = body.network().stiffness(&x);
+            Tangent::new(body, x, tangent, support)
+        })
     }
 
     /// The equilibrium at any deformation under `forces` and `prescribed` displacements of what is held, by Newton's method from rest; the
@@ -117,39 +133,30 @@ impl SpringBody {
         let forces = self.vectors(py, "forces", &forces)?;
         let prescribed = self.vectors(py, "displacement", &prescribed)?;
         let guess = guess.map(|guess| self.vectors(py, "guess", &guess)).transpose()?;
-        let network = self.network(py, &numbers)?;
         let support = self.support(py, &held, Some(prescribed))?;
-        let (u, is_rounded, at) = alone(py, move || {
-            let newton = Newton::default();
-            let near = match guess {
-                Some(guess) => newton.settle(&network, &x, &support, &forces, &guess, None)?,
-                None => None,
-            };
-            let (u, is_rounded) = match near {
-                Some(u) => (u, false),
-                None => {
-                    let found = newton.solve(&network, &x, &support, &forces)?;
-                    if found.ending != Ending::Converged {
-                        let reached = format!("loads with an equilibrium under {:.1} % of them", 100.0 * found.load);
-                        let expected = "loads under which the springs have an equilibrium";
-                        return Err(Error::expected("forces", expected, reached));
-                    }
-                    (found.displacement, found.is_rounded)
-                }
-            };
-            let x = displaced(&x, &u);
+        let body = self.body(x.clone(), self.network(py, &numbers)?);
+        let (u, is_rounded, tangent) = alone(py, move || {
+            let start = guess.map(|guess| model::displaced(&x, &guess));
+            let loads = Loads { forces, support, start };
+            let found = equilibrium::find(&body, &loads)?;
+            let u = found.x.iter().zip(&x).map(|(now, rest)| now - rest).collect();
             let undefined = || Error::expected("points", "positions where the springs have a tangent", "others");
-            let tangent = network.respond(&x).ok_or_else(undefined)?.tangent;
-            let held = Support { prescribed: support.prescribed.iter().map(|p| p.map(|_| 0.0)).collect() };
-            Ok((u, is_rounded, At::new(network, x, tangent, &held)?))
+            let tangent = body.network().respond(&found.x).ok_or_else(undefined)?.tangent;
+            let support = Support { prescribed: loads.support.prescribed.iter().map(|p| p.map(|_| 0.0)).collect() };
+            Ok((u, found.is_rounded, Tangent::new(body, found.x, tangent, support)?))
         })?;
-        Ok((matrix(py, u, self.dimension), is_rounded, Tangent(Arc::new(at))))
+        Ok((matrix(py, u, self.dimension), is_rounded, tangent))
     }
 }
 
 impl SpringBody {
     fn vectors(&self, py: Python, key: &str, given: &PyReadonlyArray2<f64>) -> PyResult<Vec<f64>> {
         vectors(py, key, given, [self.points, self.dimension])
+    }
+
+    fn body(&self, points: Vec<f64>, network: model::Network) -> Body {
+        let mesh = Arc::new(Mesh::of_cells(self.dimension, points, Vec::new()));
+        Body::Given(Arc::new(GivenBody { mesh, network, masses: None }))
     }
 
     fn support(&self, py: Python, held: &PyReadonlyArray2<bool>, u: Option<Vec<f64>>) -> PyResult<Support> {
@@ -162,7 +169,7 @@ impl SpringBody {
         Ok(Support { prescribed })
     }
 
-    fn network(&self, py: Python, (constants, rest, contents, rests): &Given) -> PyResult<Network> {
+    fn network(&self, py: Python, (constants, rest, contents, rests): &Given) -> PyResult<model::Network> {
         let read = |key: &str, given: &Numbers, count: usize| {
             let values: Vec<f64> = given.as_array().iter().copied().collect();
             if values.len() != count {
@@ -179,7 +186,7 @@ impl SpringBody {
             (read("contents", contents, self.others.len())?, read("rest_contents", rests, self.others.len())?);
         let lengths = self.pairs.iter().zip(constants.into_iter().zip(rest));
         let others = self.others.iter().zip(contents.into_iter().zip(rests));
-        Ok(Network {
+        Ok(model::Network {
             dimension: self.dimension,
             lengths: lengths.map(|(&points, (constant, rest))| LengthSpring { points, constant, rest }).collect(),
             others: others
@@ -196,32 +203,24 @@ impl SpringBody {
     }
 }
 
-impl At {
-    fn new(network: Network, x: Vec<f64>, tangent: Entries, support: &Support) -> Result<At> {
-        let system = System::new(&tangent, support)?.placed(&x, network.dimension);
-        let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
-        Ok(At { network, x, tangent, system, factor })
-    }
-
-    /// `K v`.
-    fn product(&self, v: &[f64]) -> Vec<f64> {
-        let mut image = vec![0.0; v.len()];
-        for entry in &self.tangent {
-            image[entry.row] += entry.val * v[entry.col];
-            if entry.row != entry.col {
-                image[entry.col] += entry.val * v[entry.row];
-            }
+impl Tangent {
+    fn new(body: Body, x: Vec<f64>, tangent: Entries, support: Support) -> Result<Tangent> {
+        if tangent.iter().any(|entry| !entry.val.is_finite()) {
+            return Err(loose("a spring without a stiffness"));
         }
-        image
+        let system = System::new(&tangent, &support)?.placed(&x, body.dimension());
+        let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
+        let stiffness = Arc::new(CompressedRows::of_lower(x.len(), &tangent));
+        let (support, system, factor) = (Arc::new(support), Arc::new(system), Arc::new(factor));
+        Ok(Tangent { at: Factorized { body, stiffness, support, system, factor }, x: Arc::new(x) })
     }
 
-    fn numbers<'py>(&self, py: Python<'py>, found: NetworkNumbers) -> Found<'py> {
-        let NetworkNumbers { mut constants, mut rests, mut points } = found;
-        let (contents, of_contents) =
-            (constants.split_off(self.network.lengths.len()), rests.split_off(self.network.lengths.len()));
-        points.resize(self.x.len(), 0.0);
-        let numbers = (list(py, constants), list(py, rests), list(py, contents), list(py, of_contents));
-        (numbers, matrix(py, points, self.network.dimension))
+    fn vectors(&self, py: Python, key: &str, given: &PyReadonlyArray2<f64>) -> PyResult<Vec<f64>> {
+        vectors(py, key, given, self.at.body.shape())
+    }
+
+    fn dimension(&self) -> usize {
+        self.at.body.dimension()
     }
 }
 
@@ -230,7 +229,7 @@ impl Tangent {
     /// Whether the tangent is positive definite under its supports.
     #[getter]
     fn is_stable(&self) -> bool {
-        self.0.factor.is_positive_definite()
+        self.at.factor.is_positive_definite()
     }
 
     /// The displacements under `forces` with those of what is held `prescribed`; and the share of the forces that is left.
@@ -240,25 +239,18 @@ impl Tangent {
         forces: PyReadonlyArray2<f64>,
         prescribed: PyReadonlyArray2<f64>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-        let mut forces = self.vectors(py, "forces", &forces)?;
+        let forces = self.vectors(py, "forces", &forces)?;
         let prescribed = self.vectors(py, "displacement", &prescribed)?;
-        let at = self.0.clone();
-        let (u, left) = apart(py, || {
-            if prescribed.iter().any(|u| *u != 0.0) {
-                forces.iter_mut().zip(at.product(&prescribed)).for_each(|(f, pull)| *f -= pull);
-            }
-            let (mut u, left) = at.system.solve(&at.factor, &forces);
-            u.iter_mut().zip(&prescribed).for_each(|(u, given)| *u += given);
-            if left > LEFT { Err(loose("a motion without stiffness, on which forces act")) } else { Ok((u, left)) }
-        })
-        .map_err(|error| raised(py, error))?;
-        Ok((matrix(py, u, self.0.network.dimension), left))
+        let at = self.at.clone();
+        let found = alone(py, move || at.displacements(&[forces], &[prescribed]))?;
+        let (u, left) = found.into_iter().next().unwrap_or_default();
+        Ok((matrix(py, u, self.dimension()), left))
     }
 
     /// `K v`.
     fn product<'py>(&self, py: Python<'py>, v: PyReadonlyArray2<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let v = self.vectors(py, "v", &v)?;
-        Ok(matrix(py, apart(py, || self.0.product(&v)), self.0.network.dimension))
+        Ok(matrix(py, self.at.stiffness.apply(&v), self.dimension()))
     }
 
     /// The gradient of `aᵀ K u` in the numbers of the springs and in the positions; without u that of `aᵀ F`, F the slopes of the energy.
@@ -268,18 +260,24 @@ impl Tangent {
         py: Python<'py>,
         a: PyReadonlyArray2<f64>,
         u: Option<PyReadonlyArray2<f64>>,
-    ) -> PyResult<Found<'py>> {
+    ) -> PyResult<FoundWithPoints<'py>> {
         let a = self.vectors(py, "a", &a)?;
         let u = u.map(|u| self.vectors(py, "u", &u)).transpose()?;
-        let at = self.0.clone();
+        let (body, x) = (self.at.body.clone(), self.x.clone());
         let found = alone(py, move || {
-            at.network.check_sensitivities(u.is_some())?;
+            let network = body.network();
+            network.check_sensitivities(u.is_some())?;
             Ok(match &u {
-                Some(u) => at.network.stiffness_sensitivities(&at.x, &a, u),
-                None => at.network.force_sensitivities(&at.x, &a),
+                Some(u) => network.stiffness_sensitivities(&x, &a, u),
+                None => network.force_sensitivities(&x, &a),
             })
         })?;
-        Ok(self.0.numbers(py, found))
+        let NetworkNumbers { mut constants, mut rests, mut points } = found;
+        let lengths = self.at.body.network().lengths.len();
+        let (contents, of_contents) = (constants.split_off(lengths), rests.split_off(lengths));
+        points.resize(self.x.len(), 0.0);
+        let numbers = (list(py, constants), list(py, rests), list(py, contents), list(py, of_contents));
+        Ok((numbers, matrix(py, points, self.dimension())))
     }
 
     /// The change of `K u`, or without u of F, with changes of the numbers of the springs and of the positions.
@@ -293,33 +291,44 @@ impl Tangent {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let points = self.vectors(py, "points", &points)?;
         let u = u.map(|u| self.vectors(py, "u", &u)).transpose()?;
+        let network = self.at.body.network();
+        let counts = [network.lengths.len(), network.others.len()];
+        for (key, given, count) in [
+            ("constants", &numbers.0, counts[0]),
+            ("rest", &numbers.1, counts[0]),
+            ("contents", &numbers.2, counts[1]),
+            ("rest_contents", &numbers.3, counts[1]),
+        ] {
+            if given.len() != count {
+                return Err(invalid(py, key, &format!("an array of shape ({count},)"), given.len()));
+            }
+        }
         let joined = |a: &Numbers, b: &Numbers| a.as_array().iter().chain(b.as_array()).copied().collect::<Vec<f64>>();
         let (constants, rests) = (joined(&numbers.0, &numbers.2), joined(&numbers.1, &numbers.3));
-        let count = self.0.network.len();
-        if constants.len() != count || rests.len() != count {
-            return Err(invalid(py, "numbers", &format!("those of {count} springs"), constants.len()));
-        }
         let change = NetworkNumbers { constants, rests, points };
-        let at = self.0.clone();
+        let (body, x) = (self.at.body.clone(), self.x.clone());
         let found = alone(py, move || {
-            at.network.check_sensitivities(u.is_some())?;
+            let network = body.network();
+            network.check_sensitivities(u.is_some())?;
             Ok(match &u {
-                Some(u) => at.network.stiffness_change(&at.x, u, &change),
-                None => at.network.force_change(&at.x, &change),
+                Some(u) => network.stiffness_change(&x, u, &change),
+                None => network.force_change(&x, &change),
             })
         })?;
-        Ok(matrix(py, found, self.0.network.dimension))
+        Ok(matrix(py, found, self.dimension()))
     }
 }
 
-impl Tangent {
-    fn vectors(&self, py: Python, key: &str, given: &PyReadonlyArray2<f64>) -> PyResult<Vec<f64>> {
-        let d = self.0.network.dimension;
-        vectors(py, key, given, [self.0.x.len() / d, d])
-    }
-}
-
-/// The error of supports that do not hold the springs.
-fn loose(found: &str) -> Error {
-    Error::expected("fix", "supports that hold the network, and springs that resist every motion", found)
+/// The constants and rest measures of the springs of a network, in the order of [`SpringBody::of_network`].
+#[pyfunction]
+pub fn spring_numbers<'py>(py: Python<'py>, network: &Network) -> (Bound<'py, PyArray2<i64>>, Found<'py>) {
+    let own = network.body.network();
+    let pairs = matrix(py, own.lengths.iter().flat_map(|s| s.points.map(|p| p as i64)).collect(), 2);
+    let numbers = (
+        list(py, own.lengths.iter().map(|s| s.constant).collect()),
+        list(py, own.lengths.iter().map(|s| s.rest).collect()),
+        list(py, own.others.iter().map(|s| s.constant).collect()),
+        list(py, own.others.iter().map(|s| s.rest).collect()),
+    );
+    (pairs, numbers)
 }

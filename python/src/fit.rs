@@ -1,19 +1,19 @@
 //! `fit` and the finite elements of the same body.
 
 use crate::arguments::{self, found, number, text};
-use crate::arrays::list;
 use crate::entry::fit_entry;
 use crate::error::invalid;
 use crate::functions::{Functions, Given};
 use crate::mesh::Mesh;
-use crate::network::{Network, Triplets, triplets};
+use crate::network::Network;
 use crate::progress::{self, alone};
+use crate::sparse::{self, Rows};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::error::{Error, Result};
 use springfit::material::{CellMap, Material, MaterialMap, Plane};
-use springfit::model::{self, ConsistentMasses, Lumping, Support, lumped_masses};
+use springfit::model::{self, BlockStiffness, CompressedRows, ConsistentMasses, Lumping, Support, lumped_masses};
 use springfit::study::{
     BodyConstants, Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, assumed, fit_without_errors,
     learning_curve as learn, point_masses,
@@ -159,34 +159,33 @@ pub fn support(py: Python, mesh: &Mesh, held: &PyReadonlyArray2<bool>) -> PyResu
     Ok(Support { prescribed: held.as_array().iter().map(|held| held.then_some(0.0)).collect() })
 }
 
-/// The stiffness of the finite elements, in triplets of both triangles.
+/// The stiffness of the finite elements, row by row.
 #[pyfunction]
-pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny>) -> PyResult<Triplets<'py>> {
+pub fn finite_elements<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny>) -> PyResult<Rows<'py>> {
     let (constants, mesh) = (Constants::given(material)?, mesh.mesh.clone());
-    let entries = alone(py, move || Ok(model::finite_elements(&mesh, constants.of(&mesh)?.moduli())))?;
-    Ok(triplets(py, &entries))
+    let found = alone(py, move || {
+        let moduli = constants.of(&mesh)?.moduli();
+        match BlockStiffness::is_of(&mesh) {
+            true => Ok(BlockStiffness::of_body(&mesh, moduli, 2, 0)?.rows()),
+            false => Ok(CompressedRows::of_lower(mesh.points.len(), &model::finite_elements(&mesh, moduli))),
+        }
+    })?;
+    Ok(sparse::rows(py, found))
 }
 
-/// The mass matrix `(1 − s) M_c + s diag(m)` of the shape functions and of the share s of lumped masses, in triplets that are to be added.
+/// The mass matrix `(1 − s) M_c + s diag(m)` of the shape functions and of the share s of lumped masses, row by row.
 #[pyfunction]
-pub fn masses<'py>(
-    py: Python<'py>,
-    mesh: &Mesh,
-    material: &Bound<PyAny>,
-    share: &Bound<PyAny>,
-) -> PyResult<Triplets<'py>> {
+pub fn masses<'py>(py: Python<'py>, mesh: &Mesh, material: &Bound<PyAny>, share: &Bound<PyAny>) -> PyResult<Rows<'py>> {
     let (constants, share) = (Constants::given(material)?, number("share", share)?);
     let (mesh, d) = (mesh.mesh.clone(), mesh.mesh.dimension);
-    let matrix = alone(py, move || {
+    let found = alone(py, move || {
         let density = constants.density.ok_or_else(|| Error::expected("density", "kg/m³", "none"))?;
         let density = springfit::range::positive("density", density, "kg/m³")?;
         let thickness = MaterialMap::from(constants.of(&mesh)?).thicknesses();
         let lumped = lumped_masses(&mesh, density, thickness.clone(), Lumping::Hrz);
-        ConsistentMasses::of_mesh(&mesh, density, thickness)?.blended(&lumped, share)
+        let matrix = ConsistentMasses::of_mesh(&mesh, density, thickness)?.blended(&lumped, share)?;
+        let entries: Vec<(usize, usize, f64)> = matrix.entries().collect();
+        Ok(sparse::along_axes(&CompressedRows::of(mesh.point_count(), entries.iter().copied()), d))
     })?;
-    let dofs = |p: usize| (0..d).map(move |k| (p * d + k) as i64);
-    let rows = matrix.entries().flat_map(|(a, ..)| dofs(a)).collect();
-    let columns = matrix.entries().flat_map(|(_, b, _)| dofs(b)).collect();
-    let values = matrix.entries().flat_map(|(.., value)| std::iter::repeat_n(value, d)).collect();
-    Ok((list(py, rows), list(py, columns), list(py, values)))
+    Ok(sparse::rows(py, found))
 }

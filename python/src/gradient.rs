@@ -36,7 +36,7 @@ type Numbers<'py> = PyReadonlyArray1<'py, f64>;
 type OfSprings<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
 /// Numbers of the points, and of λ and μ of each cell.
 type OfInputs<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
-/// As [`OfInputs`], given.
+/// The inputs of [`OfInputs`], given.
 type GivenInputs<'py> = (PyReadonlyArray2<'py, f64>, Numbers<'py>, Numbers<'py>);
 
 /// How the constants follow from a cell.
@@ -263,7 +263,15 @@ impl CellRule {
         let method = self.recipe.kind().cell_method().ok_or_else(not_of_cells)?;
         match (&self.recipe, materials) {
             (Recipe::Exact(recipe), _) => {
-                fit_exact(&self.element, points, cells, each(materials), &recipe.resolve(None)?, &mut |_| {})
+                let fit = recipe.resolve(None)?;
+                let found = fit_exact(&self.element, points, cells, each(materials), &fit, &mut |_| {})?;
+                let has_law = matches!(found.force, Force::Exact { content: Some(_) });
+                if has_law || found.springs.len() != self.springs.len() {
+                    let expected = "an energy whose springs are linear ones on lengths and contents: \"stable-neo-hookean\" without \"large\"";
+                    let other = format!("\"{}\"", fit.energy.name());
+                    return Err(Error::expected("energy", expected, other).of_kind(ErrorKind::Unsupported));
+                }
+                Ok(found)
             }
             (Recipe::Stiffness(fit), _) => {
                 let hooke: Vec<Hooke> = materials.iter().map(|material| material.moduli().into()).collect();

@@ -89,6 +89,21 @@ pub fn restored_mesh(
     Ok(Mesh { mesh: Arc::new(mesh), elements: elements_of(&blocks) })
 }
 
+impl Mesh {
+    /// A mesh whose elements are these, or shipped.
+    ///
+    /// # Errors
+    /// Another element.
+    pub fn of(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
+        let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
+            Some(own) => Ok(own.clone()),
+            None => Element::named(&block.element.name),
+        };
+        let elements = mesh.blocks.iter().map(element).collect::<Result<_>>()?;
+        Ok(Mesh { mesh, elements })
+    }
+}
+
 #[pymethods]
 impl Mesh {
     /// `points` in metres, `[points, dimension]`; the nodes of cells are places in them, in the order of the element.
@@ -130,12 +145,7 @@ impl Mesh {
             source.space = space.or(source.space);
             mesh::Mesh::resolve_within(&source, &asked, scale, Some(gate)).map_err(|error| error.in_file(&path))
         })?;
-        let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
-            Some(own) => Ok(own.clone()),
-            None => Element::named(&block.element.name),
-        };
-        let elements = mesh.blocks.iter().map(element).collect::<Result<_>>().map_err(|error| raised(py, error))?;
-        Ok(Mesh { mesh: Arc::new(mesh), elements })
+        Mesh::of(Arc::new(mesh), &own).map_err(|error| raised(py, error))
     }
 
     /// What the file says besides the body, one sentence each.

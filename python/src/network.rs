@@ -2,58 +2,72 @@
 
 use crate::arguments::{numbers, optional, text};
 use crate::arrays::{list, matrix, vectors};
+use crate::body::{Body, GivenBody, undefined};
+use crate::element::Element;
 use crate::ends::Ends;
+use crate::equilibrium::{self, Found, Loads};
 use crate::error::{invalid, raised};
+use crate::factorized::Factorized;
+use crate::mesh::Mesh;
+use crate::motion::{self, MotionArrays, MotionKeys};
 use crate::progress::{alone, apart};
 use crate::sampled;
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use crate::sparse::{self, Rows};
+use crate::springs::{self, Changed, GivenGroup, GivenLengths};
+use numpy::ndarray::Array3;
+use numpy::{
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::element::SpringKind;
+use rayon::prelude::*;
 use springfit::error::{Error, Result};
 use springfit::export::{target_named, with_warnings, write_files};
 use springfit::fit::{CellFits, Spread};
-use springfit::mesh::Mesh;
-use springfit::model::{self, Elastic, Entries, MeasureSpring, Support};
-use springfit::report::{self, NetworkFile, NetworkFormat};
-use springfit::solve::System;
-use springfit::springs::Measure;
-use springfit::study::{FitOutcome, Outcome, matrix_errors};
-use std::collections::BTreeMap;
+use springfit::mesh;
+use springfit::model::{Elastic, Support};
+use springfit::report::{self, NetworkFormat, read_network};
+use springfit::study::{Outcome, matrix_errors};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The share of the forces that a solution may leave; a network that leaves more has a motion without stiffness.
-const LEFT: f64 = 1e-3;
+/// From so many evaluations on it pays to sort the springs for them.
+const MANY: usize = 200;
 
-/// The springs of a fit on the points of its mesh.
+/// Springs on points.
 #[pyclass(frozen, module = "springfit._core")]
 pub struct Network {
-    outcome: Arc<Outcome>,
+    pub body: Body,
     /// The springs of the cells, until the errors of their matrices have been asked for.
     cells: Mutex<Vec<CellFits>>,
     /// Whether its laws of force call functions of Python.
-    has_functions: bool,
+    pub has_functions: bool,
 }
 
 /// The outcome of a sampled fit as JSON, the errors of its shapes and the ends of its starts by columns.
 type Sampled<'py> = (String, Bound<'py, PyDict>, Bound<'py, PyDict>);
 
-/// Rows, columns and values of a matrix.
-pub type Triplets<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
+/// A network, the mesh of its cells if there is one, and its name, its status and its notes.
+type Read = (Network, Option<Mesh>, (Option<String>, Option<String>, Vec<String>));
 
 impl Network {
     /// That of an outcome of one fit.
     pub fn new(outcome: Outcome, cells: Vec<CellFits>, has_functions: bool) -> Network {
-        Network { outcome: Arc::new(outcome), cells: Mutex::new(cells), has_functions }
+        Network { body: Body::Fitted(Arc::new(outcome)), cells: Mutex::new(cells), has_functions }
+    }
+
+    fn given(given: GivenBody, has_functions: bool) -> Network {
+        Network { body: Body::Given(Arc::new(given)), cells: Mutex::default(), has_functions }
     }
 
     /// Computes the errors of the matrices, if it has not been done.
     fn measure(&self) -> Result<()> {
+        let Some((outcome, fit)) = self.body.fit() else { return Ok(()) };
         let mut cells = self.cells.lock().unwrap_or_else(PoisonError::into_inner);
-        if self.fit().errors.get().is_none() {
-            let errors = matrix_errors(self.mesh(), &self.outcome.material, &cells)?;
-            self.fit().errors.get_or_init(|| errors);
+        if fit.errors.get().is_none() {
+            let errors = matrix_errors(&outcome.mesh, &outcome.material, &cells)?;
+            fit.errors.get_or_init(|| errors);
             *cells = Vec::new();
         }
         Ok(())
@@ -67,134 +81,267 @@ impl Network {
         result.map_err(|error| raised(py, error))
     }
 
-    /// The tangent stiffness at positions `x`; at rest if there are none.
-    fn tangent(&self, py: Python, x: Option<Vec<f64>>) -> PyResult<Entries> {
-        let outcome = self.outcome.clone();
-        let evaluate = move || {
-            let network = &outcome.fits[0].network;
-            match x {
-                None => Ok(network.stiffness(&outcome.mesh.points)),
-                Some(x) => network.respond(&x).map(|found| found.tangent).ok_or_else(|| undefined("a tangent")),
-            }
+    /// As [`Network::evaluated`] where functions of Python are called, otherwise on a thread of its own, which a signal ends.
+    pub fn worked<T: Send + 'static>(
+        &self,
+        py: Python,
+        work: impl FnOnce(&Body) -> Result<T> + Send + 'static,
+    ) -> PyResult<T> {
+        let body = self.body.clone();
+        if self.has_functions { self.evaluated(py, move || work(&body)) } else { alone(py, move || work(&body)) }
+    }
+
+    /// Evaluates each of several shapes, `[shapes, points, dimension]`; those at rest if there are none.
+    fn each_shape<T: Send>(
+        &self,
+        py: Python,
+        x: Option<PyReadonlyArray3<f64>>,
+        evaluate: impl Fn(&dyn Elastic, &[f64]) -> Result<T> + Sync,
+    ) -> PyResult<(Option<usize>, Vec<T>)> {
+        let Some(x) = x else {
+            let own = self.evaluated(py, || evaluate(self.body.network(), self.body.points()))?;
+            return Ok((None, vec![own]));
         };
-        if self.has_functions { self.evaluated(py, evaluate) } else { alone(py, evaluate) }
+        let [points, d] = self.body.shape();
+        if x.shape()[1..] != [points, d] {
+            let found = format!("{:?}", &x.shape()[1..]);
+            return Err(invalid(py, "x", &format!("an array of shape ({points}, {d}), or many of this shape"), found));
+        }
+        let (count, size) = (x.shape()[0], points * d);
+        let all: Vec<f64> = x.as_array().iter().copied().collect();
+        if let Some(place) = all.iter().position(|value| !value.is_finite()) {
+            let (shape, point) = (place / size, place % size / d);
+            let key = if count == 1 { format!("x[{point}]") } else { format!("x[{shape}, {point}]") };
+            return Err(invalid(py, &key, "finite numbers", all[place]));
+        }
+        let found = self.evaluated(py, || {
+            let network = self.body.network();
+            let shapes = all.par_chunks(size.max(1));
+            match self.has_functions {
+                // Its functions end the call of this thread.
+                true => all.chunks(size.max(1)).map(|x| evaluate(network, x)).collect(),
+                false if count >= MANY => {
+                    let prepared = network.prepared();
+                    shapes.map(|x| evaluate(&prepared, x)).collect::<Result<Vec<T>>>()
+                }
+                false if count > 1 => shapes.map(|x| evaluate(network, x)).collect(),
+                false => all.chunks(size.max(1)).map(|x| evaluate(network, x)).collect(),
+            }
+        })?;
+        Ok((Some(count), found))
     }
 
-    fn mesh(&self) -> &Mesh {
-        &self.outcome.mesh
-    }
-
-    fn fit(&self) -> &FitOutcome {
-        &self.outcome.fits[0]
-    }
-
-    fn network(&self) -> &model::Network {
-        &self.fit().network
-    }
-
-    /// The positions that are given, or those at rest.
-    fn positions(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Vec<f64>> {
-        let shape = [self.mesh().point_count(), self.mesh().dimension];
-        x.map_or_else(|| Ok(self.mesh().points.clone()), |x| vectors(py, "x", &x, shape))
+    /// The support of these components at rest, if it holds every piece of the mesh.
+    pub fn support(&self, py: Python, held: &PyReadonlyArray2<bool>) -> PyResult<Support> {
+        let shape = self.body.shape();
+        if held.shape() != shape {
+            return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
+        }
+        Ok(Support { prescribed: held.as_array().iter().map(|held| held.then_some(0.0)).collect() })
     }
 }
 
 #[pymethods]
 impl Network {
-    #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        matrix(py, self.mesh().points.clone(), self.mesh().dimension)
+    /// Springs from arrays; `contents` are groups with all keys, and `mesh` has the cells on the same points.
+    #[staticmethod]
+    #[pyo3(signature = (points, springs, constants, rest, contents, masses=None, mesh=None))]
+    #[expect(clippy::too_many_arguments, reason = "what a network has")]
+    fn of_arrays(
+        py: Python,
+        points: PyReadonlyArray2<f64>,
+        springs: PyReadonlyArray2<i64>,
+        constants: PyReadonlyArray1<f64>,
+        rest: Option<PyReadonlyArray1<f64>>,
+        contents: Vec<GivenGroup>,
+        masses: Option<PyReadonlyArray1<f64>>,
+        mesh: Option<&Mesh>,
+    ) -> PyResult<Network> {
+        let [count, d] = [points.shape()[0], points.shape()[1]];
+        if !(1..=3).contains(&d) {
+            let expected = "an array of shape (points, 1), (points, 2) or (points, 3)";
+            return Err(invalid(py, "points", expected, format!("one of shape ({count}, {d})")));
+        }
+        let places = vectors(py, "points", &points, [count, d])?;
+        let mesh = match mesh {
+            Some(mesh) if mesh.mesh.dimension != d || mesh.mesh.points != places => {
+                return Err(invalid(py, "points", "those of the mesh", "others"));
+            }
+            Some(mesh) => mesh.mesh.clone(),
+            None => Arc::new(mesh::Mesh::of_cells(d, places, Vec::new())),
+        };
+        let elements: Vec<_> = mesh.blocks.iter().map(|block| block.element.clone()).collect();
+        let lengths = GivenLengths { springs: &springs, constants: &constants, rest: rest.as_ref() };
+        let network = springs::network(py, (&mesh.points, d), &lengths, &contents, &elements)?;
+        let masses = masses.map(|masses| springs::masses(py, &masses, count)).transpose()?;
+        Ok(Network::given(GivenBody { mesh, network, masses }, false))
+    }
+
+    /// The network of a JSON file. `elements` are those of its cells that are not shipped.
+    #[staticmethod]
+    fn read(py: Python, path: PathBuf, elements: Vec<PyRef<Element>>) -> PyResult<Read> {
+        let own: Vec<Element> = elements.iter().map(|element| Element::clone(element)).collect();
+        let elements: Vec<_> = own.iter().map(|element| element.0.clone()).collect();
+        let (given, has_cells, facts) = alone(py, move || {
+            let record = read_network(&path)?;
+            let network = record.model(&elements).map_err(|e| e.in_file(&path))?;
+            let mesh = record.mesh(&elements);
+            let has_cells = mesh.is_some();
+            let bare = || mesh::Mesh::of_cells(record.dimension, record.points.concat(), Vec::new());
+            let mesh = Arc::new(mesh.unwrap_or_else(bare));
+            let fit = record.provenance.fit;
+            let facts = (fit.as_ref().map(|fit| fit.name.clone()), fit.map(|fit| fit.status), record.notes);
+            Ok((GivenBody { mesh, network, masses: record.masses }, has_cells, facts))
+        })?;
+        let mesh = has_cells.then(|| Mesh::of(given.mesh.clone(), &own)).transpose().map_err(|e| raised(py, e))?;
+        Ok((Network::given(given, false), mesh, facts))
+    }
+
+    /// The same springs with other numbers; `others` has those of each group of `others`, or none.
+    #[pyo3(signature = (constants, rest, others))]
+    fn changed(
+        &self,
+        py: Python,
+        constants: Option<PyReadonlyArray1<f64>>,
+        rest: Option<PyReadonlyArray1<f64>>,
+        others: Vec<Changed>,
+    ) -> PyResult<Network> {
+        let network = springs::changed(py, self.body.network(), constants.as_ref(), rest.as_ref(), &others)?;
+        let mesh = match &self.body {
+            Body::Fitted(outcome) => Arc::new(outcome.mesh.clone()),
+            Body::Given(given) => given.mesh.clone(),
+        };
+        let masses = self.body.masses().map(<[f64]>::to_vec);
+        Ok(Network::given(GivenBody { mesh, network, masses }, self.has_functions))
     }
 
     #[getter]
-    fn springs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
-        matrix(py, self.network().lengths.iter().flat_map(|s| s.points.map(|p| p as i32)).collect(), 2)
+    fn dimension(&self) -> usize {
+        self.body.dimension()
+    }
+
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        matrix(py, self.body.points().to_vec(), self.body.dimension())
+    }
+
+    #[getter]
+    fn springs<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i64>> {
+        matrix(py, self.body.network().lengths.iter().flat_map(|s| s.points.map(|p| p as i64)).collect(), 2)
     }
 
     #[getter]
     fn constants<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        list(py, self.network().lengths.iter().map(|s| s.constant).collect())
+        list(py, self.body.network().lengths.iter().map(|s| s.constant).collect())
     }
 
     #[getter]
     fn rest<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        list(py, self.network().lengths.iter().map(|s| s.rest).collect())
+        list(py, self.body.network().lengths.iter().map(|s| s.rest).collect())
     }
 
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.outcome.masses.clone().map(|masses| list(py, masses))
+        self.body.masses().map(|masses| list(py, masses.to_vec()))
     }
 
-    /// The springs on other measures than lengths, gathered by kind, number of points and law.
+    /// The springs on other measures than lengths, in groups.
     #[getter]
     fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let mut lists: BTreeMap<(&str, usize, Option<&str>), Vec<&MeasureSpring>> = BTreeMap::new();
-        for spring in &self.network().others {
-            let law = spring.law.as_deref().map(|own| &own.law.text[..]);
-            lists.entry((spring.kind.name(), spring.points.len(), law)).or_default().push(spring);
-        }
-        lists.into_values().map(|springs| record(py, &springs, self.mesh().dimension)).collect()
+        let network = self.body.network();
+        let of_group = |group: Vec<usize>| {
+            let springs: Vec<_> = group.into_iter().map(|s| &network.others[s]).collect();
+            springs::record(py, &springs, network.dimension)
+        };
+        springs::groups(network).into_iter().map(of_group).collect()
     }
 
-    /// The energy at positions `x`, J.
-    #[pyo3(signature = (x=None))]
-    fn energy(&self, py: Python, x: Option<PyReadonlyArray2<f64>>) -> PyResult<f64> {
-        let x = self.positions(py, x)?;
-        self.evaluated(py, || self.network().energy(&x).ok_or_else(|| undefined("an energy")))
+    /// That no law of force is a function, which neither a file nor a pickle holds.
+    fn check_formulas(&self, py: Python) -> PyResult<()> {
+        self.body.network().check_formulas().map_err(|error| raised(py, error))
     }
 
-    /// The forces of the springs on the points at positions `x`, N.
+    /// The energies of shapes, `[shapes, points, dimension]`, J; the one at rest if there are none.
     #[pyo3(signature = (x=None))]
-    fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let x = self.positions(py, x)?;
-        let mut slopes = self.evaluated(py, || {
+    fn energy<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray3<f64>>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let evaluate = |model: &dyn Elastic, x: &[f64]| model.energy(x).ok_or_else(|| undefined("an energy"));
+        Ok(list(py, self.each_shape(py, x, evaluate)?.1))
+    }
+
+    /// The forces of the springs on the points of shapes, N.
+    #[pyo3(signature = (x=None))]
+    fn forces<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray3<f64>>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let (count, found) = self.each_shape(py, x, |model, x| {
             let mut slopes = vec![0.0; x.len()];
-            let has_forces = self.network().forces(&x, &mut slopes);
-            has_forces.then_some(slopes).ok_or_else(|| undefined("a force"))
+            if !model.forces(x, &mut slopes) {
+                return Err(undefined("a force"));
+            }
+            // The springs pull against the energy's slope.
+            slopes.iter_mut().for_each(|slope| *slope = 0.0 - *slope);
+            Ok(slopes)
         })?;
-        // The springs pull against the energy's slope.
-        slopes.iter_mut().for_each(|slope| *slope = 0.0 - *slope);
-        Ok(matrix(py, slopes, self.mesh().dimension))
+        let [points, d] = self.body.shape();
+        let all: Vec<f64> = found.into_iter().flatten().collect();
+        let array = Array3::from_shape_vec((count.unwrap_or(1), points, d), all);
+        Ok(array.expect("each shape has a vector for each point").into_pyarray(py))
     }
 
-    /// The tangent stiffness at positions `x`, in triplets of both triangles.
+    /// The tangent stiffness at positions `x`, row by row.
     #[pyo3(signature = (x=None))]
-    fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Triplets<'py>> {
-        let x = x.map(|x| self.positions(py, Some(x))).transpose()?;
-        Ok(triplets(py, &self.tangent(py, x)?))
+    fn stiffness<'py>(&self, py: Python<'py>, x: Option<PyReadonlyArray2<f64>>) -> PyResult<Rows<'py>> {
+        let shape = self.body.shape();
+        let x = x.map(|x| vectors(py, "x", &x, shape)).transpose()?;
+        let has_functions = self.has_functions;
+        let found = self.worked(py, move |body| body.stiffness(x.as_deref(), has_functions))?;
+        Ok(sparse::rows(py, found))
     }
 
-    /// Small displacements under `forces`, where `held` says which components are `prescribed`; and what is left of the forces.
-    fn solve<'py>(
+    /// The factor of the stiffness at rest where `held` says which components are prescribed.
+    fn factorized(&self, py: Python, held: PyReadonlyArray2<bool>) -> PyResult<Factorized> {
+        Factorized::new(py, self, self.support(py, &held)?)
+    }
+
+    /// The positions in equilibrium at large deformation.
+    #[pyo3(signature = (forces, held, prescribed, start=None))]
+    fn equilibrium<'py>(
         &self,
         py: Python<'py>,
         forces: PyReadonlyArray2<f64>,
         held: PyReadonlyArray2<bool>,
         prescribed: PyReadonlyArray2<f64>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64, bool)> {
-        let shape = [self.mesh().point_count(), self.mesh().dimension];
+        start: Option<PyReadonlyArray2<f64>>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, bool, usize)> {
+        let shape = self.body.shape();
         let forces = vectors(py, "forces", &forces, shape)?;
-        let prescribed = vectors(py, "displacement", &prescribed, shape)?;
-        if held.shape() != shape {
-            return Err(invalid(py, "fix", &format!("an array of shape {shape:?}"), format!("{:?}", held.shape())));
+        let given = vectors(py, "displacement", &prescribed, shape)?;
+        let start = start.map(|start| vectors(py, "x0", &start, shape)).transpose()?;
+        let mut support = self.support(py, &held)?;
+        support.prescribed.iter_mut().zip(given).for_each(|(held, u)| *held = held.map(|_| u));
+        let loads = Loads { forces, support, start };
+        let Found { x, is_rounded, inverted } = self.worked(py, move |body| equilibrium::find(body, &loads))?;
+        Ok((matrix(py, x, shape[1]), is_rounded, inverted))
+    }
+
+    /// The motion from a state, as arrays of the states that are kept.
+    fn simulate<'py>(&self, py: Python<'py>, keys: MotionKeys) -> PyResult<MotionArrays<'py>> {
+        motion::simulate(py, self, keys)
+    }
+
+    /// A total force on a group of the mesh as forces on its points, N.
+    fn group_forces<'py>(
+        &self,
+        py: Python<'py>,
+        group: String,
+        force: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let d = self.body.dimension();
+        if force.len() != d {
+            let expected = format!("{d} numbers, N");
+            return Err(invalid(py, &format!("forces.{group}"), &expected, force.len()));
         }
-        let held = held.as_array();
-        let support = Support { prescribed: held.iter().zip(prescribed).map(|(held, u)| held.then_some(u)).collect() };
-        if !model::unheld_bodies(self.mesh(), &support).is_empty() {
-            return Err(invalid(py, "fix", "supports that hold every piece of the mesh", "one that can move as it is"));
-        }
-        let (stiffness, outcome) = (self.tangent(py, None)?, self.outcome.clone());
-        let (u, left, is_stable) = alone(py, move || {
-            let system = System::new(&stiffness, &support)?.placed(&outcome.mesh.points, outcome.mesh.dimension);
-            let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
-            let (u, left) = system.solve(&factor, &forces);
-            if left > LEFT {
-                return Err(loose("a motion without stiffness, on which forces act"));
-            }
-            Ok((u, left, factor.is_positive_definite()))
-        })?;
-        Ok((matrix(py, u, self.mesh().dimension), left, is_stable))
+        let key = format!("forces.{group}");
+        let found = apart(py, || self.body.group_forces(&group, force));
+        found.map(|forces| matrix(py, forces, d)).map_err(|error| raised(py, error.at_key(key)))
     }
 
     /// Writes the springs: .json, .npz, .csv or .vtu.
@@ -205,7 +352,7 @@ impl Network {
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
             springfit::check_file(&path)?;
-            format.write(&path, &NetworkFile::of(&self.outcome, self.fit()))
+            format.write(&path, &self.body.file())
         });
         written.map_err(|error| raised(py, error))
     }
@@ -226,11 +373,11 @@ impl Network {
         }
         let target = target_named(&to).map_err(|error| raised(py, error.at_key("to")))?;
         self.evaluated(py, || self.measure())?;
-        let outcome = self.outcome.clone();
+        let body = self.body.clone();
         let (files, left_out) = alone(py, move || {
-            outcome.fits[0].network.check_formulas()?;
-            let network = NetworkFile::of(&outcome, &outcome.fits[0]).record();
-            let of_gravity = |e: springfit::error::Error| match e.key() {
+            body.network().check_formulas()?;
+            let network = body.file().record();
+            let of_gravity = |e: Error| match e.key() {
                 Some("--gravity") => e.at_key("gravity"),
                 _ => e,
             };
@@ -246,26 +393,37 @@ impl Network {
     /// What is said of the mesh and of the fit: one sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        report::mesh_notes(self.mesh()).into_iter().chain(report::notes_beside_summary(&self.outcome)).collect()
+        let mesh = report::mesh_notes(self.body.mesh());
+        let of_fit = self.body.fit().map(|(outcome, _)| report::notes_beside_summary(outcome));
+        mesh.into_iter().chain(of_fit.into_iter().flatten()).collect()
     }
 
     /// The name of the fit.
     #[getter]
-    fn name(&self) -> &str {
-        &self.fit().fit.name
+    fn name(&self) -> Option<&str> {
+        Some(&self.body.fit()?.1.fit.name)
     }
 
     /// One word for the state of the fit.
     #[getter]
-    fn status(&self) -> &'static str {
-        self.fit().status()
+    fn status(&self) -> Option<&'static str> {
+        Some(self.body.fit()?.1.status())
     }
 
-    /// What the fit cost and how far its matrices are from those of the finite elements.
+    /// The number of constants below zero.
     #[getter]
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.evaluated(py, || self.measure())?;
-        let (fit, record) = (self.fit(), PyDict::new(py));
+    fn negative(&self) -> usize {
+        self.body.network().negative()
+    }
+
+    /// What the fit cost and how far its matrices are from those of the finite elements; None of networks that were given. Without
+    /// `measures`, errors that are not known yet are not computed.
+    fn statistics<'py>(&self, py: Python<'py>, measures: bool) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some((_, fit)) = self.body.fit() else { return Ok(None) };
+        if measures {
+            self.evaluated(py, || self.measure())?;
+        }
+        let record = PyDict::new(py);
         record.set_item("name", &fit.fit.name)?;
         record.set_item("status", fit.status())?;
         record.set_item("seconds", fit.seconds)?;
@@ -278,19 +436,19 @@ impl Network {
             let pair = |spread: Spread| (spread.mean, spread.max);
             record.set_item(key, spread.map(pair))?;
         }
-        Ok(record)
+        Ok(Some(record))
     }
 
     /// The outcome of a sampled fit as JSON, and its data by columns; None of other fits.
     #[getter]
     fn sampled<'py>(&self, py: Python<'py>) -> PyResult<Option<Sampled<'py>>> {
-        let Some(outcome) = self.fit().kind.sampled() else { return Ok(None) };
+        let Some(outcome) = self.body.fit().and_then(|(_, fit)| fit.kind.sampled()) else { return Ok(None) };
         let text = serde_json::to_string(outcome).map_err(|e| raised(py, Error::new(e.to_string())))?;
         Ok(Some((text, sampled::shapes(py, outcome)?, sampled::starts(py, outcome)?)))
     }
 
     fn __len__(&self) -> usize {
-        self.network().len()
+        self.body.network().len()
     }
 
     /// It never changes.
@@ -301,66 +459,4 @@ impl Network {
     fn __deepcopy__(slf: Py<Self>, _memo: &Bound<PyAny>) -> Py<Self> {
         slf
     }
-}
-
-/// The error of positions where the springs have no energy or a derivative of it.
-fn undefined(what: &str) -> Error {
-    Error::expected("x", format!("positions where the springs have {what}"), "others")
-}
-
-/// The error of supports that do not hold the network.
-fn loose(found: &str) -> Error {
-    Error::expected("fix", "supports that hold the network, and springs that resist every motion", found)
-}
-
-/// Both triangles of entries of the lower one.
-pub fn triplets<'py>(py: Python<'py>, entries: &Entries) -> Triplets<'py> {
-    let across = || entries.iter().filter(|entry| entry.row != entry.col);
-    let rows = entries.iter().map(|e| e.row as i64).chain(across().map(|e| e.col as i64)).collect();
-    let columns = entries.iter().map(|e| e.col as i64).chain(across().map(|e| e.row as i64)).collect();
-    let values = entries.iter().map(|e| e.val).chain(across().map(|e| e.val)).collect();
-    (list(py, rows), list(py, columns), list(py, values))
-}
-
-/// Springs of one kind with as many points each.
-fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyResult<Bound<'py, PyDict>> {
-    let (record, n) = (PyDict::new(py), springs[0].points.len());
-    record.set_item("kind", springs[0].kind.name())?;
-    record.set_item("unit", SpringKind::properties(springs[0].kind).unit)?;
-    record
-        .set_item("points", matrix(py, springs.iter().flat_map(|s| s.points.iter().map(|&p| p as i32)).collect(), n))?;
-    record.set_item("constants", list(py, springs.iter().map(|s| s.constant).collect()))?;
-    record.set_item("rest", list(py, springs.iter().map(|s| s.rest).collect()))?;
-    if let Some(law) = &springs[0].law {
-        record.set_item("law", &law.law.text)?;
-        let parameters = PyDict::new(py);
-        for (i, name) in law.law.parameters.iter().enumerate() {
-            let values = springs.iter().flat_map(|s| &s.law).map(|own| own.parameters[i]);
-            parameters.set_item(name, list(py, values.collect()))?;
-        }
-        record.set_item("parameters", parameters)?;
-    }
-    let of_point = |spring: &MeasureSpring| match &spring.measure {
-        Measure::PointContent(element, q) => Some((element.tabulation.clone(), *q as usize)),
-        Measure::Span(table) => Some((springfit::element::Tabulation::clone(table), 0)),
-        _ => None,
-    };
-    if of_point(springs[0]).is_some() {
-        let tables: Vec<_> = springs.iter().filter_map(|spring| of_point(spring)).collect();
-        let own = tables.first().map_or(d, |(table, _)| table.dimension);
-        let gradients = tables.iter().flat_map(|(t, q)| {
-            let size = t.nodes * t.dimension;
-            t.gradients[q * size..(q + 1) * size].to_vec()
-        });
-        record.set_item("gradients", matrix(py, gradients.collect(), n * own))?;
-        record.set_item("weights", list(py, tables.iter().map(|(t, q)| t.point_weight(*q)).collect()))?;
-    }
-    if let Measure::Patch(_) = &springs[0].measure {
-        let cells = springs.iter().map(|spring| match &spring.measure {
-            Measure::Patch(patch) => patch.cells.clone(),
-            _ => Vec::new(),
-        });
-        record.set_item("cells", cells.collect::<Vec<_>>())?;
-    }
-    Ok(record)
 }

@@ -95,6 +95,29 @@ def test_products_in_both_directions_are_transposes(name, objective, keys, plane
     assert sum(np.sum(w * own) for w, own in zip(w, moved)) == pytest.approx(sum(map(np.sum, parts)), abs=size)
 
 
+@pytest.mark.parametrize("objective", ["exact", "frobenius"])
+def test_slivers_do_not_depend_on_the_cells_beside_them(objective):
+    mesh = sf.Mesh.box("tet4", size=[1.0, 1.0, 1.0], cells=[3, 3, 3])
+    rng = np.random.default_rng(8)
+    points = mesh.points + 0.05 * rng.uniform(-1, 1, mesh.points.shape)
+    # The cells of the first layer are too flat for vector lanes, which leave them to numbers one by one.
+    points[:, 2] = np.where(mesh.points[:, 2] < 0.5, 3e-4 * points[:, 2], points[:, 2] - 0.3)
+    cells = mesh.cells[0][1]
+    constants = sf.SpringConstants({"tet4": cells}, objective)
+    change = (rng.normal(size=points.shape), rng.normal(size=len(cells)), np.zeros(len(cells)))
+    young = rng.uniform(1, 2, len(cells))
+    moved = constants.along(points, young, 0.3, changes=(*change[:2], None))
+    assert all(np.all(np.isfinite(own)) for own in moved)
+    # A weight of the springs of single cells.
+    for cell in range(0, len(cells), 7):
+        alone = sf.SpringConstants({"tet4": cells[cell : cell + 1]}, objective)
+        own = alone.along(points, young[cell], 0.3, changes=(change[0], change[1][cell], None))
+        w = rng.normal(size=len(alone.springs))
+        found = alone.gradient(points, young[cell], 0.3, weights=w)
+        parts = np.append(found.points * change[0], found.young * change[1][cell])
+        assert np.sum(w * own.constants) == pytest.approx(parts.sum(), abs=1e-9 * np.abs(parts).sum())
+
+
 def test_second_derivatives_are_those_of_differences():
     jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
     jax.config.update("jax_enable_x64", True)
@@ -187,6 +210,8 @@ def test_constants_are_those_of_the_network(name, objective):
         (lambda: sf.SpringConstants({"tri3": [[0, 1, 2]]}, plane=1), "plane"),
         (lambda: sf.SpringConstants("tet4", [[0, 1, 2, 3]]), "cells"),
         (lambda: sf.SpringConstants({}), "cells"),
+        (lambda: sf.SpringConstants({"tet4": [[0, 1, 2, 3]]}, energy="neo-hookean"), "energy"),
+        (lambda: sf.SpringConstants({"tet4": [[0, 1, 2, 3]]}, energy="stable-mooney-rivlin"), "energy"),
         (lambda: sf.SpringConstants({"tet4": [[0, 1, 2, -1]]}), "cells"),
         (lambda: sf.SpringConstants({"tet4": [[0, 1, 2, 3]], "tri3": [[0, 1, 2]]}), "cells"),
     ],
@@ -197,6 +222,14 @@ def test_wrong_functions_are_refused(call, key):
         points = np.eye(4, 3)
         constants.gradient(points, 1.0, 0.3, weights=np.ones(len(constants.springs)))
     assert error.value.key == key, str(error.value)
+
+
+@pytest.mark.parametrize("energy", ["neo-hookean", "stable-mooney-rivlin"])
+def test_energies_with_other_springs_are_refused(energy):
+    constants = sf.SpringConstants({"tet4": [[0, 1, 2, 3]]}, energy=energy)
+    with pytest.raises(sf.SpringfitError) as error:
+        constants(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float), 1.0, 0.3)
+    assert error.value.key == "energy"
 
 
 def test_wrong_arrays_are_refused():

@@ -143,7 +143,7 @@ def test_pyvista_both_ways():
     mesh = sf.Mesh.from_pyvista(grid)
     assert mesh.cells[0][0] == "tet4"
     lines = fitted(mesh).to_pyvista()
-    assert lines.n_lines == len(fitted(mesh).springs) and "constant" in lines.cell_data
+    assert lines.n_lines == len(fitted(mesh).springs) and "constants" in lines.cell_data
 
 
 def test_points_without_a_cell_keep_numbers():

@@ -89,22 +89,34 @@ pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
     let loads = outcome.loads.iter().filter_map(of_load).map(|(load, deformation)| (load.name.as_str(), deformation));
     let motion = moved(outcome).and_then(|body| Some(("the motion", body.deformation?)));
     let beyond = loads.chain(motion).filter(|(_, deformation)| deformation.exceeds(Deformation::LINEAR));
-    let note = |(name, Deformation { strain, rotation }): (&str, Deformation)| {
-        let bound = Deformation::LINEAR;
-        let strains = format!("strains of up to {:.0} % (bound {:.0} %)", 100.0 * strain, 100.0 * bound);
-        let rotations = format!("rotations of up to {rotation:.2} rad (bound {bound} rad)");
-        let large: Vec<String> = [(strain, strains), (rotation, rotations)]
-            .into_iter()
-            .filter(|(size, _)| !(*size <= bound))
-            .map(|(_, words)| words)
-            .collect();
+    let note = |(name, deformation): (&str, Deformation)| {
         // Surfaces and curves in space have no law.
         let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
         let law = ". law = \"stable-neo-hookean\" in [material] solves at large deformation";
         let remedy = if is_bulk { law } else { "" };
-        format!("finite elements: {} under {name} are beyond the linear theory{remedy}", large.join(" and "))
+        let large = large_words(deformation);
+        format!("finite elements: {large} under {name} are beyond the linear theory{remedy}")
     };
     beyond.map(note).collect()
+}
+
+/// The strains and rotations that exceed the bound of the linear theory, with the bound.
+fn large_words(Deformation { strain, rotation }: Deformation) -> String {
+    let bound = Deformation::LINEAR;
+    let strains = format!("strains of up to {:.0} % (bound {:.0} %)", 100.0 * strain, 100.0 * bound);
+    let rotations = format!("rotations of up to {rotation:.2} rad (bound {bound} rad)");
+    let large: Vec<String> = [(strain, strains), (rotation, rotations)]
+        .into_iter()
+        .filter(|(size, _)| !(*size <= bound))
+        .map(|(_, words)| words)
+        .collect();
+    large.join(" and ")
+}
+
+/// That small displacements of a network are beyond the linear theory; none if they are not.
+pub fn beyond_linear(deformation: Deformation) -> Option<String> {
+    let is_beyond = !(deformation.strain <= Deformation::LINEAR && deformation.rotation <= Deformation::LINEAR);
+    is_beyond.then(|| format!("{} are beyond the linear theory", large_words(deformation)))
 }
 
 /// Says what part of a network's error is the fit's, where the springs turn beside linear finite elements. Bodies in space of surfaces and

@@ -63,7 +63,7 @@ pub use forecast::forecast_text;
 pub use groups::{CellsRecord, GroupRecord, MeshRecord};
 pub use json::{QualityRecord, Report, VERSION, report, schema};
 pub use key_tables::{KeyTable, default_words, key_tables, key_tables_text};
-pub use linear_theory::DeformationRecord;
+pub use linear_theory::{DeformationRecord, beyond_linear};
 pub use load_record::{LoadRecord, MeasuredRecord};
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};

@@ -27,22 +27,29 @@ pub struct NetworkFile<'a> {
     pub network: &'a Network,
     /// The run and the fit from which the network comes.
     pub study: Option<(&'a Outcome, &'a FitOutcome)>,
+    /// Masses of its points where there is no study, `[points]`, kg.
+    pub own_masses: Option<&'a [f64]>,
 }
 
 impl<'a> NetworkFile<'a> {
     /// The network of a fit of `outcome`.
     pub fn of(outcome: &'a Outcome, fit: &'a FitOutcome) -> NetworkFile<'a> {
-        NetworkFile { mesh: &outcome.mesh, network: &fit.network, study: Some((outcome, fit)) }
+        NetworkFile { mesh: &outcome.mesh, network: &fit.network, study: Some((outcome, fit)), own_masses: None }
     }
 
     /// A network without masses, supports and loads.
     pub fn bare(mesh: &'a Mesh, network: &'a Network) -> NetworkFile<'a> {
-        NetworkFile { mesh, network, study: None }
+        NetworkFile::with_masses(mesh, network, None)
+    }
+
+    /// A network with these masses, `[points]`, kg, without supports and loads.
+    pub fn with_masses(mesh: &'a Mesh, network: &'a Network, masses: Option<&'a [f64]>) -> NetworkFile<'a> {
+        NetworkFile { mesh, network, study: None, own_masses: masses }
     }
 
     /// The masses that were fitted, or those of the motion, or of the density, `[points]`, kg.
     pub fn masses(&self) -> Option<&'a [f64]> {
-        let (outcome, fit) = self.study?;
+        let Some((outcome, fit)) = self.study else { return self.own_masses };
         if let Some(fitted) = fit.masses() {
             return Some(fitted);
         }

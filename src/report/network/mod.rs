@@ -7,10 +7,10 @@ mod points;
 
 pub use crate::network::{
     ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
-    LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Merged, NETWORK_VERSION, NetworkDampingRecord,
-    NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts, ProvenanceRecord, Shard,
-    ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord, merge_shards, network_csv,
-    network_npz, network_npz_with, network_schema, read_network,
+    LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Measuring, Merged, NETWORK_VERSION,
+    NetworkDampingRecord, NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts,
+    ProvenanceRecord, Shard, ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord,
+    cell_terms, merge_shards, network_csv, network_npz, network_npz_with, network_schema, read_network,
 };
 pub use file::NetworkFile;
 pub use format::{NETWORK_FORMATS, NetworkFormat};

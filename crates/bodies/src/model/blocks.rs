@@ -1,5 +1,6 @@
 //! The stiffness of either model in blocks of points, made of the cells and springs without a list of entries.
 
+use super::Entries;
 use super::network::{LengthSpring, Network};
 use super::size::ADVICE;
 use super::system::in_space;
@@ -96,6 +97,14 @@ impl BlockStiffness {
         }
     }
 
+    /// The entries row by row.
+    pub fn rows(&self) -> CompressedRows {
+        match self {
+            BlockStiffness::Plane(matrix) => compressed(matrix),
+            BlockStiffness::Space(matrix) => compressed(matrix),
+        }
+    }
+
     /// `K u`, `[points · dimension]`.
     pub fn apply(&self, u: &[f64]) -> Vec<f64> {
         fn product<const D: usize>(matrix: &BlockMatrix<D, D>, u: &[f64]) -> Vec<f64> {
@@ -130,6 +139,82 @@ impl BlockStiffness {
             BlockStiffness::Space(matrix) => sums(matrix, w),
         }
     }
+}
+
+/// A sparse matrix row by row, without two entries at one place.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CompressedRows {
+    /// Where each row begins, `[rows + 1]`.
+    pub starts: Vec<usize>,
+    /// The columns of each row, ascending.
+    pub columns: Vec<u32>,
+    /// The values at these columns.
+    pub values: Vec<f64>,
+}
+
+impl CompressedRows {
+    /// The sums of entries in any order, `(row, column, value)`, of a matrix with so many rows.
+    pub fn of(rows: usize, entries: impl Iterator<Item = (usize, usize, f64)> + Clone) -> CompressedRows {
+        let mut starts = vec![0; rows + 1];
+        entries.clone().for_each(|(row, ..)| starts[row + 1] += 1);
+        (0..rows).for_each(|row| starts[row + 1] += starts[row]);
+        let mut next = starts.clone();
+        let mut unsorted = vec![(0_u32, 0.0); starts[rows]];
+        for (row, column, value) in entries {
+            unsorted[next[row]] = (column as u32, value);
+            next[row] += 1;
+        }
+        let mut found = CompressedRows { starts: vec![0], ..CompressedRows::default() };
+        for at in starts.windows(2) {
+            let row = &mut unsorted[at[0]..at[1]];
+            // Stable: equal columns are added in the order in which they are given.
+            row.sort_by_key(|(column, _)| *column);
+            for own in row.chunk_by(|a, b| a.0 == b.0) {
+                found.columns.push(own[0].0);
+                found.values.push(own.iter().map(|(_, value)| value).sum());
+            }
+            found.starts.push(found.columns.len());
+        }
+        found
+    }
+
+    /// Both triangles of entries of the lower one.
+    pub fn of_lower(rows: usize, entries: &Entries) -> CompressedRows {
+        let across = entries.iter().filter(|e| e.row != e.col).map(|e| (e.col, e.row, e.val));
+        CompressedRows::of(rows, entries.iter().map(|e| (e.row, e.col, e.val)).chain(across))
+    }
+
+    /// `K u`, `[rows]`.
+    pub fn apply(&self, u: &[f64]) -> Vec<f64> {
+        let row = |at: &[usize]| {
+            let own = at[0]..at[1];
+            self.columns[own.clone()].iter().zip(&self.values[own]).map(|(&column, k)| k * u[column as usize]).sum()
+        };
+        self.starts.windows(2).map(row).collect()
+    }
+}
+
+fn compressed<const D: usize>(matrix: &BlockMatrix<D, D>) -> CompressedRows {
+    let (pattern, values) = (matrix.pattern(), matrix.values());
+    let size = pattern.len() * D * D;
+    let mut found = CompressedRows {
+        starts: Vec::with_capacity(pattern.rows() * D + 1),
+        columns: Vec::with_capacity(size),
+        values: Vec::with_capacity(size),
+    };
+    found.starts.push(0);
+    let mut first = 0;
+    for row in 0..pattern.rows() {
+        let columns = pattern.row(row);
+        let blocks = &values[first..first + columns.len()];
+        for i in 0..D {
+            found.columns.extend(columns.iter().flat_map(|&column| (0..D as u32).map(move |j| column * D as u32 + j)));
+            found.values.extend(blocks.iter().flat_map(|block| block[i]));
+            found.starts.push(found.columns.len());
+        }
+        first += columns.len();
+    }
+    found
 }
 
 /// The connectivity of each block of a mesh.

@@ -1,5 +1,6 @@
 //! Whether displacements are small enough for the linear theory.
 
+use super::network::Network;
 use super::system::{dofs, each_cell};
 use crate::mesh::Mesh;
 use crate::stiffness::Placement;
@@ -36,6 +37,25 @@ impl Deformation {
             let strain = strain.symmetric_eigenvalues().amax();
             largest = largest.max(Deformation { strain, rotation });
         });
+        largest
+    }
+
+    /// The deformation of the springs of a network under the displacements u from `points`, both `[points · dimension]`, m, where no
+    /// cells are known: the strain along each spring between two points, and the angle by which it turns, shear included.
+    pub fn of_springs(network: &Network, points: &[f64], u: &[f64]) -> Deformation {
+        let d = network.dimension;
+        let mut largest = Deformation::default();
+        let lengths = network.lengths.iter().map(|spring| spring.points);
+        let others = network.others.iter().filter(|spring| spring.points.len() == 2);
+        for [i, j] in lengths.chain(others.map(|spring| [spring.points[0], spring.points[1]])) {
+            let between = |x: &[f64], k: usize| x[j * d + k] - x[i * d + k];
+            let square: f64 = (0..d).map(|k| between(points, k).powi(2)).sum();
+            let along: f64 = (0..d).map(|k| between(points, k) * between(u, k)).sum::<f64>() / square;
+            let across: f64 = (0..d).map(|k| (between(u, k) - along * between(points, k)).powi(2)).sum();
+            if square > 0.0 {
+                largest = largest.max(Deformation { strain: along.abs(), rotation: (across / square).sqrt() });
+            }
+        }
         largest
     }
 

@@ -67,18 +67,7 @@ pub struct Body<'a> {
 impl Body<'_> {
     /// The number of cells with a quadrature point at which `det F ≤ 0`.
     pub fn inverted(&self, x: &[f64]) -> usize {
-        let mut inverted = 0;
-        // Membranes and rods have no inside.
-        let d = self.mesh.dimension;
-        let has_inside = |block: usize| self.mesh.blocks[block].element.dimension() == d;
-        system::each_cell(self.mesh, |cell, nodes, geometry| {
-            if !has_inside(cell.block) {
-                return;
-            }
-            let local = self.places(x, nodes);
-            inverted += usize::from(geometry.least_determinant(&local) <= 0.0);
-        });
-        inverted
+        inverted(self.mesh, x)
     }
 
     /// The first cell of a surface or curve in space that is bent at rest, and how far: it would not be at rest as a flat one.
@@ -109,11 +98,27 @@ impl Body<'_> {
     }
 
     fn places(&self, x: &[f64], nodes: &[usize]) -> Vec<f64> {
-        let d = self.mesh.dimension;
-        let mut local = vec![0.0; nodes.len() * d];
-        gather(x, d, nodes, &mut local);
-        local
+        places(self.mesh, x, nodes)
     }
+}
+
+fn places(mesh: &Mesh, x: &[f64], nodes: &[usize]) -> Vec<f64> {
+    let mut local = vec![0.0; nodes.len() * mesh.dimension];
+    gather(x, mesh.dimension, nodes, &mut local);
+    local
+}
+
+/// The number of cells with a quadrature point at which `det F ≤ 0`, with the points at x, `[points · dimension]`, m. Membranes and rods
+/// have no inside.
+pub fn inverted(mesh: &Mesh, x: &[f64]) -> usize {
+    let mut inverted = 0;
+    let has_inside = |block: usize| mesh.blocks[block].element.dimension() == mesh.dimension;
+    system::each_cell(mesh, |cell, nodes, geometry| {
+        if has_inside(cell.block) {
+            inverted += usize::from(geometry.least_determinant(&places(mesh, x, nodes)) <= 0.0);
+        }
+    });
+    inverted
 }
 
 impl Elastic for Body<'_> {

@@ -13,11 +13,11 @@ use crate::stiffness::gather;
 /// One number for each number of a network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NetworkNumbers {
-    /// Of the constants, `[springs]`, springs on lengths first.
+    /// Numbers of the constants, `[springs]`, springs on lengths first.
     pub constants: Vec<f64>,
-    /// Of the rest measures, `[springs]`.
+    /// Numbers of the rest measures, `[springs]`.
     pub rests: Vec<f64>,
-    /// Of the points, `[points × dimension]`.
+    /// Numbers of the points, `[points × dimension]`.
     pub points: Vec<f64>,
 }
 
@@ -123,7 +123,7 @@ impl Network {
 
     /// The gradient of `aᵀ K(x) u`, with the tangent K at positions x, in constants, rest measures and x.
     ///
-    /// Of a length with the edge d = ℓ n, `K = k ((1 − L/ℓ) I + (L/ℓ) n nᵀ)`; of another measure, `K = k (g gᵀ + (c − c₀) H)`, whose third
+    /// A length with the edge d = ℓ n has `K = k ((1 − L/ℓ) I + (L/ℓ) n nᵀ)`; another measure `K = k (g gᵀ + (c − c₀) H)`, whose third
     /// derivatives are known of contents.
     pub fn stiffness_sensitivities(&self, x: &[f64], a: &[f64], u: &[f64]) -> NetworkNumbers {
         let d = self.dimension;

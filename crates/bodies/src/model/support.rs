@@ -1,6 +1,7 @@
 //! Supports, and whether they hold every body.
 
-use crate::mesh::Mesh;
+use super::network::Network;
+use crate::mesh::{Mesh, pieces_of};
 use crate::springs::{cross, norm};
 use nalgebra::DMatrix;
 
@@ -48,8 +49,8 @@ pub struct Unheld {
 }
 
 /// Whether all points are on one line through their centre, to rounding.
-fn is_straight(mesh: &Mesh, points: &[usize], centre: &[f64], extent: f64) -> bool {
-    let from = |p: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(p)[k] - centre[k]) };
+fn is_straight<'a>(point: &dyn Fn(usize) -> &'a [f64], points: &[usize], centre: &[f64], extent: f64) -> bool {
+    let from = |p: usize| -> [f64; 3] { std::array::from_fn(|k| point(p)[k] - centre[k]) };
     let Some(far) = points.iter().map(|&p| from(p)).max_by(|a, b| norm(a).total_cmp(&norm(b))) else { return false };
     let along = far.map(|x| x / norm(&far));
     points.iter().all(|&p| norm(&cross(along, from(p))) <= STRAIGHT * extent)
@@ -57,19 +58,35 @@ fn is_straight(mesh: &Mesh, points: &[usize], centre: &[f64], extent: f64) -> bo
 
 /// The bodies that can move without deforming, found by the rank of their rigid motions at the held degrees of freedom.
 pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
-    let d = mesh.dimension;
+    unheld_pieces((&mesh.points, mesh.dimension), mesh.pieces(), support)
+}
+
+/// As [`unheld_bodies`], for the parts of a network that springs connect. `points` are `[points × dimension]`, m.
+pub fn unheld_parts(network: &Network, points: &[f64], support: &Support) -> Vec<Unheld> {
+    let pieces = pieces_of(points.len() / network.dimension, network.springs().map(|(points, _)| points));
+    unheld_pieces((points, network.dimension), pieces, support)
+}
+
+fn unheld_pieces((points, d): (&[f64], usize), pieces: Vec<Vec<usize>>, support: &Support) -> Vec<Unheld> {
+    let point = |p: usize| &points[p * d..(p + 1) * d];
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
-    for body in mesh.pieces() {
+    for body in pieces {
+        if let [alone] = body[..] {
+            // To turn a point moves nothing.
+            let free = (alone * d..(alone + 1) * d).filter(|&dof| !support.is_fixed(dof)).count();
+            unheld.extend((free > 0).then_some(Unheld { points: 1, first_point: alone, motions: free }));
+            continue;
+        }
         let held: Vec<usize> =
             body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
         let centre: Vec<f64> =
-            (0..d).map(|k| body.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / body.len() as f64).collect();
-        let extent = body.iter().map(|&p| crate::springs::distance(mesh.point(p), &centre)).fold(0.0, f64::max);
+            (0..d).map(|k| body.iter().map(|&p| point(p)[k]).sum::<f64>() / body.len() as f64).collect();
+        let extent = body.iter().map(|&p| crate::springs::distance(point(p), &centre)).fold(0.0, f64::max);
         // Translations e_k, then rotations in the planes (k, l), in units of the size of the body.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);
         for (row, &dof) in held.iter().enumerate() {
-            let r: Vec<f64> = mesh.point(dof / d).iter().zip(&centre).map(|(x, c)| (x - c) / extent).collect();
+            let r: Vec<f64> = point(dof / d).iter().zip(&centre).map(|(x, c)| (x - c) / extent).collect();
             modes[(row, dof % d)] = 1.0;
             let mut column = d;
             for k in 0..d {
@@ -86,7 +103,7 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
         // A zero singular value may be as large as the rounding of coordinates far from the origin.
         let rank = modes.rank(1e-9 * (held.len().max(1) as f64).sqrt());
         // To turn a straight rod in space about itself moves no point.
-        let idle = usize::from(rank < motions && d == 3 && is_straight(mesh, &body, &centre, extent));
+        let idle = usize::from(rank < motions && d == 3 && is_straight(&point, &body, &centre, extent));
         if rank + idle < motions {
             unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - idle - rank });
         }

@@ -58,6 +58,7 @@ pub use annotations::{Annotations, Section};
 pub use arrays::MeshArrays;
 pub use boxes::BoxMesh;
 pub use carrier::Carrier;
+pub use connection::pieces_of;
 pub use disc::DiscMesh;
 pub use embedding::Embedding;
 pub use field::{Accepted, Field, Holder, Interpolation, NamedState, SampleReading, Samples};

@@ -20,7 +20,7 @@ pub struct ExactKernel<'a> {
 }
 
 impl<'a> ExactKernel<'a> {
-    /// Of a fit with these springs, which have none on areas.
+    /// The kernel of a fit with these springs, which have none on areas.
     pub fn of(fit: &ExactFit, springs: &'a Springs) -> ExactKernel<'a> {
         ExactKernel { points: &springs.points, shares: fit.volume.shares(springs.points.is_empty()) }
     }

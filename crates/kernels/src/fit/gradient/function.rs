@@ -8,7 +8,7 @@ use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::cells::CHUNK;
 use crate::fit::closed::Closed;
-use crate::fit::exact::VolumeSprings;
+use crate::fit::exact::{ExactEnergy, VolumeSprings};
 use crate::fit::input::{check_cells, check_finite, check_length, check_moduli};
 use crate::fit::precision::no_answer;
 use crate::fit::rest::Rest;
@@ -52,6 +52,17 @@ impl<'a> CellFunction<'a> {
                 if exact.large || exact.volume == VolumeSprings::Patches || !springs.areas().is_empty() {
                     let expected = "an exact network for small deformations, with springs on lengths and on contents of points or cells";
                     return Err(unsupported(expected, "another"));
+                }
+                let is_linear = match exact.energy {
+                    ExactEnergy::StableNeoHookean => true,
+                    // In the plane it is the same energy.
+                    ExactEnergy::StableMooneyRivlin { .. } => d == 2,
+                    ExactEnergy::NeoHookean => false,
+                };
+                if !is_linear {
+                    let expected = "\"stable-neo-hookean\", whose springs on contents are linear";
+                    let found = format!("\"{}\"", exact.energy.name());
+                    return Err(Error::expected("energy", expected, found).of_kind(ErrorKind::Unsupported));
                 }
             }
         }

@@ -32,18 +32,18 @@ pub struct CellFunction<'a> {
 /// Numbers for each cell and each of its springs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellNumbers {
-    /// Of the constants, `[cells × springs]`.
+    /// Numbers of the constants, `[cells × springs]`.
     pub constants: Vec<f64>,
-    /// Of the rest contents, `[cells × springs on contents]`.
+    /// Numbers of the rest contents, `[cells × springs on contents]`.
     pub rests: Vec<f64>,
 }
 
 /// Numbers for each input of the constants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inputs {
-    /// Of the points, `[points × dimension]`.
+    /// Numbers of the points, `[points × dimension]`.
     pub points: Vec<f64>,
-    /// Of λ and μ of each cell, `[cells × 2]`.
+    /// Numbers of λ and μ of each cell, `[cells × 2]`.
     pub moduli: Vec<f64>,
 }
 

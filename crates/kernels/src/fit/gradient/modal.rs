@@ -16,7 +16,7 @@ pub struct Modal<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Modal<T, D> {
-    /// Of nodes at x, with `h²` and `1 − h²`.
+    /// The motions of nodes at x, with `h²` and `1 − h²`.
     #[inline(always)]
     pub fn of(x: &[[T; D]], h2: T, rest: T) -> Modal<T, D> {
         let mut q = x.to_vec();
