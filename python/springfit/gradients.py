@@ -142,7 +142,7 @@ class SpringConstants:
         both = np.concatenate(ends)
         if both.size and both.min() < 0:
             raise failure("cells", "places from 0", both.min())
-        first, second = both.min(axis=1, initial=2**62), both.max(axis=1, initial=-1)
+        first, second = np.minimum(both[:, 0], both[:, 1]), np.maximum(both[:, 0], both[:, 1])
         # One number for each pair: sorting rows takes ten times as long.
         width = int(second.max(initial=0)) + 1
         keys_of, places = np.unique(first * width + second, return_inverse=True)
