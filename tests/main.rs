@@ -42,6 +42,7 @@ mod functions;
 mod generate;
 mod golden;
 mod golden_files;
+mod gradients;
 mod hostile_cases;
 mod integrals;
 mod large;

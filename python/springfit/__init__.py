@@ -10,9 +10,10 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 """
 
 from ._core import Element, SpringfitError, __version__, shipped_elements
+from .adjoint import Statics, StaticsGradient, StaticsSolution
 from .factorized import Factorized
 from .calibration import Calibration, calibrate
-from .gradients import Gradient, SpringConstants
+from .gradients import Gradient, SpringBlock, SpringConstants, SpringValues
 from .material import Material
 from .mesh import Mesh
 from .motion import Motion
@@ -32,7 +33,12 @@ __all__ = [
     "Motion",
     "Network",
     "Report",
+    "SpringBlock",
     "SpringConstants",
+    "SpringValues",
+    "Statics",
+    "StaticsGradient",
+    "StaticsSolution",
     "SpringfitError",
     "__version__",
     "calibrate",

@@ -20,9 +20,11 @@ __all__ = [
     "Network",
     "NetworkShare",
     "Ran",
+    "SpringBody",
     "SpringfitError",
     "Studies",
     "Sweep",
+    "Tangent",
     "__version__",
     "checked_material",
     "command_line",
@@ -40,6 +42,7 @@ __all__ = [
     "restored_mesh",
     "run",
     "shipped_elements",
+    "spring_numbers",
     "stability",
     "stability_of_scene",
     "study_line",
@@ -309,6 +312,9 @@ def study_line(
     text: str, path: Path, settings: dict[str, Any], values: str, held: _Held, progress: _Progress | None = None
 ) -> str: ...
 
+_Numbers: TypeAlias = NDArray[np.float64]
+_Inputs: TypeAlias = tuple[_Numbers, _Numbers, _Numbers]
+
 @final
 class CellConstants:
     def __new__(cls, element: Element, keys: dict[str, Any], plane: str | None = None) -> CellConstants: ...
@@ -316,23 +322,70 @@ class CellConstants:
     def pairs(self) -> NDArray[np.int64]: ...
     @property
     def springs(self) -> int: ...
+    @property
+    def is_restless(self) -> bool: ...
+    def moduli(self, young: _Numbers, poisson: _Numbers, thickness: _Numbers) -> tuple[_Numbers, _Numbers]: ...
     def values(
-        self, points: NDArray[np.float64], cells: NDArray[np.int64], young: float, poisson: float, thickness: float
-    ) -> NDArray[np.float64]: ...
+        self, points: _Numbers, cells: NDArray[np.int64], young: _Numbers, poisson: _Numbers, thickness: _Numbers
+    ) -> tuple[_Numbers, _Numbers]: ...
+    def along(
+        self,
+        points: _Numbers,
+        cells: NDArray[np.int64],
+        lambda_: _Numbers,
+        mu: _Numbers,
+        first: _Inputs,
+        second: _Inputs | None,
+    ) -> tuple[_Numbers, _Numbers]: ...
     def gradient(
         self,
-        points: NDArray[np.float64],
+        points: _Numbers,
         cells: NDArray[np.int64],
-        young: float,
-        poisson: float,
-        thickness: float,
-        weights: NDArray[np.float64],
-    ) -> tuple[NDArray[np.float64], float, float, float]: ...
+        lambda_: _Numbers,
+        mu: _Numbers,
+        weights: tuple[_Numbers, _Numbers],
+        change: _Inputs | None,
+    ) -> _Inputs: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __copy__(self) -> CellConstants: ...
     def __deepcopy__(self, _memo: Any) -> CellConstants: ...
 
 _Given: TypeAlias = tuple[Path | dict[str, Any], Path, dict[str, Any], _Held]
+_Springs: TypeAlias = tuple[_Numbers, _Numbers, _Numbers, _Numbers]
+
+@final
+class SpringBody:
+    def __new__(
+        cls,
+        points: int,
+        dimension: int,
+        pairs: NDArray[np.int64],
+        blocks: Sequence[tuple[CellConstants, NDArray[np.int64]]],
+    ) -> SpringBody: ...
+    @staticmethod
+    def of_network(network: Network) -> SpringBody: ...
+    def at_rest(self, points: _Numbers, numbers: _Springs, held: NDArray[np.bool_]) -> Tangent: ...
+    def equilibrium(
+        self,
+        points: _Numbers,
+        numbers: _Springs,
+        forces: _Numbers,
+        held: NDArray[np.bool_],
+        prescribed: _Numbers,
+        guess: _Numbers | None,
+    ) -> tuple[_Numbers, bool, Tangent]: ...
+
+def spring_numbers(network: Network) -> tuple[NDArray[np.int64], _Springs]: ...
+@final
+class Tangent:
+    @property
+    def is_stable(self) -> bool: ...
+    def solve(self, forces: _Numbers, prescribed: _Numbers) -> tuple[_Numbers, float]: ...
+    def product(self, v: _Numbers) -> _Numbers: ...
+    def sensitivities(self, a: _Numbers, u: _Numbers | None = None) -> tuple[_Springs, _Numbers]: ...
+    def change(self, numbers: _Springs, points: _Numbers, u: _Numbers | None = None) -> _Numbers: ...
+
+_Given: TypeAlias = tuple[Path | dict[str, Any], Path, dict[str, Any]]
 
 def compare_scene(given: _Given, progress: _Progress | None = None) -> str: ...
 def compare_cases(comparison: Any, folder: str | PathLike[str], progress: _Progress | None = None) -> str: ...

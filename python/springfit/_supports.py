@@ -77,13 +77,17 @@ def displacement_of(net: "Network", displacement: Any, held: np.ndarray) -> np.n
             found[group_points("displacement", groups, name)] = _vector(f"displacement.{name}", moved, shape[1])
     else:
         found = vectors("displacement", displacement, shape)
+    check_held(found, held)
+    return found
+
+
+def check_held(found: np.ndarray, held: np.ndarray) -> None:
+    """Raises where displacements, (…, points, dimension), are given of what is not held."""
     is_loose = (found != 0) & ~held
-    loose = np.flatnonzero(is_loose.any(axis=-1).reshape(-1, shape[0]).any(axis=0))
+    loose = np.flatnonzero(is_loose.any(axis=-1).reshape(-1, held.shape[0]).any(axis=0))
     if loose.size:
         named = ", ".join(map(str, loose[:NAMED])) + (", …" if loose.size > NAMED else "")
         raise failure("displacement", "zero wherever fix does not hold", f"others at {loose.size} points: {named}")
-    return found
-
 
 def vectors(key: str, values: Any, shape: "tuple[int, ...]") -> np.ndarray:
     """A vector for each point, (points, dimension), or several of these, (…, points, dimension)."""

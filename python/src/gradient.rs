@@ -1,18 +1,18 @@
 //! Spring constants of cells as functions of node positions and moduli, with their derivatives.
 
-use crate::arguments::{number, optional, text};
-use crate::arrays::{matrix, places, rows};
+use crate::arguments::{optional, text};
+use crate::arrays::{list, matrix, places, rows};
 use crate::element::Element;
 use crate::entry::fit_entry;
 use crate::error::{invalid, raised};
 use crate::progress::{alone, apart};
-use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 use springfit::error::{Error, ErrorKind, Result};
-use springfit::fit::{GradientFit, constants_gradient};
-use springfit::material::{Material, Moduli, Plane};
-use springfit::springs::Springs;
+use springfit::fit::{CellFits, CellFunction, CellNumbers, GradientFit, Inputs, fit_cells, fit_exact};
+use springfit::material::{BlockValues, Hooke, Material, Moduli, Plane};
+use springfit::springs::{Force, Measure, Springs};
 use springfit::study::Recipe;
 use std::path::Path;
 use std::sync::Arc;
@@ -23,17 +23,26 @@ const FEW: usize = 1000;
 /// The constants of the cells of one element by one fit.
 #[pyclass(frozen, module = "springfit._core")]
 pub struct CellConstants {
-    rule: Arc<CellRule>,
+    pub rule: Arc<CellRule>,
     given: Arguments,
 }
 
 /// The element, the keys and the plane state of which constants are made.
 type Arguments = (Py<Element>, Py<PyDict>, Option<String>);
 
+/// A list of numbers of NumPy.
+type Numbers<'py> = PyReadonlyArray1<'py, f64>;
+/// Numbers of the springs of each cell, and of the rest contents of those on contents.
+type OfSprings<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+/// Numbers of the points, and of λ and μ of each cell.
+type OfInputs<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+/// The inputs of [`OfInputs`], given.
+type GivenInputs<'py> = (PyReadonlyArray2<'py, f64>, Numbers<'py>, Numbers<'py>);
+
 /// How the constants follow from a cell.
-struct CellRule {
-    element: Arc<springfit::element::Element>,
-    springs: Springs,
+pub struct CellRule {
+    pub element: Arc<springfit::element::Element>,
+    pub springs: Springs,
     recipe: Recipe,
     plane: Option<Plane>,
 }
@@ -104,64 +113,99 @@ impl CellConstants {
         self.rule.springs.len()
     }
 
-    /// The constants, `[cells, springs]`.
+    /// Whether springs between two points have no rest length, as those of exact networks.
+    #[getter]
+    fn is_restless(&self) -> bool {
+        matches!(self.rule.recipe, Recipe::Exact(_))
+    }
+
+    /// λ and μ of each of the given materials, which are checked; in the plane times the thickness.
+    fn moduli<'py>(
+        &self,
+        py: Python<'py>,
+        young: Numbers,
+        poisson: Numbers,
+        thickness: Numbers,
+    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+        let materials = self.rule.materials(&young, &poisson, &thickness).map_err(|error| raised(py, error))?;
+        let moduli: Vec<Moduli> = materials.iter().map(Material::moduli).collect();
+        let of = |number: fn(&Moduli) -> f64| list(py, moduli.iter().map(number).collect());
+        Ok((of(|m| m.lambda), of(|m| m.mu)))
+    }
+
+    /// The constants and the rest contents, with one material or one for each cell.
     fn values<'py>(
         &self,
         py: Python<'py>,
         points: PyReadonlyArray2<f64>,
         cells: PyReadonlyArray2<i64>,
-        young: &Bound<PyAny>,
-        poisson: &Bound<PyAny>,
-        thickness: &Bound<PyAny>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        young: Numbers,
+        poisson: Numbers,
+        thickness: Numbers,
+    ) -> PyResult<OfSprings<'py>> {
         let rule = self.rule.clone();
         let (points, cells) = rule.arrays(py, &points, &cells)?;
-        let constants = constants(young, poisson, thickness)?;
-        let found = cellwise(py, cells.len() / self.rule.element.nodes(), move || {
-            let method = rule.recipe.kind().cell_method().ok_or_else(not_of_cells)?;
-            method.fit_cells(&rule.element, &rule.springs, &points, &cells, rule.material(constants)?)
+        let materials = rule.materials(&young, &poisson, &thickness).map_err(|error| raised(py, error))?;
+        let [m, r] = rule.counts();
+        let (constants, rests) = cellwise(py, cells.len() / rule.element.nodes(), move || {
+            let found = rule.fit(&points, &cells, &materials)?;
+            let rests = rule.rests(&points, &cells, &found);
+            Ok((found.constants, rests))
         })?;
-        Ok(matrix(py, found.constants, self.rule.springs.len()))
+        Ok((matrix(py, constants, m), matrix(py, rests, r)))
     }
 
-    /// The gradient of `Σ w k` with respect to points, Young's modulus, Poisson's ratio and thickness; `weights` are `[cells, springs]`.
-    #[expect(clippy::too_many_arguments, reason = "those of `values`, and the weights")]
+    /// The derivatives of constants and rest contents along one change of the inputs; of two changes the second ones.
+    #[expect(clippy::too_many_arguments, reason = "the inputs, and what is asked of them")]
+    fn along<'py>(
+        &self,
+        py: Python<'py>,
+        points: PyReadonlyArray2<f64>,
+        cells: PyReadonlyArray2<i64>,
+        lambda: Numbers,
+        mu: Numbers,
+        first: GivenInputs,
+        second: Option<GivenInputs>,
+    ) -> PyResult<OfSprings<'py>> {
+        let rule = self.rule.clone();
+        let (points, cells) = rule.arrays(py, &points, &cells)?;
+        let moduli = moduli(&lambda, &mu);
+        let changes: Vec<Inputs> = [Some(first), second].into_iter().flatten().map(inputs).collect();
+        let [m, r] = rule.counts();
+        let found = cellwise(py, cells.len() / rule.element.nodes(), move || {
+            rule.function(&points, &cells, &moduli)?.along(&changes.iter().collect::<Vec<_>>())
+        })?;
+        Ok((matrix(py, found.constants, m), matrix(py, found.rests, r)))
+    }
+
+    /// The gradient of `Σ w k + Σ v c₀` in points, λ and μ of each cell; with a change of these its derivative along the change.
+    #[expect(clippy::too_many_arguments, reason = "the inputs, and what is asked of them")]
     fn gradient<'py>(
         &self,
         py: Python<'py>,
         points: PyReadonlyArray2<f64>,
         cells: PyReadonlyArray2<i64>,
-        young: &Bound<PyAny>,
-        poisson: &Bound<PyAny>,
-        thickness: &Bound<PyAny>,
-        weights: PyReadonlyArray2<f64>,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64, f64, f64)> {
+        lambda: Numbers,
+        mu: Numbers,
+        weights: (PyReadonlyArray2<f64>, PyReadonlyArray2<f64>),
+        change: Option<GivenInputs>,
+    ) -> PyResult<OfInputs<'py>> {
         let rule = self.rule.clone();
-        let expected = [cells.shape()[0], rule.springs.len()];
-        if weights.shape() != expected {
-            let found = format!("{:?}", weights.shape());
-            return Err(invalid(py, "weights", &format!("an array of shape {expected:?}"), found));
-        }
         let (points, cells) = rule.arrays(py, &points, &cells)?;
-        let weights = rows(&weights);
-        let [young, poisson, thickness] = constants(young, poisson, thickness)?;
-        let (gradient, material) = cellwise(py, expected[0], move || {
-            let material = rule.material([young, poisson, thickness])?;
-            let (moduli, fit) = (material.moduli(), rule.gradient_fit()?);
-            let gradient = constants_gradient(&rule.element, &rule.springs, &points, &cells, moduli, &fit, &weights)?;
-            Ok((gradient, material))
-        })?;
-        let along = |moduli: Moduli| gradient.moduli[0] * moduli.lambda + gradient.moduli[1] * moduli.mu;
-        let (young_slope, poisson_slope) = (material.moduli_by_young(), material.moduli_by_poisson());
-        // λ and μ of a plane body grow in proportion to E and to the thickness; no other body has one.
+        let (moduli, change) = (moduli(&lambda, &mu), change.map(inputs));
+        let weights = CellNumbers { constants: rows(&weights.0), rests: rows(&weights.1) };
         let d = self.rule.element.dimension();
-        let by_thickness = if d == 2 { along(material.moduli()) / thickness } else { 0.0 };
-        Ok((matrix(py, gradient.points, d), along(young_slope), along(poisson_slope), by_thickness))
+        let found = cellwise(py, cells.len() / self.rule.element.nodes(), move || {
+            rule.function(&points, &cells, &moduli)?.gradient(&weights, change.as_ref())
+        })?;
+        let of = |i: usize| list(py, found.moduli.iter().skip(i).step_by(2).copied().collect());
+        let (lambda, mu) = (of(0), of(1));
+        Ok((matrix(py, found.points, d), lambda, mu))
     }
 }
 
 /// Works on so many cells. A few are done on the thread of the call, because another takes longer to start than they do.
-fn cellwise<T: Send + 'static>(
+pub fn cellwise<T: Send + 'static>(
     py: Python,
     cells: usize,
     work: impl FnOnce() -> Result<T> + Send + 'static,
@@ -169,9 +213,18 @@ fn cellwise<T: Send + 'static>(
     if cells < FEW { apart(py, work).map_err(|error| raised(py, error)) } else { alone(py, work) }
 }
 
-/// Young's modulus, Poisson's ratio and the thickness.
-fn constants(young: &Bound<PyAny>, poisson: &Bound<PyAny>, thickness: &Bound<PyAny>) -> PyResult<[f64; 3]> {
-    Ok([number("young", young)?, number("poisson", poisson)?, number("thickness", thickness)?])
+fn moduli(lambda: &Numbers, mu: &Numbers) -> Vec<Moduli> {
+    lambda.as_array().iter().zip(mu.as_array()).map(|(&lambda, &mu)| Moduli { lambda, mu }).collect()
+}
+
+fn inputs((points, lambda, mu): GivenInputs) -> Inputs {
+    let moduli = lambda.as_array().iter().zip(mu.as_array()).flat_map(|(&lambda, &mu)| [lambda, mu]).collect();
+    Inputs { points: rows(&points), moduli }
+}
+
+/// One value of all cells, or those of each.
+fn each<T: Clone>(values: &[T]) -> BlockValues<'_, T> {
+    BlockValues::listed(values, values.len() == 1)
 }
 
 impl CellRule {
@@ -183,9 +236,87 @@ impl CellRule {
         }
     }
 
-    fn material(&self, [young, poisson, thickness]: [f64; 3]) -> Result<Material> {
-        let thickness = (self.element.dimension() == 2).then_some(thickness);
-        Material::for_body(self.element.dimension(), young, poisson, self.plane, thickness)
+    fn function<'a>(&'a self, points: &'a [f64], cells: &'a [usize], moduli: &'a [Moduli]) -> Result<CellFunction<'a>> {
+        CellFunction::new(&self.element, &self.springs, points, cells, each(moduli), self.gradient_fit()?)
+    }
+
+    /// The number of springs of a cell, and that of those on other measures than lengths.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.springs.len(), self.springs.len() - self.springs.pairs().len()]
+    }
+
+    fn materials(&self, young: &Numbers, poisson: &Numbers, thickness: &Numbers) -> Result<Vec<Material>> {
+        let (d, count) = (self.element.dimension(), young.len());
+        let each = young.as_array().into_iter().zip(poisson.as_array()).zip(thickness.as_array()).enumerate();
+        each.map(|(cell, ((&young, &poisson), &thickness))| {
+            let thickness = (d == 2).then_some(thickness);
+            let found = Material::for_body(d, young, poisson, self.plane, thickness);
+            found.map_err(|error| match error.key().map(String::from) {
+                Some(key) if count > 1 => error.at_key(format!("{key}[{cell}]")),
+                _ => error,
+            })
+        })
+        .collect()
+    }
+
+    fn fit(&self, points: &[f64], cells: &[usize], materials: &[Material]) -> Result<CellFits> {
+        let method = self.recipe.kind().cell_method().ok_or_else(not_of_cells)?;
+        match (&self.recipe, materials) {
+            (Recipe::Exact(recipe), _) => {
+                let fit = recipe.resolve(None)?;
+                let found = fit_exact(&self.element, points, cells, each(materials), &fit, &mut |_| {})?;
+                let has_law = matches!(found.force, Force::Exact { content: Some(_) });
+                if has_law || found.springs.len() != self.springs.len() {
+                    let expected = "an energy whose springs are linear ones on lengths and contents: \"stable-neo-hookean\" without \"large\"";
+                    let other = format!("\"{}\"", fit.energy.name());
+                    return Err(Error::expected("energy", expected, other).of_kind(ErrorKind::Unsupported));
+                }
+                Ok(found)
+            }
+            (Recipe::Stiffness(fit), _) => {
+                let hooke: Vec<Hooke> = materials.iter().map(|material| material.moduli().into()).collect();
+                fit_cells(&self.element, &self.springs, points, cells, each(&hooke), fit, &mut |_| {})
+            }
+            (Recipe::Sampled(_) | Recipe::Whole(_) | Recipe::Published(_), [material]) => {
+                method.fit_cells(&self.element, &self.springs, points, cells, *material)
+            }
+            (Recipe::Sampled(_) | Recipe::Whole(_) | Recipe::Published(_), _) => Err(not_of_cells()),
+        }
+    }
+
+    /// The measures at rest of the springs on other measures than lengths, `[cells × their number]`.
+    fn rests(&self, points: &[f64], cells: &[usize], found: &CellFits) -> Vec<f64> {
+        let ([m, r], first) = (self.counts(), self.springs.pairs().len());
+        if let Force::Exact { content: None } = found.force {
+            // The fit writes k c₀.
+            let constants = found.constants.chunks_exact(m.max(1)).flat_map(|all| &all[first..]);
+            return found.parameters.iter().zip(constants).map(|(pull, k)| pull / k).collect();
+        }
+        let measures: Vec<(Vec<usize>, Measure)> = self.measures();
+        let space = self.element.space();
+        let mut x = Vec::new();
+        let mut rests = Vec::with_capacity(cells.len() / self.element.nodes() * r);
+        for nodes in cells.chunks_exact(self.element.nodes()) {
+            for (own, measure) in &measures {
+                x.clear();
+                x.extend(own.iter().flat_map(|&a| &points[nodes[a] * space..(nodes[a] + 1) * space]));
+                rests.push(measure.value(&x, space));
+            }
+        }
+        rests
+    }
+
+    /// The nodes and the measure of each spring on another measure than a length.
+    pub fn measures(&self) -> Vec<(Vec<usize>, Measure)> {
+        let mut functions = self.springs.functions().iter();
+        let of = |(nodes, measure): (Vec<usize>, Measure)| match measure {
+            Measure::Function(_) => {
+                let own = functions.next().map(|f| f.in_space.as_ref().unwrap_or(&f.function).clone());
+                (nodes, own.map_or(measure, Measure::Function))
+            }
+            _ => (nodes, measure),
+        };
+        self.springs.measures(&self.element).into_iter().skip(self.springs.pairs().len()).map(of).collect()
     }
 
     fn arrays(
@@ -195,7 +326,7 @@ impl CellRule {
         cells: &PyReadonlyArray2<i64>,
     ) -> PyResult<(Vec<f64>, Vec<usize>)> {
         for (key, name, width, found) in [
-            ("points", "points", self.element.dimension(), points.shape()[1]),
+            ("points", "points", self.element.space(), points.shape()[1]),
             ("cells", "cells", self.element.nodes(), cells.shape()[1]),
         ] {
             if found != width {

@@ -1,5 +1,6 @@
 //! The module `springfit._core`: what Python calls. Everything that needs no other program's types is in the Python files beside it.
 
+mod adjoint;
 mod arguments;
 mod arrays;
 mod body;
@@ -54,6 +55,9 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_class::<distributed::BodyShare>()?;
     module.add_class::<distributed::NetworkShare>()?;
     module.add_class::<gradient::CellConstants>()?;
+    module.add_class::<adjoint::SpringBody>()?;
+    module.add_class::<adjoint::Tangent>()?;
+    module.add_function(wrap_pyfunction!(adjoint::spring_numbers, module)?)?;
     module.add_function(wrap_pyfunction!(element::shipped_elements, module)?)?;
     module.add_function(wrap_pyfunction!(element::parsed_element, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::restored_mesh, module)?)?;

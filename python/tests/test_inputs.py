@@ -112,11 +112,11 @@ def test_wrong_arguments_are_named(call, key):
 
 @pytest.mark.parametrize("wrong", ["1e4", True, 1j, np.complex128(1), np.array([1.0, 2.0]), None], ids=repr)
 def test_moduli_are_real_numbers(wrong):
-    constants = sf._core.CellConstants(sf.Element("quad4"), {"objective": "exact"})
+    constants = sf.SpringConstants(MESH.cells)
     for place, key in enumerate(["young", "poisson", "thickness"]):
         moduli = [1e4, 0.3, 1.0]
         moduli[place] = wrong
-        assert key_of(lambda: constants.values(MESH.points, MESH.cells[0][1], *moduli)) == key
+        assert key_of(lambda: constants(MESH.points, *moduli)) == key
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ def test_meshes_are_copied_and_pickled(scenes):
 
 
 def test_constants_and_networks_are_copied():
-    constants = sf.SpringConstants("quad4", MESH.cells[0][1], "modal", higher=0.3, plane="strain")
+    constants = sf.SpringConstants(MESH.cells, "modal", higher=0.3, plane="strain")
     known = constants(MESH.points, 1e4, 0.3)[0]
     for other in (copy.deepcopy(constants), pickle.loads(pickle.dumps(constants))):
         assert np.array_equal(other(MESH.points, 1e4, 0.3)[0], known)

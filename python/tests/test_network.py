@@ -167,7 +167,7 @@ def test_notes_are_those_of_the_command():
 
 @pytest.mark.parametrize("name, points, cells", [("tet4", np.eye(4, 3), [[3, 0, 1, 2]]), ("bar2", [[0], [1], [3]], [[0, 1], [1, 2]])])
 def test_only_plane_bodies_have_a_slope_by_thickness(name, points, cells):
-    constants = sf.SpringConstants(name, cells)
+    constants = sf.SpringConstants({name: cells})
     for thickness in (0.0, 1.0):
         assert constants.gradient(points, 1e4, 0.3, thickness, weights=np.ones(len(constants.springs))).thickness == 0.0
 

@@ -6,12 +6,14 @@ use super::{Real, Scalar};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// `a + Σ_i b_i ε_i` with `ε_i ε_j = 0`: a value and its derivatives in N directions (Clifford 1873).
+///
+/// The values may be lanes, one element per lane, or dual numbers again, whose derivatives are second ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dual<const N: usize> {
+pub struct Dual<const N: usize, T = f64> {
     /// The value.
-    pub value: f64,
+    pub value: T,
     /// The derivatives.
-    pub slopes: [f64; N],
+    pub slopes: [T; N],
 }
 
 impl<const N: usize> Dual<N> {
@@ -19,57 +21,80 @@ impl<const N: usize> Dual<N> {
     pub fn steady(value: f64) -> Dual<N> {
         Dual { value, slopes: [0.0; N] }
     }
+}
 
+impl<const N: usize, T: Scalar> Dual<N, T> {
     /// The value, and `own` times these slopes plus `other` times those of another number.
     #[inline(always)]
-    fn with(value: f64, a: &Dual<N>, own: f64, b: &Dual<N>, other: f64) -> Dual<N> {
-        let mut slopes = [0.0; N];
+    fn with(value: T, a: &Dual<N, T>, own: &T, b: &Dual<N, T>, other: &T) -> Dual<N, T> {
+        let mut slopes = a.slopes.clone();
         for i in 0..N {
-            slopes[i] = own * a.slopes[i] + other * b.slopes[i];
+            slopes[i] = (a.slopes[i].clone() * own).plus_product(&b.slopes[i], other);
         }
+        Dual { value, slopes }
+    }
+
+    /// The value with zero slopes.
+    #[inline(always)]
+    fn constant_like(&self, value: T) -> Dual<N, T> {
+        let slopes = value.zero().repeated();
         Dual { value, slopes }
     }
 }
 
-impl<const N: usize> Add<&Dual<N>> for Dual<N> {
-    type Output = Dual<N>;
+impl<const N: usize, T: Scalar> Add<&Dual<N, T>> for Dual<N, T> {
+    type Output = Dual<N, T>;
 
     #[inline(always)]
-    fn add(self, y: &Dual<N>) -> Dual<N> {
-        Dual::with(self.value + y.value, &self, 1.0, y, 1.0)
+    fn add(mut self, y: &Dual<N, T>) -> Dual<N, T> {
+        for i in 0..N {
+            self.slopes[i] = self.slopes[i].clone() + &y.slopes[i];
+        }
+        Dual { value: self.value + &y.value, slopes: self.slopes }
     }
 }
 
-impl<const N: usize> Sub<&Dual<N>> for Dual<N> {
-    type Output = Dual<N>;
+impl<const N: usize, T: Scalar> Sub<&Dual<N, T>> for Dual<N, T> {
+    type Output = Dual<N, T>;
 
     #[inline(always)]
-    fn sub(self, y: &Dual<N>) -> Dual<N> {
-        Dual::with(self.value - y.value, &self, 1.0, y, -1.0)
+    fn sub(mut self, y: &Dual<N, T>) -> Dual<N, T> {
+        for i in 0..N {
+            self.slopes[i] = self.slopes[i].clone() - &y.slopes[i];
+        }
+        Dual { value: self.value - &y.value, slopes: self.slopes }
     }
 }
 
-impl<const N: usize> Mul<&Dual<N>> for Dual<N> {
-    type Output = Dual<N>;
+impl<const N: usize, T: Scalar> Mul<&Dual<N, T>> for Dual<N, T> {
+    type Output = Dual<N, T>;
 
     #[inline(always)]
-    fn mul(self, y: &Dual<N>) -> Dual<N> {
-        Dual::with(self.value * y.value, &self, y.value, y, self.value)
+    fn mul(self, y: &Dual<N, T>) -> Dual<N, T> {
+        Dual::with(self.value.clone() * &y.value, &self, &y.value, y, &self.value)
     }
 }
 
-impl<const N: usize> Div<&Dual<N>> for Dual<N> {
-    type Output = Dual<N>;
+impl<const N: usize, T: Scalar> Div<&Dual<N, T>> for Dual<N, T> {
+    type Output = Dual<N, T>;
 
     #[inline(always)]
-    fn div(self, y: &Dual<N>) -> Dual<N> {
-        let value = self.value / y.value;
-        Dual::with(value, &self, 1.0 / y.value, y, -value / y.value)
+    fn div(self, y: &Dual<N, T>) -> Dual<N, T> {
+        let value = self.value.clone() / &y.value;
+        let own = y.value.one() / &y.value;
+        let other = value.zero() - &(value.clone() * &own);
+        Dual::with(value, &self, &own, y, &other)
     }
 }
 
-impl<const N: usize> Scalar for Dual<N> {
+impl<const N: usize, T: Real> Scalar for Dual<N, T> {
     type Constant = f64;
+
+    /// In a function that is compiled for the instructions of the values.
+    #[inline(always)]
+    fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {
+        self.value.vectorize(work)
+    }
 
     #[inline(always)]
     fn exact(value: f64) -> f64 {
@@ -78,54 +103,76 @@ impl<const N: usize> Scalar for Dual<N> {
 
     #[inline(always)]
     fn epsilon() -> f64 {
-        f64::epsilon()
+        T::epsilon()
     }
 
     #[inline(always)]
-    fn constant(&self, c: &f64) -> Dual<N> {
-        Dual::steady(*c)
+    fn delicate() -> f64 {
+        T::delicate()
     }
 
     #[inline(always)]
-    fn scaled(self, c: &f64) -> Dual<N> {
-        Dual::with(self.value * c, &self, *c, &self, 0.0)
+    fn constant(&self, c: &f64) -> Dual<N, T> {
+        self.constant_like(self.value.constant(c))
     }
 
     #[inline(always)]
-    fn plus_product(self, a: &Dual<N>, b: &Dual<N>) -> Dual<N> {
-        self + &(*a * b)
+    fn scaled(mut self, c: &f64) -> Dual<N, T> {
+        for i in 0..N {
+            self.slopes[i] = self.slopes[i].clone().scaled(c);
+        }
+        Dual { value: self.value.scaled(c), slopes: self.slopes }
     }
 
     #[inline(always)]
-    fn minus_product(self, a: &Dual<N>, b: &Dual<N>) -> Dual<N> {
-        self - &(*a * b)
+    fn plus_product(self, a: &Dual<N, T>, b: &Dual<N, T>) -> Dual<N, T> {
+        let mut slopes = self.slopes;
+        for i in 0..N {
+            slopes[i] = slopes[i].clone().plus_product(&a.slopes[i], &b.value).plus_product(&b.slopes[i], &a.value);
+        }
+        Dual { value: self.value.plus_product(&a.value, &b.value), slopes }
     }
 
     #[inline(always)]
-    fn exceeds(&self, other: &Dual<N>) -> bool {
-        self.value > other.value
+    fn minus_product(self, a: &Dual<N, T>, b: &Dual<N, T>) -> Dual<N, T> {
+        let mut slopes = self.slopes;
+        for i in 0..N {
+            slopes[i] = slopes[i].clone().minus_product(&a.slopes[i], &b.value).minus_product(&b.slopes[i], &a.value);
+        }
+        Dual { value: self.value.minus_product(&a.value, &b.value), slopes }
+    }
+
+    #[inline(always)]
+    fn exceeds(&self, other: &Dual<N, T>) -> bool {
+        self.value.exceeds(&other.value)
     }
 }
 
-impl<const N: usize> Real for Dual<N> {
+impl<const N: usize, T: Real> Real for Dual<N, T> {
     #[inline(always)]
-    fn sqrt(self) -> Dual<N> {
-        let root = self.value.sqrt();
-        Dual::with(root, &self, 0.5 / root, &self, 0.0)
+    fn sqrt(self) -> Dual<N, T> {
+        let root = self.value.clone().sqrt();
+        let half = root.constant(&0.5) / &root;
+        let zero = root.zero();
+        Dual::with(root, &self, &half, &self, &zero)
     }
 
     #[inline(always)]
-    fn choose(&self, yes: &Dual<N>, no: &Dual<N>) -> Dual<N> {
-        if self.value > 0.0 { *yes } else { *no }
+    fn choose(&self, yes: &Dual<N, T>, no: &Dual<N, T>) -> Dual<N, T> {
+        let mut slopes = yes.slopes.clone();
+        for i in 0..N {
+            slopes[i] = self.value.choose(&yes.slopes[i], &no.slopes[i]);
+        }
+        Dual { value: self.value.choose(&yes.value, &no.value), slopes }
     }
 
     #[inline(always)]
     fn rounded(&self) -> f64 {
-        self.value
+        self.value.rounded()
     }
 
     #[inline(always)]
-    fn vanished(&self) -> Dual<N> {
-        Dual { value: 0.0, slopes: self.slopes }
+    fn vanished(&self) -> Dual<N, T> {
+        Dual { value: self.value.vanished(), slopes: self.slopes.clone() }
     }
 }

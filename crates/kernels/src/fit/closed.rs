@@ -137,6 +137,39 @@ impl<T: Real> Closed<T> {
         }
     }
 
+    /// Solves the equations of [`Closed::solve`] for another right-hand side, one number per spring: `w ← M⁻¹ w`. Of tied springs each receives
+    /// that of its group.
+    pub fn solve_again(&mut self, springs: &Springs, w: &mut [T]) {
+        let Some(any) = w.first().cloned() else { return };
+        any.vectorize(
+            #[inline(always)]
+            || match self.steps {
+                Steps::Decoupled => {
+                    for w in &mut *w {
+                        *w = w.clone().scaled(&0.5);
+                    }
+                }
+                Steps::Nodes => self.nodal.solve_again(springs, w),
+                Steps::Springs => self.normal.substitute(w),
+                Steps::Groups => {
+                    let mut sums = vec![any.zero(); springs.names.len()];
+                    for (w, &group) in w.iter().zip(&springs.groups) {
+                        sums[group] = sums[group].clone() + w;
+                    }
+                    self.tied.substitute(&mut sums);
+                    for (w, &group) in w.iter_mut().zip(&springs.groups) {
+                        *w = sums[group].clone();
+                    }
+                }
+            },
+        );
+    }
+
+    /// The weight of the norm.
+    pub fn weight(&self) -> ClosedWeight {
+        self.weight
+    }
+
     /// The equations of a single element, one per spring.
     pub fn equations_alone(&self, springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
         let mut normal = Normal::default();

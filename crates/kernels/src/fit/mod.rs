@@ -69,7 +69,7 @@ pub use exact::{
     DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, check_flat,
     exact_constants_of_kind, exact_double_double_constants, fit_exact,
 };
-pub use gradient::{ConstantsGradient, GradientFit, constants_gradient};
+pub use gradient::{CellFunction, CellNumbers, GradientFit, Inputs};
 pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use modulus::Modulus;

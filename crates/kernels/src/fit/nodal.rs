@@ -117,6 +117,37 @@ impl<T: Scalar> Nodal<T> {
         regular
     }
 
+    /// `w ← M⁻¹ w` for another right-hand side, after [`Nodal::solve`].
+    #[inline(always)]
+    pub fn solve_again(&mut self, springs: &Springs, w: &mut [T]) {
+        match springs.dimension {
+            2 => self.solve_again_in::<2>(springs, w),
+            _ => self.solve_again_in::<3>(springs, w),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_again_in<const D: usize>(&mut self, springs: &Springs, w: &mut [T]) {
+        self.gather::<D>(springs, w);
+        let Normal { gram, rhs: small, pivots, .. } = &mut self.small;
+        substitute(gram, small.len(), pivots, small);
+        self.scatter::<D>(springs, w);
+        if springs.content.is_none() {
+            return;
+        }
+        let lengths = springs.pairs.len();
+        let (mut above, mut below) = (w[lengths].clone(), self.border[lengths].clone());
+        for s in 0..lengths {
+            above = above.minus_product(&self.border[s], &w[s]);
+            below = below.minus_product(&self.border[s], &self.image[s]);
+        }
+        let constant = above / &below;
+        for s in 0..lengths {
+            w[s] = w[s].clone().minus_product(&constant, &self.image[s]);
+        }
+        w[lengths] = constant;
+    }
+
     /// `n_k n_l`, l ≤ k, of every length spring.
     #[inline(always)]
     fn set_entries<const D: usize>(&mut self, cell: &EdgeCell<T, D>) {

@@ -128,6 +128,12 @@ impl<T: Scalar> Normal<T> {
         )
     }
 
+    /// `b ← M⁻¹ b` for another right-hand side, after [`Normal::solve_regular`].
+    #[inline(always)]
+    pub fn substitute(&self, b: &mut [T]) {
+        substitute(&self.gram, self.size(), &self.pivots, b);
+    }
+
     #[inline(always)]
     fn factorize(&mut self, m: usize, rounding: f64) -> bool {
         self.pivots.resize(m, self.rhs[0].zero());

@@ -18,6 +18,7 @@ mod energy;
 mod kernel;
 mod precision;
 mod shear;
+mod small;
 mod volume;
 
 pub use domain::{DomainSprings, ExactDomains};
@@ -31,13 +32,13 @@ use super::input::check_cells;
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{BlockValues, Material, Moduli};
-use crate::scalar::Real;
+use crate::material::{BlockValues, Material};
 use crate::springs::{Force, Springs};
-use crate::stiffness::{Geometry, Placement};
+use crate::stiffness::Placement;
 use energy::{Coefficients, Form};
 use kernel::ExactBatch;
 use rayon::prelude::*;
+pub(super) use small::ExactKernel;
 
 /// The choices of an exact network.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -145,37 +146,6 @@ pub fn fit_exact<'a>(
         progress(((round + 1) * ROUND).min(cells));
     }
     Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })
-}
-
-/// The constants of one element for small deformations, in numbers of the kind of `x`; nodes at `x`, `[nodes × dimension]`, m. `None` if a
-/// Jacobian is not safely positive, or there are springs on areas.
-pub(super) fn exact_constants<T: Real>(
-    element: &Element,
-    springs: &Springs,
-    x: &[T],
-    moduli: Moduli<T>,
-    fit: &ExactFit,
-) -> Option<Vec<T>> {
-    if !springs.areas.is_empty() {
-        return None;
-    }
-    let zero = x[0].zero();
-    let coefficients = Coefficients::plain(moduli, &zero);
-    let batch = ExactBatch {
-        element,
-        springs,
-        points: &[],
-        connectivity: &[],
-        coefficients: BlockValues::Each(&[]),
-        has_law: false,
-        shares: fit.volume.shares(springs.points.is_empty()),
-        constants: &mut [],
-        parameters: &mut [],
-    };
-    let (mut constants, mut own) = (vec![zero.clone(); springs.len()], vec![zero.clone(); element.nodes()]);
-    let mut parameters = vec![zero.clone(); springs.len() - springs.pairs.len()];
-    let mut geometry = Geometry::like(&zero, &element.tabulation);
-    batch.solve(&coefficients, x, &mut geometry, &mut constants, &mut parameters, &mut own).then_some(constants)
 }
 
 /// Heights above the mean plane, as a share of the size of a cell, that may be rounding errors of the coordinates.

@@ -1,0 +1,245 @@
+//! How the forces of a network depend on its numbers: the constants and rest measures of its springs, and the points from which small
+//! displacements are measured. With them one more solution with a factor that is there gives the gradient of a number that depends on the
+//! displacements.
+//!
+//! Theory: page *Gradients of spring constants* of the book.
+
+use super::network::{LengthSpring, MeasureSpring, Network};
+use crate::element::Element;
+use crate::error::{Error, ErrorKind, Result};
+use crate::springs::Measure;
+use crate::stiffness::gather;
+
+/// One number for each number of a network.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NetworkNumbers {
+    /// Numbers of the constants, `[springs]`, springs on lengths first.
+    pub constants: Vec<f64>,
+    /// Numbers of the rest measures, `[springs]`.
+    pub rests: Vec<f64>,
+    /// Numbers of the points, `[points × dimension]`.
+    pub points: Vec<f64>,
+}
+
+/// A spring on a length between its ends: `ℓ` and n of the edge d.
+struct Edge {
+    ends: [usize; 2],
+    length: f64,
+    n: [f64; 3],
+}
+
+impl Edge {
+    fn of(spring: &LengthSpring, x: &[f64], d: usize) -> Edge {
+        let [i, j] = spring.points;
+        let mut n = [0.0; 3];
+        n.iter_mut().zip(&x[j * d..(j + 1) * d]).zip(&x[i * d..(i + 1) * d]).for_each(|((n, b), a)| *n = b - a);
+        let length = dot(&n, &n).sqrt();
+        // A spring without a rest length has no direction where its ends meet, and needs none.
+        n.iter_mut().for_each(|n| *n = if length > 0.0 { *n / length } else { 0.0 });
+        Edge { ends: spring.points, length, n }
+    }
+
+    /// The difference of two vectors of the points.
+    fn change(&self, v: &[f64], d: usize) -> [f64; 3] {
+        let [i, j] = self.ends;
+        std::array::from_fn(|k| if k < d { v[j * d + k] - v[i * d + k] } else { 0.0 })
+    }
+
+    fn add(&self, force: [f64; 3], to: &mut [f64], d: usize) {
+        let [i, j] = self.ends;
+        for (k, force) in force.into_iter().enumerate().take(d) {
+            to[j * d + k] += force;
+            to[i * d + k] -= force;
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// `M v` of a square matrix.
+fn product(matrix: &[f64], v: &[f64]) -> Vec<f64> {
+    matrix.chunks_exact(v.len().max(1)).map(|row| dot(row, v)).collect()
+}
+
+impl Network {
+    /// Checks that the derivatives of the springs in their numbers are known.
+    ///
+    /// # Errors
+    /// A spring has a law of force, or, `of_points`, measures something else than a length or a content in a cell that fills its space; the
+    /// kind is `Unsupported`.
+    pub fn check_sensitivities(&self, of_points: bool) -> Result<()> {
+        let refuse = |expected: &str, found: &str| {
+            Err(Error::expected("network", expected, found).of_kind(ErrorKind::Unsupported))
+        };
+        for spring in &self.others {
+            if spring.law.is_some() {
+                return refuse("springs whose force is k (c - rest)", "a law of force");
+            }
+            if of_points && degree(spring, self.dimension).is_none() {
+                return refuse("springs on lengths and on contents of cells that fill their space", spring.kind.name());
+            }
+        }
+        Ok(())
+    }
+
+    /// The gradient of `aᵀ F(x)`, with the slopes F of the energy at positions x, in constants and rest measures; the points have none.
+    ///
+    /// `∂F/∂k = (c − c₀) g`, `∂F/∂c₀ = −k g`
+    pub fn force_sensitivities(&self, x: &[f64], a: &[f64]) -> NetworkNumbers {
+        let d = self.dimension;
+        let mut found = self.nothing(0);
+        for (s, spring) in self.lengths.iter().enumerate() {
+            let edge = Edge::of(spring, x, d);
+            let along = dot(&edge.n, &edge.change(a, d));
+            found.constants[s] = (edge.length - spring.rest) * along;
+            found.rests[s] = -spring.constant * along;
+        }
+        self.each_other(x, |s, spring, x| {
+            let along = dot(&spring.measure.gradient(x, d), &here(spring, a, d));
+            found.constants[s] = (spring.measure.value(x, d) - spring.rest) * along;
+            found.rests[s] = -spring.constant * along;
+        });
+        found
+    }
+
+    /// The change of the slopes F of the energy at positions x with changes of constants and rest measures, `[points × dimension]`, N.
+    pub fn force_change(&self, x: &[f64], change: &NetworkNumbers) -> Vec<f64> {
+        let d = self.dimension;
+        let mut force = vec![0.0; x.len()];
+        for (s, spring) in self.lengths.iter().enumerate() {
+            let edge = Edge::of(spring, x, d);
+            let pull = change.constants[s] * (edge.length - spring.rest) - spring.constant * change.rests[s];
+            edge.add(edge.n.map(|n| pull * n), &mut force, d);
+        }
+        self.each_other(x, |s, spring, x| {
+            let past = spring.measure.value(x, d) - spring.rest;
+            let pull = change.constants[s] * past - spring.constant * change.rests[s];
+            add(spring, spring.measure.gradient(x, d).iter().map(|g| pull * g), &mut force, d);
+        });
+        force
+    }
+
+    /// The gradient of `aᵀ K(x) u`, with the tangent K at positions x, in constants, rest measures and x.
+    ///
+    /// A length with the edge d = ℓ n has `K = k ((1 − L/ℓ) I + (L/ℓ) n nᵀ)`; another measure `K = k (g gᵀ + (c − c₀) H)`, whose third
+    /// derivatives are known of contents.
+    pub fn stiffness_sensitivities(&self, x: &[f64], a: &[f64], u: &[f64]) -> NetworkNumbers {
+        let d = self.dimension;
+        let mut found = self.nothing(x.len());
+        for (s, spring) in self.lengths.iter().enumerate() {
+            let edge = Edge::of(spring, x, d);
+            let (a, u, k) = (edge.change(a, d), edge.change(u, d), spring.constant);
+            let (both, na, nu) = (dot(&a, &u), dot(&edge.n, &a), dot(&edge.n, &u));
+            if spring.rest == 0.0 && edge.length == 0.0 {
+                found.constants[s] = both;
+                continue;
+            }
+            let share = spring.rest / edge.length;
+            found.constants[s] = (1.0 - share) * both + share * na * nu;
+            found.rests[s] = k / edge.length * (na * nu - both);
+            let turn = k * share / edge.length;
+            let slope = |i: usize| turn * ((both - 3.0 * na * nu) * edge.n[i] + na * u[i] + nu * a[i]);
+            edge.add(std::array::from_fn(slope), &mut found.points, d);
+        }
+        let (mut points, mut constants, mut rests) = (found.points, found.constants, found.rests);
+        self.each_other(x, |s, spring, x| {
+            let (jet, k) = (spring.measure.jet(x, d), spring.constant);
+            let (a, u) = (here(spring, a, d), here(spring, u, d));
+            let (ga, gu) = (dot(&jet.gradient, &a), dot(&jet.gradient, &u));
+            let (ha, hu) = (product(&jet.hessian, &a), product(&jet.hessian, &u));
+            let (past, bent) = (jet.value - spring.rest, dot(&ha, &u));
+            constants[s] = ga * gu + past * bent;
+            rests[s] = -k * bent;
+            let third = third(spring, &a, &u, d);
+            let slope = |i: usize| k * (ha[i] * gu + hu[i] * ga + jet.gradient[i] * bent + past * third[i]);
+            add(spring, (0..a.len()).map(slope), &mut points, d);
+        });
+        NetworkNumbers { constants, rests, points }
+    }
+
+    /// The change of `K(x) u` with changes of constants, rest measures and x, `[points × dimension]`, N.
+    pub fn stiffness_change(&self, x: &[f64], u: &[f64], change: &NetworkNumbers) -> Vec<f64> {
+        let d = self.dimension;
+        let mut force = vec![0.0; x.len()];
+        for (s, spring) in self.lengths.iter().enumerate() {
+            let edge = Edge::of(spring, x, d);
+            let (b, u, k) = (edge.change(&change.points, d), edge.change(u, d), spring.constant);
+            if spring.rest == 0.0 && edge.length == 0.0 {
+                edge.add(u.map(|u| change.constants[s] * u), &mut force, d);
+                continue;
+            }
+            let (both, nb, nu) = (dot(&b, &u), dot(&edge.n, &b), dot(&edge.n, &u));
+            let share = spring.rest / edge.length;
+            let (own, of_rest, turn) =
+                (change.constants[s], k * change.rests[s] / edge.length, k * share / edge.length);
+            let along = |i: usize| {
+                own * ((1.0 - share) * u[i] + share * nu * edge.n[i])
+                    + of_rest * (nu * edge.n[i] - u[i])
+                    + turn * ((both - 3.0 * nb * nu) * edge.n[i] + nb * u[i] + nu * b[i])
+            };
+            edge.add(std::array::from_fn(along), &mut force, d);
+        }
+        self.each_other(x, |s, spring, x| {
+            let (jet, k) = (spring.measure.jet(x, d), spring.constant);
+            let (b, u) = (here(spring, &change.points, d), here(spring, u, d));
+            let (gb, gu) = (dot(&jet.gradient, &b), dot(&jet.gradient, &u));
+            let (hb, hu) = (product(&jet.hessian, &b), product(&jet.hessian, &u));
+            let (past, bent) = (jet.value - spring.rest, dot(&hb, &u));
+            let third = third(spring, &b, &u, d);
+            let (own, of_rest) = (change.constants[s], k * change.rests[s]);
+            let along = |i: usize| {
+                own * (jet.gradient[i] * gu + past * hu[i]) - of_rest * hu[i]
+                    + k * (hb[i] * gu + hu[i] * gb + jet.gradient[i] * bent + past * third[i])
+            };
+            add(spring, (0..b.len()).map(along), &mut force, d);
+        });
+        force
+    }
+
+    fn nothing(&self, points: usize) -> NetworkNumbers {
+        let of_springs = || vec![0.0; self.len()];
+        NetworkNumbers { constants: of_springs(), rests: of_springs(), points: vec![0.0; points] }
+    }
+
+    /// Calls `visit(s, spring, x)` with the number of each other spring and the positions of its points.
+    fn each_other(&self, x: &[f64], mut visit: impl FnMut(usize, &MeasureSpring, &[f64])) {
+        let mut own = Vec::new();
+        for (s, spring) in (self.lengths.len()..).zip(&self.others) {
+            own.resize(spring.points.len() * self.dimension, 0.0);
+            gather(x, self.dimension, &spring.points, &mut own);
+            visit(s, spring, &own);
+        }
+    }
+}
+
+/// The part of a vector of all points at those of a spring.
+fn here(spring: &MeasureSpring, all: &[f64], d: usize) -> Vec<f64> {
+    let mut own = vec![0.0; spring.points.len() * d];
+    gather(all, d, &spring.points, &mut own);
+    own
+}
+
+fn add(spring: &MeasureSpring, force: impl Iterator<Item = f64>, to: &mut [f64], d: usize) {
+    let places = spring.points.iter().flat_map(|p| p * d..(p + 1) * d);
+    places.zip(force).for_each(|(place, force)| to[place] += force);
+}
+
+/// The degree of a measure that is a polynomial of the positions.
+fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
+    let of = |element: &Element| (element.dimension() == d).then_some(d);
+    match &spring.measure {
+        Measure::Content(element) | Measure::PointContent(element, _) => of(element),
+        Measure::Length | Measure::Span(_) | Measure::Patch(_) | Measure::Function(_) => None,
+    }
+}
+
+/// `Σ_jl (∂³c/∂x_i∂x_j∂x_l) a_j u_l`. A content in three dimensions is a homogeneous polynomial of degree three, so that its second derivatives
+/// at a are their changes along a; in less dimensions they do not change.
+fn third(spring: &MeasureSpring, a: &[f64], u: &[f64], d: usize) -> Vec<f64> {
+    match degree(spring, d) {
+        Some(3) => product(&spring.measure.jet(a, d).hessian, u),
+        _ => vec![0.0; a.len()],
+    }
+}
