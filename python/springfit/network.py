@@ -13,13 +13,16 @@ import numpy as np
 from . import _core
 from ._arguments import array, failure, matrix, number, shown, typed, warn
 from ._functions import separated, warn_of_rest
+from ._lazy import Package
 from ._progress import listener
-from .material import Material, MaterialLike, is_regions
+from .material import Material, MaterialLike, default_law, is_regions
 from .mesh import Mesh
 
 if TYPE_CHECKING:
     import pyvista
     from scipy.sparse import csr_matrix
+else:
+    pyvista, csr_matrix = Package("pyvista"), Any
 
 #: How many points an error names.
 NAMED = 8
@@ -78,7 +81,7 @@ def sampled(
     """Fits the springs of every cell to the forces of an energy at sampled shapes.
 
     Args:
-        law: A shipped energy, such as "neo-hookean", or the path of a material file, whose expression is differentiated exactly. Or a
+        law: That of the material if None. A shipped energy, such as "neo-hookean", or the path of a material file, whose expression is differentiated exactly. Or a
             function W(F) of the deformation gradients (n, 3, 3) that returns the energies per volume at rest (n,), J/m³. F is that of a
             solid; of a plane body its stretch through the thickness follows from the plane state. Without ``stress``, W is differentiated
             by differences of the fourth order, whose error is some 1e-12 of the moduli. The material gives the moduli at rest; a warning tells where W has others.
@@ -100,6 +103,8 @@ def sampled(
     Raises:
         SpringfitError: A key or a value is wrong, a function fails or returns an array of another shape, or a cell cannot be fitted.
     """
+    if law is None and isinstance(material, Material) and stress is None:
+        law = default_law(material)
     law = law if law is None or callable(law) else os.fspath(law)
     return fit(mesh, material, "sampled", law=law, stress=stress, force=force, norm=norm, **keys)
 
