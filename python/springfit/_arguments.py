@@ -114,7 +114,7 @@ def count(key: str, value: Any) -> int:
     return int(found)
 
 
-def word(key: str, value: Any, expected: str) -> "str | None":
+def word(key: str, value: Any, expected: str) -> str | None:
     """A text, whose value the library checks, or None."""
     if not isinstance(value, (str, type(None))):
         raise failure(key, expected, shown(value))
@@ -150,7 +150,7 @@ def element_of(given: ElementLike) -> Element:
     return Element(os.fspath(given))
 
 
-def elements_of(given: "Iterable[ElementLike]") -> "list[Element]":
+def elements_of(given: Iterable[ElementLike]) -> list[Element]:
     """The elements of a list."""
     if isinstance(given, (str, os.PathLike, Element)) or not isinstance(given, Iterable):
         raise failure("elements", "a list of elements, such as [Element(…)]", shown(given))

@@ -15,6 +15,8 @@ from ._core import Element, shipped_elements
 
 if TYPE_CHECKING:
     from .mesh import Mesh
+else:
+    Mesh = Any
 
 # meshio's names of the cells that VTK numbers; meshio keeps VTK's order of nodes.
 _MESHIO = {
@@ -47,9 +49,9 @@ _DIMENSION = {
 _AROUND = {8: (9, [0, 1, 3, 2]), 11: (12, [0, 1, 3, 2, 4, 5, 7, 6])}
 
 
-def _elements(own: "list[Element]") -> "dict[int, tuple[Element, list[int]]]":
+def _elements(own: list[Element]) -> dict[int, tuple[Element, list[int]]]:
     """By the number of VTK's cell, with the place in VTK's list of each node; own elements before the shipped ones."""
-    known: "dict[int, tuple[Element, list[int]]]" = {}
+    known: dict[int, tuple[Element, list[int]]] = {}
     for element in own + [Element(name) for name in shipped_elements()]:
         if element.vtk is not None:
             number, order = element.vtk
@@ -61,7 +63,7 @@ def _dimension(number: int) -> int:
     return _DIMENSION.get(number, 3)
 
 
-def _blocks(cells: "list[tuple[int, Any]]", own: "list[Element]") -> "list[tuple[Element, np.ndarray]]":
+def _blocks(cells: list[tuple[int, Any]], own: list[Element]) -> list[tuple[Element, np.ndarray]]:
     """Cells in VTK's order by the elements that serve them, in the order of the elements' nodes."""
     known = _elements(own)
     cells = [(_AROUND[n][0], nodes[:, _AROUND[n][1]]) if n in _AROUND and n not in known else (n, nodes) for n, nodes in cells]
@@ -92,7 +94,7 @@ def _space(points: np.ndarray, blocks: list) -> np.ndarray:
     return points
 
 
-def _join(groups: "dict[str, Any]", key: str, places: np.ndarray) -> None:
+def _join(groups: dict[str, Any], key: str, places: np.ndarray) -> None:
     """Adds places to a group, which may have others already."""
     groups[key] = np.union1d(groups[key], places) if key in groups else np.unique(places)
 
@@ -102,11 +104,11 @@ def hint(name: object) -> str:
     return f'; did you mean "{FOREIGN[name]}"?' if isinstance(name, str) and name in FOREIGN else ""
 
 
-def from_meshio(mesh: Any, own: "list[Element]") -> tuple:
-    cells: "list[tuple[int, np.ndarray]]" = []
-    groups: "dict[str, Any]" = {}
+def from_meshio(mesh: Any, own: list[Element]) -> tuple:
+    cells: list[tuple[int, np.ndarray]] = []
+    groups: dict[str, Any] = {}
     # By name, the cells of each block.
-    listed: "dict[str, dict[int, Any]]" = {}
+    listed: dict[str, dict[int, Any]] = {}
     names = {tuple(np.atleast_1d(v)[:2]): name for name, v in (getattr(mesh, "field_data", None) or {}).items()}
     physical = (mesh.cell_data or {}).get("gmsh:physical", [None] * len(mesh.cells))
     for number_of_block, (block, marks) in enumerate(zip(mesh.cells, physical)):
@@ -138,7 +140,7 @@ def from_meshio(mesh: Any, own: "list[Element]") -> tuple:
     return _space(mesh.points, blocks), blocks, groups, _cells_of_groups(cells, blocks, listed)
 
 
-def _cells_of_groups(cells: list, blocks: list, listed: "dict[str, dict[int, Any]]") -> "dict[str, np.ndarray]":
+def _cells_of_groups(cells: list, blocks: list, listed: dict[str, dict[int, Any]]) -> dict[str, np.ndarray]:
     """By name, the cells among those of the body, counted as the mesh counts them: those of one element together."""
     most = max((_dimension(number) for number, _ in cells), default=0)
     of_body = [place for place, (number, _) in enumerate(cells) if _dimension(number) == most]
@@ -153,7 +155,7 @@ def _cells_of_groups(cells: list, blocks: list, listed: "dict[str, dict[int, Any
     return {name: np.concatenate(lists) for name, lists in found.items() if sum(map(len, lists))}
 
 
-def from_pyvista(grid: Any, own: "list[Element]") -> tuple:
+def from_pyvista(grid: Any, own: list[Element]) -> tuple:
     grid = grid.cast_to_unstructured_grid() if hasattr(grid, "cast_to_unstructured_grid") else grid
     try:
         cells = grid.cells_dict
@@ -171,8 +173,8 @@ def from_skfem(mesh: Any) -> tuple:
     if kind not in names:
         raise failure("mesh", "one of " + ", ".join(names), kind, "unsupported")
     nodes = mesh.t.T
-    groups: "dict[str, Any]" = {}
-    cell_groups: "dict[str, Any]" = {}
+    groups: dict[str, Any] = {}
+    cell_groups: dict[str, Any] = {}
     for key, owners in (("boundaries", mesh.facets.T), ("subdomains", nodes)):
         for name, chosen in (getattr(mesh, key) or {}).items():
             chosen = places(f"{key}.{name}", chosen, len(owners), key)
@@ -194,7 +196,7 @@ def from_gmsh(read: Any, scale: float, options: dict) -> Any:
         return read(path, scale=scale, **options)
 
 
-def _vtk_blocks(mesh: "Mesh") -> "list[tuple[int, np.ndarray]]":
+def _vtk_blocks(mesh: Mesh) -> list[tuple[int, np.ndarray]]:
     """The numbers of VTK's cells and their nodes in VTK's order, block after block."""
     found = []
     for element, nodes in zip(mesh._core.elements, mesh.cells.values()):
@@ -213,7 +215,7 @@ def _in_space(vectors: np.ndarray) -> np.ndarray:
     return found
 
 
-def to_meshio(mesh: "Mesh") -> Any:
+def to_meshio(mesh: Mesh) -> Any:
     meshio = _meshio()
     names = {number: name for name, number in _MESHIO.items()}
     blocks = _vtk_blocks(mesh)
@@ -234,21 +236,57 @@ def _meshio() -> Any:
     return meshio
 
 
-#: The endings of the files in which meshio keeps groups.
-_WITH_GROUPS = (".inp", ".xdmf", ".xmf")
+#: Abaqus's names of VTK's cells: of solids, of plane cells, and of surfaces and curves in space.
+_ABAQUS = {
+    **{(10, 3): "C3D4", (24, 3): "C3D10", (12, 3): "C3D8", (25, 3): "C3D20", (13, 3): "C3D6", (26, 3): "C3D15"},
+    **{(5, 2): "CPS3", (22, 2): "CPS6", (9, 2): "CPS4", (23, 2): "CPS8", (3, 2): "T2D2"},
+    **{(5, 3): "S3", (22, 3): "STRI65", (9, 3): "S4", (23, 3): "S8R", (3, 3): "T3D2"},
+}
+#: What names of sets may not have.
+_NO_NAME = (",", "\n", '"', "*")
 
 
-def save(mesh: "Mesh", path: str) -> None:
-    meshio, ending = _meshio(), os.path.splitext(path)[1].lower()
+def _save_deck(mesh: Mesh, path: str) -> None:
+    """A deck of Abaqus with groups as sets of nodes and of elements. meshio's names plane cells as rigid ones."""
+    blocks = _vtk_blocks(mesh)
+    for element, (number, _) in zip(mesh._core.elements, blocks):
+        if (number, mesh.dimension) not in _ABAQUS:
+            raise failure("cells", "cells of " + ", ".join(dict.fromkeys(_ABAQUS.values())), element.name, "unsupported")
+    for name in (*mesh.groups, *mesh.cell_groups):
+        if any(sign in name for sign in _NO_NAME):
+            raise failure("groups", "names without commas, quotes and stars, for Abaqus", f"{name!r}")
+    lines, first = ["*HEADING", "*NODE"], 1
+    lines += [f"{i}, {', '.join(map(repr, x))}" for i, x in enumerate(_in_space(mesh.points).tolist(), 1)]
+    for number, nodes in blocks:
+        lines.append(f"*ELEMENT, TYPE={_ABAQUS[number, mesh.dimension]}")
+        for i, own in enumerate((nodes + 1).tolist(), first):
+            row = [i, *own]
+            # A line has 16 numbers at most, and one that goes on ends with a comma.
+            parts = [", ".join(map(str, row[k : k + 16])) for k in range(0, len(row), 16)]
+            lines.append(",\n".join(parts))
+        first += len(nodes)
+    for kind, groups in (("NSET", mesh.groups), ("ELSET", mesh.cell_groups)):
+        for name, places in groups.items():
+            lines.append(f'*{kind}, {kind}="{name}"')
+            numbers = (places + 1).tolist()
+            lines += [", ".join(map(str, numbers[k : k + 16])) for k in range(0, len(numbers), 16)]
+    with open(path, "w") as file:
+        file.write("\n".join(lines) + "\n")
+
+
+def save(mesh: Mesh, path: str) -> None:
+    ending = os.path.splitext(path)[1].lower()
+    if ending == ".inp":
+        return _save_deck(mesh, path)
+    meshio = _meshio()
     known = sorted(meshio.extension_to_filetypes)
     if ending not in known:
         raise failure("path", f"an ending of meshio's formats: {', '.join(known)}", f'"{path}"', "unsupported")
     found = to_meshio(mesh)
-    if ending not in _WITH_GROUPS:
-        if mesh.groups:
-            warn(f"files of {ending} have no groups: {', '.join(_WITH_GROUPS)} keep them")
-        found.point_sets, found.cell_sets = {}, {}
-    if mesh.dimension < 3 and ending != ".inp":
+    if mesh.groups:
+        warn(f"files of {ending} have no groups: .inp keeps them")
+    found.point_sets, found.cell_sets = {}, {}
+    if mesh.dimension < 3:
         # Most formats have three coordinates.
         found.points = _in_space(found.points)
     try:
@@ -257,7 +295,7 @@ def save(mesh: "Mesh", path: str) -> None:
         raise failure("path", "a format that meshio writes, with these cells", str(error) or type(error).__name__, "unsupported") from error
 
 
-def to_pyvista(mesh: "Mesh", u: Any) -> Any:
+def to_pyvista(mesh: Mesh, u: Any) -> Any:
     import pyvista
 
     blocks = _vtk_blocks(mesh)
@@ -275,7 +313,7 @@ def to_pyvista(mesh: "Mesh", u: Any) -> Any:
     return grid
 
 
-def normals(mesh: "Mesh") -> np.ndarray:
+def normals(mesh: Mesh) -> np.ndarray:
     points, found = mesh.points, []
     for element, (number, nodes) in zip(mesh._core.elements, _vtk_blocks(mesh)):
         if element.dimension != mesh.dimension - 1:
@@ -294,7 +332,7 @@ def normals(mesh: "Mesh") -> np.ndarray:
     return np.concatenate(found)
 
 
-def surface_of(surface: Any) -> "tuple[str | None, tuple | None]":
+def surface_of(surface: Any) -> tuple[str | None, tuple | None]:
     """A surface as a path, or as its points and lists of polygons."""
     if isinstance(surface, (str, os.PathLike)):
         return os.fspath(surface), None
@@ -312,7 +350,7 @@ def surface_of(surface: Any) -> "tuple[str | None, tuple | None]":
     return None, (matrix("surface", points, np.float64), [matrix("surface", cells, np.int64) for cells in polygons])
 
 
-def voxels(values: Any, spacing: Any, labels: Any, element: Any, origin: Any) -> "_core.Mesh":
+def voxels(values: Any, spacing: Any, labels: Any, element: Any, origin: Any) -> _core.Mesh:
     found = array("array", values)
     if found.dtype.kind not in "biu":
         raise failure("array", "integers or flags, a label of each voxel", f"values of type {found.dtype}")
@@ -320,7 +358,7 @@ def voxels(values: Any, spacing: Any, labels: Any, element: Any, origin: Any) ->
         raise failure("array", "an array of two or three axes", f"one of shape {found.shape}")
     found = np.ascontiguousarray(found.astype(np.int64))
 
-    def along(key: str, given: Any) -> "list[float]":
+    def along(key: str, given: Any) -> list[float]:
         own = array(key, given)
         full = np.full(found.ndim, own) if own.ndim == 0 else own
         if full.shape != (found.ndim,):

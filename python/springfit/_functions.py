@@ -17,7 +17,7 @@ _STEP, _TOLD = 1e-4, 0.01
 _FLATTEST = 1e-3
 
 
-def separated(keys: "dict[str, Any]") -> "tuple[dict[str, Any], dict[str, Any] | None]":
+def separated(keys: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any] | None]:
     """The keys of a fit without functions, and the functions, if there are any."""
     keys = dict(keys)
     law, stress, force = keys.get("law"), keys.pop("stress", None), keys.get("force")
@@ -75,7 +75,7 @@ def _is_zero(value: Any) -> bool:
     return isinstance(value, (int, np.integer)) and value == 0
 
 
-def _listed(place: str, shapes: "dict[str, Any]", usual: int, part: int) -> "dict[str, Any]":
+def _listed(place: str, shapes: dict[str, Any], usual: int, part: int) -> dict[str, Any]:
     """The shapes with the gradients that their sampler draws; ``part`` tells those of the fit from others."""
     sampler, key = shapes.pop("sampler"), f"{place}.sampler"
     if not callable(sampler):
@@ -112,7 +112,7 @@ def _name(function: Callable) -> str:
     return getattr(function, "__name__", type(function).__name__)
 
 
-def _force(key: str, group: "str | None", function: Callable) -> "tuple[str | None, Callable, str, list[str]]":
+def _force(key: str, group: str | None, function: Callable) -> tuple[str | None, Callable, str, list[str]]:
     expected = "a function with named arguments, such as f(s, k)"
     try:
         arguments = inspect.signature(function).parameters.values()
@@ -134,7 +134,7 @@ def _unmasked(key: str, function: Callable) -> Callable:
     return lambda *given: array(key, function(*given))
 
 
-def warn_of_rest(material: MaterialLike, energy: "Callable | None", stress: "Callable | None") -> None:
+def warn_of_rest(material: MaterialLike, energy: Callable | None, stress: Callable | None) -> None:
     """Warns where the stiffness of an energy at rest is not that of the material. What a function does wrong is left to the fit."""
     if not isinstance(material, Material) or not (isinstance(material.young, float) and isinstance(material.poisson, float)):
         return

@@ -15,7 +15,7 @@ Told = Callable[[str, int, int], Any]
 
 
 @contextmanager
-def listener(progress: "bool | Told | None") -> "Iterator[Told | None]":
+def listener(progress: bool | Told | None) -> Iterator[Told | None]:
     """What reports each step: nothing, the caller's function, or a bar of ``tqdm``; without that, nothing."""
     if callable(progress):
         yield progress

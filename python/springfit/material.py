@@ -74,20 +74,20 @@ class Material:
         >>> net = sf.fit(mesh, fibres, "frobenius")
     """
 
-    young: "Quantity | None" = None
-    poisson: "Quantity | None" = None
-    plane: "Literal['stress', 'strain'] | None" = None
-    thickness: "Quantity | None" = None
-    area: "float | str | None" = None
-    density: "Quantity | None" = None
-    orthotropic: "Mapping[str, Any] | None" = None
-    transversely_isotropic: "Mapping[str, Any] | None" = None
-    cubic: "Mapping[str, Any] | None" = None
-    stiffness: "Sequence[Any] | np.ndarray | None" = None
-    axes: "Sequence[Any] | None" = None
-    law: "str | os.PathLike[str] | None" = None
-    parameters: "Mapping[str, Any] | None" = None
-    fibre: "Sequence[Any] | np.ndarray | None" = None
+    young: Quantity | None = None
+    poisson: Quantity | None = None
+    plane: Literal['stress', 'strain'] | None = None
+    thickness: Quantity | None = None
+    area: float | str | None = None
+    density: Quantity | None = None
+    orthotropic: Mapping[str, Any] | None = None
+    transversely_isotropic: Mapping[str, Any] | None = None
+    cubic: Mapping[str, Any] | None = None
+    stiffness: Sequence[Any] | np.ndarray | None = None
+    axes: Sequence[Any] | None = None
+    law: str | os.PathLike[str] | None = None
+    parameters: Mapping[str, Any] | None = None
+    fibre: Sequence[Any] | np.ndarray | None = None
 
     def __post_init__(self) -> None:
         isotropic = all(getattr(self, key) is None for key in ("orthotropic", "transversely_isotropic", "cubic", "stiffness"))
@@ -101,13 +101,16 @@ class Material:
             if not isinstance(self.law, (str, os.PathLike)):
                 raise failure("law", "the name of an energy, or the path of its file", shown(self.law))
             object.__setattr__(self, "law", os.fspath(self.law))
-        for name, value in zip(_QUANTITIES, _core.checked_material(self, list(_QUANTITIES))):
+        # Names of arrays are asked for once it is right.
+        numbers = zip(_QUANTITIES, _core.checked_material(self, list(_QUANTITIES)))
+        object.__setattr__(self, "_is_checked", True)
+        for name, value in numbers:
             # Texts with units; expressions stay.
             if isinstance(getattr(self, name), str) and value is not None:
                 object.__setattr__(self, name, value)
 
     @classmethod
-    def lame(cls, lam: float, mu: float, **rest: Any) -> "Material":
+    def lame(cls, lam: float, mu: float, **rest: Any) -> Material:
         """The material of Lamé's constants λ and μ, Pa.
 
         Raises:
@@ -125,7 +128,7 @@ class Material:
             raise failure("lam", f"a number above -2/3 mu = {-2 * mu / 3:g} Pa", lam)
         return cls(young=mu * (3 * lam + 2 * mu) / (lam + mu), poisson=lam / (2 * (lam + mu)), **rest)
 
-    def _entry(self, held: "dict[str, Any]") -> "dict[str, Any]":
+    def _entry(self, held: dict[str, Any] | None) -> dict[str, Any]:
         """The keys of a scene's entry; arrays by cell are held by name."""
         entry = {key.replace("transversely_isotropic", "transversely-isotropic"): _stated(key, getattr(self, key), held)
                  for key in (*_QUANTITIES, *_OTHERS) if getattr(self, key) is not None}
@@ -147,15 +150,23 @@ class Material:
         return f"Material({', '.join(f'{name}={text(value)}' for name, value in given if value is not None)})"
 
 
-def stated(material: Any) -> "tuple[Any, dict[str, Any]]":
+def stated(material: Any) -> tuple[Any, dict[str, Any]]:
     """What a material, or a dictionary of them by group, is as a scene states it, with the arrays that it holds by name."""
-    held: "dict[str, Any]" = {}
+    held: dict[str, Any] = {}
     if isinstance(material, Material):
-        return material._entry(held), held
+        return material._entry(held if "_is_checked" in material.__dict__ else None), held
     if not is_regions(material):
         expected = "a springfit.Material, such as Material(young=1e4, poisson=0.3), or a dictionary of them by group"
         raise failure("material", expected, shown(material))
     return regions(material, held), held
+
+
+def default_law(material: Material) -> str | None:
+    """The law of a sampled fit that names none."""
+    if material.law is not None and (material.parameters is not None or material.fibre is not None):
+        key = "parameters" if material.parameters is not None else "fibre"
+        raise failure(key, "none in a sampled fit outside of a scene: a material file has them", "some")
+    return None if material.law is None else os.fspath(material.law)
 
 
 def is_regions(material: Any) -> bool:
@@ -163,7 +174,7 @@ def is_regions(material: Any) -> bool:
     return isinstance(material, Mapping) and len(material) > 0 and all(isinstance(own, Material) for own in material.values())
 
 
-def regions(material: "Mapping[Any, Material]", held: "dict[str, Any]") -> "list[dict[str, Any]]":
+def regions(material: Mapping[Any, Material], held: dict[str, Any] | None) -> list[dict[str, Any]]:
     """The entries of the regions."""
     entries = []
     for name, own in material.items():
@@ -188,6 +199,8 @@ def _quantity(key: str, value: Any, what: str) -> Any:
     if key == "area":
         raise failure(key, "one area for the rods of a region", f"an array of shape {found.shape}")
     found = typed(key, found, np.float64)
+    if found.size and 0.0 < found.min() and found.max() < (0.5 if key == "poisson" else np.inf):
+        return _kept(found, value)
     if key == "poisson":
         wrong, range_ = (found <= -1) | (found > 0.5), "ratios above -1 and below 0.5"
     else:
@@ -196,13 +209,18 @@ def _quantity(key: str, value: Any, what: str) -> Any:
     if wrong.any():
         cell = int(np.flatnonzero(wrong)[0])
         raise failure(f"{key}[{cell}]", range_, found[cell])
-    if found is value or found.base is not None:
+    return _kept(found, value)
+
+
+def _kept(found: np.ndarray, given: Any) -> np.ndarray:
+    """A read-only array that nobody else has."""
+    if found is given or found.base is not None:
         found = found.copy()
     found.flags.writeable = False
     return found
 
 
-def _stated(key: str, value: Any, held: "dict[str, Any]") -> Any:
+def _stated(key: str, value: Any, held: dict[str, Any] | None) -> Any:
     """A value as a scene has it; arrays by cell are held by name."""
     if isinstance(value, np.ndarray) and key in _QUANTITIES:
         return _held(key, value[:, None], held)
@@ -218,7 +236,7 @@ def _stated(key: str, value: Any, held: "dict[str, Any]") -> Any:
     return value
 
 
-def _constant(key: str, value: Any, held: "dict[str, Any]") -> Any:
+def _constant(key: str, value: Any, held: dict[str, Any] | None) -> Any:
     """A constant of a law or a list of them, each a number, a text or an array by cell."""
     of_cells = isinstance(value, np.ndarray) and value.ndim == 1 and key.startswith("parameters.")
     if of_cells or (isinstance(value, np.ndarray) and value.ndim == 1 and value.size > 3):
@@ -236,8 +254,10 @@ def _vectors(key: str, rows: np.ndarray) -> np.ndarray:
     return vectors
 
 
-def _held(key: str, values: np.ndarray, held: "dict[str, Any]") -> "dict[str, str]":
-    """Holds an array; its name tells its content from others."""
+def _held(key: str, values: np.ndarray, held: dict[str, Any] | None) -> dict[str, str]:
+    """Holds an array; its name tells its content from others. Nothing is held where the rest is checked alone."""
+    if held is None:
+        return {"file": "memory"}
     values = np.ascontiguousarray(values)
     name = f"memory:{key}-{zlib.crc32(values.tobytes()):08x}-{values.size}"
     held[name] = (None, values)

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _convert, _core
 from ._arguments import Element, ElementLike, along_axes, count, element_of, elements_of, failure, matrix, number, places, shown, warn, word
+from ._lazy import Package
 
 Below = Literal["warn", "refuse", "skip"]
 # The keys are those of ElementLike; types of dictionaries hold for one type of keys alone.
@@ -18,6 +19,8 @@ CellsLike = Union[Mapping[Any, Any], Iterable["tuple[ElementLike, Any]"]]
 if TYPE_CHECKING:
     import meshio
     import pyvista
+else:
+    meshio, pyvista = Package("meshio"), Package("pyvista")
 
 #: The least quality without a warning, as the library has it.
 LEAST = 1e-4
@@ -37,13 +40,13 @@ class Cells(Mapping[str, np.ndarray]):
         (['tri3'], (2, 3), 'tri3')
     """
 
-    def __init__(self, blocks: "Iterable[tuple[str, np.ndarray]]") -> None:
+    def __init__(self, blocks: Iterable[tuple[str, np.ndarray]]) -> None:
         self._blocks = {name: _fixed(nodes) for name, nodes in blocks}
 
     @overload
     def __getitem__(self, key: str) -> np.ndarray: ...
     @overload
-    def __getitem__(self, key: int) -> "tuple[str, np.ndarray]": ...
+    def __getitem__(self, key: int) -> tuple[str, np.ndarray]: ...
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, (int, np.integer)):
             return list(self._blocks.items())[key]
@@ -51,7 +54,7 @@ class Cells(Mapping[str, np.ndarray]):
             raise KeyError(f"expected one of {', '.join(self._blocks)}, found {key!r}{_convert.hint(key)}")
         return self._blocks[key]
 
-    def __iter__(self) -> "Iterator[str]":
+    def __iter__(self) -> Iterator[str]:
         return iter(self._blocks)
 
     def __len__(self) -> int:
@@ -98,11 +101,11 @@ class Mesh:
         self,
         points: Any,
         cells: CellsLike,
-        groups: "Mapping[str, Any] | None" = None,
+        groups: Mapping[str, Any] | None = None,
         *,
-        cell_groups: "Mapping[str, Any] | None" = None,
-        elements: "Sequence[ElementLike]" = (),
-        below: "Below | None" = None,
+        cell_groups: Mapping[str, Any] | None = None,
+        elements: Sequence[ElementLike] = (),
+        below: Below | None = None,
         least: float | None = None,
     ) -> None:
         points = _points(points)
@@ -113,7 +116,7 @@ class Mesh:
         named = {name: places(f"groups.{name}", own, len(points)) for name, own in (groups or {}).items()}
         count = sum(len(nodes) for _, nodes in blocks)
         of_cells = {name: places(f"cell_groups.{name}", own, count, "cells") for name, own in (cell_groups or {}).items()}
-        self._parents: "np.ndarray | None" = None
+        self._parents: np.ndarray | None = None
         self._core = _core.Mesh.of_arrays(points, blocks, named, of_cells, *_gate(below, least))
         unused = len(points) - len(self._core.points)
         if unused:
@@ -121,7 +124,7 @@ class Mesh:
             warn(f"{left}: the others are numbered anew without them, and Mesh.numbers has their places before")
         self._warn_of_cells(least)
 
-    def _warn_of_cells(self, least: "float | None") -> None:
+    def _warn_of_cells(self, least: float | None) -> None:
         quality = self._core.quality
         if quality["poor"]:
             least = LEAST if least is None else least
@@ -131,7 +134,7 @@ class Mesh:
             )
 
     @classmethod
-    def _of(cls, core: "_core.Mesh", least: "float | None" = None) -> "Mesh":
+    def _of(cls, core: _core.Mesh, least: float | None = None) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._core = core
         mesh._parents = None
@@ -141,14 +144,14 @@ class Mesh:
     @classmethod
     def read(
         cls,
-        path: "str | os.PathLike[str]",
+        path: str | os.PathLike[str],
         *,
         scale: float = 1.0,
-        elements: "Sequence[ElementLike]" = (),
-        below: "Below | None" = None,
+        elements: Sequence[ElementLike] = (),
+        below: Below | None = None,
         least: float | None = None,
-        space: "int | None" = None,
-    ) -> "Mesh":
+        space: int | None = None,
+    ) -> Mesh:
         """The mesh of a file in one of the formats of the library, such as ``.msh``, ``.vtu``, ``.inp``, ``.bdf`` or ``.stl``.
 
         Args:
@@ -183,13 +186,13 @@ class Mesh:
     def box(
         cls,
         element: ElementLike,
-        size: "Sequence[float] | np.ndarray",
-        cells: "Sequence[int] | np.ndarray",
-        origin: "Sequence[float] | np.ndarray | None" = None,
+        size: Sequence[float] | np.ndarray,
+        cells: Sequence[int] | np.ndarray,
+        origin: Sequence[float] | np.ndarray | None = None,
         *,
-        below: "Below | None" = None,
+        below: Below | None = None,
         least: float | None = None,
-    ) -> "Mesh":
+    ) -> Mesh:
         """A rectangle or a brick of equal cells, ``size`` metres long, with groups ``xmin``, ``xmax``, ``ymin``, … and ``body``.
 
         The quality of its cells is checked, as that of arrays, if ``below`` or ``least`` is given.
@@ -210,7 +213,7 @@ class Mesh:
         return cls(box.points, [(element, nodes) for _, nodes in box.blocks], box.groups, cell_groups=box.cell_groups, below=below, least=least)
 
     @classmethod
-    def from_meshio(cls, mesh: Any, *, scale: float = 1.0, elements: "Sequence[ElementLike]" = (), **options: Any) -> "Mesh":
+    def from_meshio(cls, mesh: Any, *, scale: float = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
         """Of a ``meshio.Mesh``: its cells of the highest dimension, and its point sets, cell sets and physical groups. Sets of one name are
         one group.
 
@@ -228,7 +231,7 @@ class Mesh:
         return cls._converted(_convert.from_meshio(mesh, elements_of(elements)), scale, options)
 
     @classmethod
-    def from_pyvista(cls, grid: Any, *, scale: float = 1.0, elements: "Sequence[ElementLike]" = (), **options: Any) -> "Mesh":
+    def from_pyvista(cls, grid: Any, *, scale: float = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
         """Of a ``pyvista`` grid, image or ``PolyData``: its cells of the highest dimension. Arguments are those of :meth:`from_meshio`.
 
         Each cell of an image is a cell of the mesh, whatever its values; :meth:`voxels` takes labels.
@@ -241,7 +244,7 @@ class Mesh:
         return cls._converted(_convert.from_pyvista(grid, elements_of(elements)), scale, options)
 
     @classmethod
-    def from_skfem(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> "Mesh":
+    def from_skfem(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> Mesh:
         """Of a scikit-fem mesh of linear cells; its named boundaries and subdomains become groups. Those of one name are one group.
         Arguments are those of :meth:`from_meshio`.
 
@@ -253,7 +256,7 @@ class Mesh:
         return cls._converted(_convert.from_skfem(mesh), scale, options)
 
     @classmethod
-    def from_trimesh(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> "Mesh":
+    def from_trimesh(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> Mesh:
         """Of a ``trimesh.Trimesh``: a surface of triangles, which requires a thickness in its material. Arguments are those of
         :meth:`from_meshio`.
 
@@ -265,12 +268,12 @@ class Mesh:
         return cls._converted((mesh.vertices, {"tri3": mesh.faces}, None, None), scale, options)
 
     @classmethod
-    def _converted(cls, found: "tuple[Any, CellsLike, Any, Any]", scale: float, options: dict) -> "Mesh":
+    def _converted(cls, found: tuple[Any, CellsLike, Any, Any], scale: float, options: dict) -> Mesh:
         points, cells, groups, cell_groups = found
         return cls(_scale(scale) * _points(points), cells, **{"groups": groups, "cell_groups": cell_groups, **options})
 
     @classmethod
-    def from_gmsh(cls, *, scale: float = 1.0, **options: Any) -> "Mesh":
+    def from_gmsh(cls, *, scale: float = 1.0, **options: Any) -> Mesh:
         """Of the current model of the ``gmsh`` package. Arguments are those of :meth:`read`."""
         return _convert.from_gmsh(cls.read, scale, options)
 
@@ -279,14 +282,14 @@ class Mesh:
         cls,
         surface: Any,
         *,
-        cell: "float | None" = None,
-        points: "int | None" = None,
+        cell: float | None = None,
+        points: int | None = None,
         element: ElementLike = "hex8",
-        boundary: "Literal['stepped', 'smooth'] | None" = None,
-        layers: "Literal['refuse', 'union'] | None" = None,
+        boundary: Literal['stepped', 'smooth'] | None = None,
+        layers: Literal['refuse', 'union'] | None = None,
         repair: bool = False,
         scale: float = 1.0,
-    ) -> "Mesh":
+    ) -> Mesh:
         """A closed surface filled with cells of a lattice, as ``[mesh.fill]`` of a scene.
 
         Args:
@@ -323,11 +326,11 @@ class Mesh:
         cls,
         array: Any,
         spacing: Any = 1.0,
-        labels: "Mapping[str, Any] | None" = None,
+        labels: Mapping[str, Any] | None = None,
         *,
-        element: "ElementLike | None" = None,
+        element: ElementLike | None = None,
         origin: Any = 0.0,
-    ) -> "Mesh":
+    ) -> Mesh:
         """The voxels of an array of labels whose label is not zero: ``array[i, j, k]`` is the one from (i, j, k) to (i + 1, j + 1, k + 1).
 
         Args:
@@ -370,17 +373,17 @@ class Mesh:
         return self._kept("cells", lambda: Cells(self._core.blocks))
 
     @property
-    def cells_dict(self) -> "dict[str, np.ndarray]":
+    def cells_dict(self) -> dict[str, np.ndarray]:
         """:attr:`cells` as a dictionary, under the name that it has in meshio. Names of elements are those of springfit."""
         return dict(self.cells)
 
     @property
-    def groups(self) -> "dict[str, np.ndarray]":
+    def groups(self) -> dict[str, np.ndarray]:
         """The points of each group, ascending."""
         return dict(self._kept("groups", lambda: {name: _fixed(own) for name, own in self._core.groups.items()}))
 
     @property
-    def cell_groups(self) -> "dict[str, np.ndarray]":
+    def cell_groups(self) -> dict[str, np.ndarray]:
         """The cells of each group that has some, ascending, counted block after block."""
         return dict(self._kept("cell_groups", lambda: {name: _fixed(own) for name, own in self._core.cell_groups.items()}))
 
@@ -396,7 +399,7 @@ class Mesh:
         return self._core.content
 
     @property
-    def parents(self) -> "np.ndarray | None":
+    def parents(self) -> np.ndarray | None:
         """Of a mesh by :meth:`boundary`, the cell of the body behind each cell, counted block after block; None of others."""
         return self._parents
 
@@ -410,7 +413,7 @@ class Mesh:
         """
         return _convert.normals(self)
 
-    def refine(self, n: int = 1) -> "Mesh":
+    def refine(self, n: int = 1) -> Mesh:
         """The mesh with the edges of all cells halved ``n`` times, with the same groups. A tetrahedron becomes eight.
 
         Raises:
@@ -429,7 +432,7 @@ class Mesh:
             core = core.refined()
         return Mesh._of(core)
 
-    def boundary(self) -> "Mesh":
+    def boundary(self) -> Mesh:
         """The surface of a solid, or the curve around a plane body: a mesh of the sides that belong to one cell alone.
 
         Its :attr:`numbers` are the places of its points in :attr:`points` of the body, :attr:`parents` the cells behind its cells, and
@@ -453,12 +456,12 @@ class Mesh:
         surface._parents = _fixed(np.concatenate([behind for _, _, behind in found]))
         return surface
 
-    def save(self, path: "str | os.PathLike[str]") -> None:
-        """Writes the mesh by ``meshio``, in the format of the ending, such as ``.vtu``, ``.msh``, ``.inp`` or ``.xdmf``. Groups are in ``.inp`` and
-        ``.xdmf`` files; a warning tells that others have none.
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the mesh in the format of the ending: ``.inp``, a deck of Abaqus with groups as sets of nodes and elements, or one that
+        ``meshio`` writes, such as ``.vtu`` or ``.msh``, without groups, as a warning tells.
 
         Raises:
-            SpringfitError: meshio is not installed, or has no such format.
+            SpringfitError: The format has no such cell, or meshio is not installed or has no such format.
 
         Examples:
             >>> import os, springfit as sf, tempfile
@@ -470,7 +473,7 @@ class Mesh:
         """
         _convert.save(self, os.fspath(path))
 
-    def to_meshio(self) -> "meshio.Mesh":
+    def to_meshio(self) -> meshio.Mesh:
         """A ``meshio.Mesh`` with groups as point sets, and those of cells as cell sets.
 
         Raises:
@@ -483,7 +486,7 @@ class Mesh:
         """
         return _convert.to_meshio(self)
 
-    def to_pyvista(self, u: Any = None) -> "pyvista.UnstructuredGrid":
+    def to_pyvista(self, u: Any = None) -> pyvista.UnstructuredGrid:
         """A ``pyvista.UnstructuredGrid``, with groups of cells as ``cell_data`` of flags.
 
         Args:
@@ -501,7 +504,7 @@ class Mesh:
         return _convert.to_pyvista(self, u)
 
     @property
-    def numbers(self) -> "np.ndarray | None":
+    def numbers(self) -> np.ndarray | None:
         """The number of each point where it comes from: its place in the array or the VTK file, or its Gmsh tag."""
         return self._core.numbers
 
@@ -557,7 +560,7 @@ def _flag(key: str, value: Any) -> bool:
     return bool(value)
 
 
-def _gate(below: Any, least: Any) -> "tuple[str | None, float | None]":
+def _gate(below: Any, least: Any) -> tuple[str | None, float | None]:
     least = None if least is None else number("least", least, "a quality from 0 to 1")
     return word("below", below, '"warn", "refuse" or "skip"'), least
 
@@ -570,7 +573,7 @@ def _scale(scale: Any) -> float:
     return found
 
 
-def _blocks(cells: Any, own: "list[Element]") -> "list[tuple[Element, np.ndarray]]":
+def _blocks(cells: Any, own: list[Element]) -> list[tuple[Element, np.ndarray]]:
     """Elements and the nodes of their cells. Those of one element are put together, so that a name tells them."""
     expected = "a dictionary of nodes by element, or a list of pairs of both"
     if not isinstance(cells, Iterable):
@@ -579,7 +582,7 @@ def _blocks(cells: Any, own: "list[Element]") -> "list[tuple[Element, np.ndarray
     if not all(isinstance(pair, (tuple, list)) and len(pair) == 2 for pair in pairs):
         raise failure("cells", expected, shown(cells))
     named = {element.name: element for element in reversed(own)}
-    found: "dict[str, tuple[Any, Element, list[np.ndarray]]]" = {}
+    found: dict[str, tuple[Any, Element, list[np.ndarray]]] = {}
     for given, nodes in pairs:
         element = named.get(given, None) if isinstance(given, str) else None
         element = element_of(given) if element is None else element

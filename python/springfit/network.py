@@ -14,12 +14,14 @@ from ._functions import separated, warn_of_rest
 from ._progress import listener
 from ._sparse import csr
 from ._supports import held_flags
-from .material import Material, MaterialLike, is_regions
+from .material import Material, MaterialLike, default_law, is_regions
 from .mesh import Mesh
 from .springs import Network
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
+else:
+    csr_matrix = Any
 
 
 def fit(
@@ -75,7 +77,7 @@ def sampled(
     """Fits the springs of every cell to the forces of an energy at sampled shapes.
 
     Args:
-        law: A shipped energy, such as "neo-hookean", or the path of a material file, whose expression is differentiated exactly. Or a
+        law: That of the material if None. A shipped energy, such as "neo-hookean", or the path of a material file, whose expression is differentiated exactly. Or a
             function W(F) of the deformation gradients (n, 3, 3) that returns the energies per volume at rest (n,), J/m³. F is that of a
             solid; of a plane body its stretch through the thickness follows from the plane state. Without ``stress``, W is differentiated
             by differences of the fourth order, whose error is some 1e-12 of the moduli. The material gives the moduli at rest; a warning tells where W has others.
@@ -97,6 +99,8 @@ def sampled(
     Raises:
         SpringfitError: A key or a value is wrong, a function fails or returns an array of another shape, or a cell cannot be fitted.
     """
+    if law is None and isinstance(material, Material) and stress is None:
+        law = default_law(material)
     law = law if law is None or callable(law) else os.fspath(law)
     return fit(mesh, material, "sampled", law=law, stress=stress, force=force, norm=norm, **keys)
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import failure, shown
+from ._lazy import Package
 from ._progress import listener
 from .material import Material, is_regions, regions
 from .mesh import Mesh
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     import pandas
 
     from .network import Network
+else:
+    pandas, Network = Package("pandas"), Any
 
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
@@ -53,11 +56,11 @@ class Report:
     """
 
     record: dict
-    displacements: "dict[str, dict[str, np.ndarray]]" = field(repr=False)
-    files: "list[Path]" = field(default_factory=list)
+    displacements: dict[str, dict[str, np.ndarray]] = field(repr=False)
+    files: list[Path] = field(default_factory=list)
     _ran: Any = field(default=None, repr=False, compare=False)
-    _mesh: "Mesh | None" = field(default=None, repr=False, compare=False)
-    _networks: "dict[str, Network] | None" = field(default=None, repr=False, compare=False)
+    _mesh: Mesh | None = field(default=None, repr=False, compare=False)
+    _networks: dict[str, Network] | None = field(default=None, repr=False, compare=False)
 
     @property
     def mesh(self) -> Mesh:
@@ -76,7 +79,7 @@ class Report:
         return self.mesh.points
 
     @property
-    def networks(self) -> "dict[str, Network]":
+    def networks(self) -> dict[str, Network]:
         """The network of each fit, by the name of the fit.
 
         Raises:
@@ -102,19 +105,19 @@ class Report:
         return state
 
     @property
-    def notes(self) -> "list[str]":
+    def notes(self) -> list[str]:
         """What a reader must know before the figures are trusted."""
         # The mark is in tables of the program.
         return [note.replace(" (* in the table)", "") for note in self.record["notes"]]
 
     @property
-    def fits(self) -> "pandas.DataFrame":
+    def fits(self) -> pandas.DataFrame:
         """One row for each fit, a ``pandas.DataFrame``; what is a table itself is left out, and so are columns without a value."""
         plain = lambda value: not isinstance(value, (dict, list))
         return _frame([{k: v for k, v in fit.items() if plain(v)} for fit in self.record["fits"]])
 
     @property
-    def loads(self) -> "pandas.DataFrame":
+    def loads(self) -> pandas.DataFrame:
         """One row for each fit and load, a ``pandas.DataFrame`` without columns that have no value."""
         rows = []
         for fit in self.record["fits"]:
@@ -124,12 +127,12 @@ class Report:
         return _frame(rows)
 
     @property
-    def frequencies(self) -> "pandas.DataFrame":
+    def frequencies(self) -> pandas.DataFrame:
         """One row for each model, a ``pandas.DataFrame``; empty where none were asked for."""
         return _frame(self.record["frequencies"])
 
     @property
-    def motion(self) -> "pandas.DataFrame":
+    def motion(self) -> pandas.DataFrame:
         """One row for each model that moved, a ``pandas.DataFrame``; empty without a motion."""
         return _frame(self.record["motion"])
 
@@ -151,7 +154,7 @@ def _cell(value: Any) -> str:
     return "" if value is None else f"{value:.3g}"
 
 
-def _frame(rows: "list[dict]") -> "pandas.DataFrame":
+def _frame(rows: list[dict]) -> pandas.DataFrame:
     """A data frame without columns that have no value."""
     import pandas
 
@@ -161,10 +164,10 @@ def _frame(rows: "list[dict]") -> "pandas.DataFrame":
 def run(
     scene: SceneLike,
     *,
-    set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike[str] | None" = None,
-    out: "str | os.PathLike[str] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
+    set: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
 ) -> Report:
     """Fits, solves and compares a scene.
 
@@ -191,10 +194,10 @@ def run(
 
 
 def given(
-    scene: "SceneLike", folder: "str | os.PathLike[str] | None", set: "Mapping[str, Any] | None" = None
-) -> "tuple[dict | Path, Path, dict[str, Any], dict[str, Any]]":
+    scene: SceneLike, folder: str | os.PathLike[str] | None, set: Mapping[str, Any] | None = None
+) -> tuple[dict | Path, Path, dict[str, Any], dict[str, Any]]:
     """A scene as the library takes it, the folder of the files that a dictionary names, keys with other values, and what is in memory by name."""
-    held: "dict[str, Any]" = {}
+    held: dict[str, Any] = {}
     settings = plain(settings_of(set), held)
     path, base = _placed(scene, folder)
     if isinstance(path, dict):
@@ -202,7 +205,7 @@ def given(
     return path, base, settings, _beside(held, path, settings)
 
 
-def _beside(held: "dict[str, Any]", scene: Any, settings: "dict[str, Any]") -> "dict[str, Any]":
+def _beside(held: dict[str, Any], scene: Any, settings: dict[str, Any]) -> dict[str, Any]:
     """What is in memory, where arrays of cells know the mesh of the scene."""
     own = settings.get("mesh", scene.get("mesh") if isinstance(scene, dict) else None)
     mesh = held.get(own.get("file")) if isinstance(own, Mapping) else None
@@ -213,7 +216,7 @@ def _beside(held: "dict[str, Any]", scene: Any, settings: "dict[str, Any]") -> "
 DEEPEST = 64
 
 
-def plain(value: Any, held: "dict[str, Any]", depth: int = 0) -> Any:
+def plain(value: Any, held: dict[str, Any], depth: int = 0) -> Any:
     """A value of a scene with names in place of the meshes and arrays in it, which are held by these names."""
     if isinstance(value, Mesh):
         name = f"memory:mesh-{value._core.checksum}-{_groups_sum(value):08x}"
@@ -241,7 +244,7 @@ def _groups_sum(mesh: Mesh) -> int:
     return total
 
 
-def _placed(scene: "SceneLike", folder: "str | os.PathLike[str] | None") -> "tuple[dict | Path, Path]":
+def _placed(scene: SceneLike, folder: str | os.PathLike[str] | None) -> tuple[dict | Path, Path]:
     if isinstance(scene, Mapping):
         return dict(scene), Path(folder or ".")
     if not isinstance(scene, (str, os.PathLike)):
@@ -251,7 +254,7 @@ def _placed(scene: "SceneLike", folder: "str | os.PathLike[str] | None") -> "tup
     return Path(scene), Path(".")
 
 
-def settings_of(given: "Mapping[str, Any] | None") -> "dict[str, Any]":
+def settings_of(given: Mapping[str, Any] | None) -> dict[str, Any]:
     """Values of keys by their paths."""
     if not isinstance(given, (Mapping, type(None))):
         raise failure("set", 'a dictionary such as {"material.poisson": 0.45}', shown(given))

@@ -8,19 +8,23 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+import numpy as np
+
 from . import _core
 from ._arguments import PLANES, count, failure, number, word
 from ._core import Element
 from ._functions import separated, warn_of_rest
+from ._lazy import Package
 from ._progress import listener
-from .material import MaterialLike
+from .material import Material, MaterialLike, default_law
 from .mesh import Mesh
 from .network import check_body
 from .report import Report, SceneLike, given
 
 if TYPE_CHECKING:
-    import numpy as np
     import pandas
+else:
+    pandas = Package("pandas")
 
 
 @overload
@@ -31,27 +35,27 @@ def compare(
     plane: Literal["stress", "strain"] | None = None,
     shapes: int | None = None,
     iterations: int | None = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
-) -> "pandas.DataFrame": ...
+    progress: bool | Callable[[str, int, int], Any] = False,
+) -> pandas.DataFrame: ...
 @overload
 def compare(
     what: SceneLike,
     *,
-    set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike[str] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
+    set: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
 ) -> Report: ...
 def compare(
-    what: "SceneLike | Element",
+    what: SceneLike | Element,
     *,
-    set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike[str] | None" = None,
+    set: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
     poisson: float | None = None,
     plane: Literal["stress", "strain"] | None = None,
     shapes: int | None = None,
     iterations: int | None = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
-) -> "Report | pandas.DataFrame":
+    progress: bool | Callable[[str, int, int], Any] = False,
+) -> Report | pandas.DataFrame:
     """Fits side by side, as ``springfit compare``.
 
     Args:
@@ -115,10 +119,10 @@ def converge(
     scene: SceneLike,
     *,
     levels: int | None = None,
-    truth: "SceneLike | None" = None,
-    set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike[str] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
+    truth: SceneLike | None = None,
+    set: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
 ) -> dict:
     """The errors of finite elements and networks on finer and finer meshes, as ``springfit converge``.
 
@@ -154,12 +158,12 @@ def converge(
 
 
 def stability(
-    what: "SceneLike | Element | None" = None,
+    what: SceneLike | Element | None = None,
     *,
-    set: "Mapping[str, Any] | None" = None,
-    folder: "str | os.PathLike[str] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
-) -> "pandas.DataFrame":
+    set: Mapping[str, Any] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
+) -> pandas.DataFrame:
     """Extreme cases: units, moduli and shapes far from usual ones, as ``springfit stability``.
 
     Args:
@@ -193,13 +197,13 @@ def stability(
 def learning_curve(
     mesh: Mesh,
     material: MaterialLike,
-    law: "str | os.PathLike[str] | Callable[[np.ndarray], Any] | None" = None,
+    law: str | os.PathLike[str] | Callable[[np.ndarray], Any] | None = None,
     *,
-    counts: "list[int]",
-    seeds: "list[int] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
+    counts: list[int],
+    seeds: list[int] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
     **keys: Any,
-) -> "pandas.DataFrame":
+) -> pandas.DataFrame:
     """The errors of a sampled fit over the number of its shapes.
 
     Each fit sees the first shapes of one sequence for each seed, so that a larger one sees those of a smaller one as well, and all have the same
@@ -234,6 +238,8 @@ def learning_curve(
         if "sampler" in shapes:
             keys["shapes"] = shapes = {**shapes, "count": max(counts, default=1)}
         seeds = [shapes.get("seed") or 1] if seeds is None else seeds
+    if law is None and isinstance(material, Material) and keys.get("stress") is None:
+        law = default_law(material)
     law = law if law is None or callable(law) else os.fspath(law)
     entry, functions = separated({"objective": "sampled", "springs": keys.pop("springs", None), "law": law, **keys})
     if functions is not None and functions["energy"] is not None:

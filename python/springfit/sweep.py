@@ -13,26 +13,29 @@ from typing import TYPE_CHECKING, Any, Literal
 from . import _core
 from ._arguments import failure
 from ._core import SpringfitError
+from ._lazy import Package
 from ._progress import listener
 from .report import SceneLike, given, plain
 
 if TYPE_CHECKING:
     import pandas
+else:
+    pandas = Package("pandas")
 
 
 def sweep(
     scene: SceneLike,
-    over: "Mapping[str, Any] | Iterable[Mapping[str, Any]] | None" = None,
+    over: Mapping[str, Any] | Iterable[Mapping[str, Any]] | None = None,
     *,
     design: Literal["grid", "random", "sobol"] | None = None,
     samples: int | None = None,
     seed: int | None = None,
-    set: "Mapping[str, Any] | None" = None,
+    set: Mapping[str, Any] | None = None,
     executor: Any = None,
-    folder: "str | os.PathLike[str] | None" = None,
-    records: "str | os.PathLike[str] | None" = None,
-    progress: "bool | Callable[[str, int, int], Any]" = False,
-) -> "pandas.DataFrame":
+    folder: str | os.PathLike[str] | None = None,
+    records: str | os.PathLike[str] | None = None,
+    progress: bool | Callable[[str, int, int], Any] = False,
+) -> pandas.DataFrame:
     """Runs a scene for many values of its keys. The command ``springfit sweep`` gives the same rows.
 
     Args:
@@ -108,12 +111,12 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _study(task: "tuple[str, Path, dict, str, dict]") -> str:
+def _study(task: tuple[str, Path, dict, str, dict]) -> str:
     """The line of one study; runs in the threads and processes of an executor."""
     return _core.study_line(*task)
 
 
-def _results(executor: Any, tasks: list) -> "Iterator[str]":
+def _results(executor: Any, tasks: list) -> Iterator[str]:
     """The lines of the studies as they become ready."""
     if executor is None:
         yield from map(_study, tasks)
@@ -132,8 +135,8 @@ def _results(executor: Any, tasks: list) -> "Iterator[str]":
         raise failure("executor", expected, type(executor).__name__)
 
 
-def _submitted(executor: Any, tasks: list) -> "Iterator[str]":
-    ready: "queue.SimpleQueue" = queue.SimpleQueue()
+def _submitted(executor: Any, tasks: list) -> Iterator[str]:
+    ready: queue.SimpleQueue = queue.SimpleQueue()
     futures = []
     try:
         for task in tasks:

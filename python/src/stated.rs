@@ -30,7 +30,8 @@ pub fn in_memory(held: &HeldByName) -> InMemory {
             Held::Values(mesh, values) => {
                 let components = values.shape()[1];
                 let mesh = mesh.as_ref().map(|mesh| mesh.mesh.clone());
-                let values = values.as_array().iter().copied().collect();
+                let values =
+                    values.as_slice().map_or_else(|_| values.as_array().iter().copied().collect(), <[f64]>::to_vec);
                 memory.add_values(name, CellValues { mesh, components, values });
             }
         }
@@ -52,6 +53,12 @@ impl Stated {
     /// # Errors
     /// It is another object, or its values are wrong.
     pub fn given(material: &Bound<PyAny>) -> PyResult<Stated> {
+        let (stated, held) = Stated::without_arrays(material)?;
+        Ok(Stated { memory: in_memory(&held), ..stated })
+    }
+
+    /// As [`Stated::given`], with the arrays as Python has them.
+    fn without_arrays<'py>(material: &Bound<'py, PyAny>) -> PyResult<(Stated, HeldByName<'py>)> {
         let py = material.py();
         let stated = py.import("springfit.material")?.call_method1("stated", (material,))?;
         let (table, held): (Bound<PyAny>, HeldByName) = stated.extract()?;
@@ -64,7 +71,7 @@ impl Stated {
         let value = value_of(&table, "material")?;
         let materials = Materials::parse(toml::Table::from_iter([("material".into(), value)]));
         let materials = materials.map_err(|error| raised(py, placed(error, &regions)))?;
-        Ok(Stated { materials, memory: in_memory(&held), regions })
+        Ok((Stated { materials, memory: InMemory::default(), regions }, held))
     }
 
     /// The mesh with the membranes and rods of regions, and the materials of its cells.
@@ -92,6 +99,9 @@ impl Stated {
 /// The error with the key as Python has it: `young`, or `material["core"].young`.
 fn placed(error: Error, regions: &[Option<String>]) -> Error {
     let Some(key) = error.key().map(String::from) else { return error };
+    if key == "material" && !regions.is_empty() && error.problem().contains("in none") {
+        return error.followed_by("; in a dictionary of materials the key None stands for the rest");
+    }
     if let Some(own) = key.strip_prefix("material.") {
         return error.at_key(own);
     }
@@ -116,6 +126,6 @@ fn placed(error: Error, regions: &[Option<String>]) -> Error {
 /// A value is wrong.
 #[pyfunction]
 pub fn checked_material(material: &Bound<PyAny>, keys: Vec<String>) -> PyResult<Vec<Option<f64>>> {
-    let stated = Stated::given(material)?;
+    let (stated, _) = Stated::without_arrays(material)?;
     Ok(keys.iter().map(|key| stated.materials.number(key)).collect())
 }

@@ -59,8 +59,8 @@ impl Ran {
         let Some(own) = self.outcome.fits.get(fit) else {
             return Err(invalid(py, "fit", &format!("a place below {}", self.outcome.fits.len()), fit));
         };
-        let Outcome { mesh, material, masses, lumping, .. } = &*self.outcome;
-        let fit = Outcome::of_fit(String::new(), mesh.clone(), material, None, own.clone());
+        let Outcome { mesh, material, masses, lumping, source, .. } = &*self.outcome;
+        let fit = Outcome::of_fit(source.clone(), mesh.clone(), material, None, own.clone());
         Ok(Network::new(Outcome { masses: masses.clone(), lumping: *lumping, ..fit }, Vec::new(), false))
     }
 }

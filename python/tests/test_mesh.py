@@ -322,3 +322,181 @@ def test_wrong_readings_are_named(scenes, keys, key):
     with pytest.raises(sf.SpringfitError) as error:
         sf.Mesh.read(scenes / "meshes" / "cube_tet.msh", **keys)
     assert error.value.key == key and len(str(error.value)) < 200, str(error.value)
+
+
+def moved(name, seed=1):
+    """A box whose inner points are moved, so that nothing is right by symmetry."""
+    mesh = box(name)
+    random = np.random.default_rng(seed)
+    inside = np.ones(len(mesh.points), bool)
+    for key, own in mesh.groups.items():
+        if key != "body":
+            inside[own] = False
+    points = mesh.points + 0.05 * inside[:, None] * random.uniform(-1, 1, mesh.points.shape)
+    return sf.Mesh(points, mesh.cells, mesh.groups)
+
+
+@pytest.mark.parametrize("name", ["tet4", "hex8", "tri3", "quad4"])
+def test_boundaries_are_those_of_scikit_fem(name):
+    skfem = pytest.importorskip("skfem")
+    mesh = moved(name)
+    kind = {"tet4": skfem.MeshTet, "hex8": skfem.MeshHex, "tri3": skfem.MeshTri, "quad4": skfem.MeshQuad}[name]
+    cells = mesh.cells[name]
+    # scikit-fem's corners in VTK's order, as from_skfem has them.
+    order = np.argsort([0, 3, 6, 2, 1, 5, 7, 4]) if name == "hex8" else np.arange(cells.shape[1])
+    other = kind(np.ascontiguousarray(mesh.points.T), np.ascontiguousarray(cells[:, order].T))
+    surface = mesh.boundary()
+    wanted = {tuple(sorted(facet)) for facet in other.facets[:, other.boundary_facets()].T.tolist()}
+    own = {tuple(sorted(surface.numbers[nodes].tolist())) for cells in surface.cells.values() for nodes in cells}
+    assert own == wanted and len(surface.parents) == len(wanted)
+
+
+@pytest.mark.parametrize("name", SOLIDS + ["tri3", "quad4", "tri6", "quad8"])
+def test_normals_point_out_of_the_body(name):
+    """The divergence theorem for x of bodies with plane sides: the sum of area times normal is zero, and of area times x · n is d times the volume."""
+    mesh = box(name)
+    surface = mesh.boundary()
+    behind = mesh.centers[surface.parents]
+    assert (((surface.centers - behind) * surface.normals).sum(axis=1) > 0).all()
+    assert np.allclose(np.linalg.norm(surface.normals, axis=1), 1)
+    sides = np.concatenate([[sf.Mesh(surface.points[nodes], {kind: [range(len(nodes))]}).volume for nodes in cells] for kind, cells in surface.cells.items()])
+    assert np.abs((sides[:, None] * surface.normals).sum(axis=0)).max() < 1e-12
+    assert np.isclose((sides * (surface.centers * surface.normals).sum(axis=1)).sum(), mesh.dimension * mesh.volume, rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", SOLIDS + PLANES)
+def test_pyvista_has_the_volumes(name):
+    pyvista = pytest.importorskip("pyvista")
+    mesh = box(name)
+    u = 0.1 * mesh.points
+    grid = mesh.to_pyvista(u)
+    assert grid.n_cells == len(mesh.centers) and np.array_equal(grid.point_data["u"][:, : mesh.dimension], u)
+    again = sf.Mesh.from_pyvista(grid)
+    assert list(again.cells) == list(mesh.cells) and all(np.array_equal(again.cells[key], mesh.cells[key]) for key in mesh.cells)
+    if name in ("tet4", "hex8", "wedge6", "pyramid5", "tri3", "quad4"):
+        sizes = grid.compute_cell_sizes()
+        assert np.isclose(sizes["Volume" if mesh.dimension == 3 else "Area"].sum(), mesh.volume, rtol=1e-6)
+    with pytest.raises(sf.SpringfitError) as error:
+        mesh.to_pyvista(u[1:])
+    assert error.value.key == "u"
+
+
+@pytest.mark.parametrize("name", ["tet4", "tet10", "hex8", "hex20", "wedge6", "tri3", "quad4"])
+def test_meshio_gives_meshes_and_groups_back(name, tmp_path):
+    pytest.importorskip("meshio")
+    mesh = box(name)
+    mesh = sf.Mesh(mesh.points, mesh.cells, mesh.groups, cell_groups={"some": [0, 2]})
+    again = sf.Mesh.from_meshio(mesh.to_meshio())
+    assert np.array_equal(again.points, mesh.points) and np.array_equal(again.cells[name], mesh.cells[name])
+    assert {k: v.tolist() for k, v in again.cell_groups.items()} == {k: v.tolist() for k, v in mesh.cell_groups.items()}
+    mesh.save(tmp_path / "own.inp")
+    read = sf.Mesh.read(tmp_path / "own.inp")
+    assert np.array_equal(read.points, mesh.points) and len(read.centers) == len(mesh.centers)
+    # Cells of a file come by their groups.
+    assert np.allclose(read.centers[read.cell_groups["some"]], mesh.centers[[0, 2]])
+    assert {k: v.tolist() for k, v in read.groups.items() if k != "some"} == {k: v.tolist() for k, v in mesh.groups.items() if k != "some"}
+    assert np.isclose(sf.stiffness(read, sf.Material(1e4, 0.3)).sum(), sf.stiffness(mesh, sf.Material(1e4, 0.3)).sum(), atol=1e-6)
+    with pytest.warns(UserWarning, match="have no groups"):
+        mesh.save(tmp_path / "own.vtu")
+    assert np.allclose(sf.Mesh.read(tmp_path / "own.vtu").points, mesh.points)
+    with pytest.raises(sf.SpringfitError) as error:
+        mesh.save(tmp_path / "own.docx")
+    assert error.value.key == "path" and ".vtu" in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["tet4", "hex8", "wedge6", "tri3", "quad4"])
+def test_refined_meshes_are_the_same_body(name):
+    mesh = moved(name) if name != "wedge6" else box(name)
+    mesh = sf.Mesh(mesh.points, mesh.cells, mesh.groups, cell_groups={"some": [0, 2]})
+    fine = mesh.refine(2)
+    factor = 4**mesh.dimension
+    assert len(fine.centers) == factor * len(mesh.centers) and len(fine.cell_groups["some"]) == 2 * factor
+    assert np.isclose(fine.volume, mesh.volume, rtol=1e-9) and np.allclose(np.ptp(fine.points[fine.groups["xmin"]][:, 0]), 0)
+
+
+def test_surfaces_are_filled_whatever_holds_them(tmp_path):
+    trimesh, pyvista = pytest.importorskip("trimesh"), pytest.importorskip("pyvista")
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    ball.export(tmp_path / "ball.stl")
+    known = sf.Mesh.fill(tmp_path / "ball.stl", cell=0.25, element="tet4", boundary="smooth", scale=0.01)
+    assert known.volume == pytest.approx(1e-6 * ball.volume, rel=0.02)
+    surface = sf.Mesh(ball.vertices, {"tri3": ball.faces})
+    for own in (ball, surface, pyvista.wrap(ball), (ball.vertices, ball.faces)):
+        assert sf.Mesh.fill(own, cell=0.25, element="tet4", boundary="smooth", scale=0.01).volume == pytest.approx(known.volume, rel=1e-6)
+    box_of_body = sf.Mesh.fill(sf.Mesh.box("hex8", size=[1, 1, 1], cells=[2, 2, 2]).boundary(), cell=0.25)
+    assert box_of_body.volume == pytest.approx(1.0) and list(box_of_body.cells) == ["hex8"]
+    for keys, key in [({}, "cell"), ({"cell": -1.0}, "cell"), ({"cell": 0.2, "points": 100}, "points"), ({"cell": 0.2, "boundary": "round"}, "boundary"), ({"cell": 0.2, "repair": 1}, "repair")]:
+        with pytest.raises(sf.SpringfitError) as error:
+            sf.Mesh.fill(ball, **keys)
+        assert error.value.key == key and error.value.file is None, str(error.value)
+    with pytest.raises(sf.SpringfitError) as error:
+        sf.Mesh.fill((ball.vertices, ball.faces[1:]), cell=0.2)
+    assert error.value.file is None
+
+
+def test_voxels_are_those_of_images():
+    pyvista = pytest.importorskip("pyvista")
+    labels = np.zeros((4, 3, 2), int)
+    labels[1:, :, :], labels[2, 1, :] = 1, 7
+    mesh = sf.Mesh.voxels(labels, spacing=[0.1, 0.2, 0.3], origin=[1, 2, 3])
+    image = pyvista.ImageData(dimensions=np.array(labels.shape) + 1, spacing=(0.1, 0.2, 0.3), origin=(1, 2, 3))
+    kept = image.extract_cells(np.flatnonzero(labels.ravel(order="F")))
+    assert len(mesh.centers) == kept.n_cells == 18 and np.isclose(mesh.volume, 18 * 0.006)
+    order = lambda centers: centers[np.lexsort(np.round(centers, 9).T)]
+    assert np.allclose(order(mesh.centers), order(np.asarray(kept.cell_centers().points)), atol=1e-6)
+    places = np.argwhere(labels == 7)
+    assert np.allclose(order(mesh.centers[mesh.cell_groups["label=7"]]), order([1, 2, 3] + (places + 0.5) * [0.1, 0.2, 0.3]))
+    parts = sf.Mesh.voxels(labels == 7, element="tet4")
+    assert len(parts.centers) == 12 and np.isclose(parts.volume, 2)
+    assert sf.Mesh.voxels(labels[:, :, 0], spacing=0.5).volume == pytest.approx(9 * 0.25)
+    for keys, key in [({"spacing": [1, 1]}, "spacing"), ({"spacing": -1.0}, "spacing"), ({"labels": {"a": 5}}, "labels.a"), ({"labels": [1]}, "labels"), ({"element": "tri3"}, "element")]:
+        with pytest.raises(sf.SpringfitError) as error:
+            sf.Mesh.voxels(labels, **keys)
+        assert error.value.key == key, str(error.value)
+    for wrong in (labels * 0, labels * 1.5, labels[0, 0]):
+        with pytest.raises(sf.SpringfitError) as error:
+            sf.Mesh.voxels(wrong)
+        assert error.value.key == "array"
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda m: sf.Mesh(m.points, {"tetra": m.cells["tet4"]}), 'did you mean "tet4"'),
+        (lambda m: sf.Mesh(m.points, {"tet4": m.cells["tet4"] + 1}), "numbered from 1"),
+        (lambda m: sf.Mesh(m.points.T, m.cells), "transposed"),
+        (lambda m: sf.Mesh(m.points, {"tet4": np.zeros((0, 4), int)}), "one or more cells of 4 nodes, found none"),
+        (lambda m: sf.Mesh(m.points, m.cells, cell_groups={"a": [len(m.centers)]}), "cell_groups.a"),
+        (lambda m: m.refine(0), "n: expected"),
+        (lambda m: m.normals, "one dimension less"),
+    ],
+)
+def test_common_mistakes_are_hinted(make, words):
+    with pytest.raises(sf.SpringfitError) as error:
+        make(box("tet4"))
+    assert words in str(error.value), str(error.value)
+
+
+def test_cells_are_a_mapping():
+    mesh = box("tet4")
+    assert list(mesh.cells) == ["tet4"] and dict(mesh.cells)["tet4"] is mesh.cells["tet4"] and mesh.cells[0][0] == "tet4"
+    with pytest.raises(KeyError, match="did you mean"):
+        mesh.cells["tetra"]
+    assert list(mesh.cells_dict) == ["tet4"] and mesh.points is mesh.points
+    with pytest.raises(ValueError, match="read-only"):
+        mesh.points[0] = 0
+
+
+@pytest.mark.parametrize("read", [sf.Mesh.read, sf.run, sf.Element])
+def test_missing_files_are_errors_of_the_system(read, tmp_path):
+    path = tmp_path / "nothing.toml"
+    for kind in (FileNotFoundError, OSError, sf.SpringfitError, ValueError):
+        with pytest.raises(kind) as error:
+            read(path)
+        assert str(path) in str(error.value) and error.value.kind == "io" and error.value.errno == 2
+    again = __import__("pickle").loads(__import__("pickle").dumps(error.value))
+    assert type(again) is type(error.value) and str(again) == str(error.value)
+
+
+def test_boxes_have_their_worst_quality():
+    assert box("tet4").quality["worst"] == pytest.approx(sf.Mesh(box("tet4").points, box("tet4").cells).quality["worst"])

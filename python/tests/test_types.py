@@ -1,6 +1,11 @@
 """What a checker of types says of programs that use the module."""
 
+import inspect
+import typing
+
 import pytest
+
+import springfit as sf
 
 PROGRAM = """
 from pathlib import Path
@@ -20,11 +25,31 @@ assert_type(net.energy(), float)
 sf.compare("scene.toml", shapes=3)  # type: ignore[call-overload]
 net.solve(fix=0).nothing  # type: ignore[attr-defined]
 """
+STRICT = """
+import numpy as np
+import springfit as sf
+from typing_extensions import assert_type
+
+mesh = sf.Mesh.voxels(np.ones((2, 2, 2), int), spacing=1e-3)
+nodes = mesh.cells["hex8"]
+name, again = mesh.cells[0]
+for name, nodes in mesh.cells.items():
+    print(name, nodes.shape)
+young = np.linspace(1e4, 2e4, len(mesh.centers))
+material = sf.Material(young, "0.3", density="1 g/cm^3")
+net = sf.fit(mesh, {"label=1": material, None: sf.Material(1e4, 0.3)})
+surface = mesh.refine().boundary()
+assert_type(surface.volume, float)
+report = sf.run({"mesh": mesh, "material": material, "fit": [{"objective": "exact"}]})
+assert_type(report.mesh, sf.Mesh)
+assert_type(report.networks["exact"], sf.Network)
+grid = mesh.to_pyvista(np.zeros((27, 3)))
+"""
 # Their types are large, and are none of ours.
 SETTINGS = """
 [mypy]
 warn_unused_ignores = True
-[mypy-jax.*,pandas.*,pyvista.*,scipy.*,torch.*]
+[mypy-jax.*,meshio.*,pandas.*,pyvista.*,scipy.*,torch.*]
 follow_imports = skip
 """
 
@@ -34,5 +59,34 @@ def test_programs_have_types(tmp_path):
     (tmp_path / "program.py").write_text(PROGRAM)
     (tmp_path / "mypy.ini").write_text(SETTINGS)
     arguments = ["--config-file", str(tmp_path / "mypy.ini"), "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "program.py")]
+    told, _, code = api.run(arguments)
+    assert code == 0, told
+
+
+@pytest.mark.parametrize("name", [name for name in sf.__all__ if not name.startswith("_")])
+def test_hints_of_types_are_found(name):
+    for package in ("pandas", "pyvista", "meshio", "scipy"):
+        pytest.importorskip(package)
+    owner = getattr(sf, name)
+    if not inspect.isfunction(owner) and not hasattr(owner, "__dict__"):
+        return
+    own = [owner] if inspect.isfunction(owner) else [f for f in vars(owner).values() if inspect.isfunction(f)]
+    own += [f.fget for f in vars(owner).values() if isinstance(f, property)] if inspect.isclass(owner) else []
+    own += [f.__func__ for f in vars(owner).values() if isinstance(f, classmethod)] if inspect.isclass(owner) else []
+    for function in own:
+        typing.get_type_hints(function)
+
+
+def test_annotations_are_written_once():
+    for owner in (sf.run, sf.sweep, sf.compare, sf.Mesh.read, sf.Mesh.box, sf.Material.lame):
+        assert "'" not in str(inspect.signature(owner).return_annotation)
+
+
+def test_a_strict_program_has_types(tmp_path):
+    """What the calls return is known to the strictest checker of a user's program."""
+    api = pytest.importorskip("mypy.api", reason="not run: mypy is not installed")
+    (tmp_path / "program.py").write_text(STRICT)
+    (tmp_path / "mypy.ini").write_text(SETTINGS)
+    arguments = ["--strict", "--config-file", str(tmp_path / "mypy.ini"), "--cache-dir", str(tmp_path / "cache"), str(tmp_path / "program.py")]
     told, _, code = api.run(arguments)
     assert code == 0, told

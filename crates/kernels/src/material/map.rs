@@ -129,9 +129,15 @@ impl MaterialMap {
             }
             (CellMap::Each(blocks), _) | (_, CellMap::Each(blocks)) => blocks,
         };
-        let cell = |block, cell| of((block, cell), *young.at(block, cell), *poisson.at(block, cell));
-        let of_block = |(block, values): (usize, &Vec<f64>)| (0..values.len()).map(|own| cell(block, own)).collect();
-        let materials = blocks.iter().enumerate().map(of_block).collect::<std::result::Result<Vec<_>, _>>()?;
+        // Blocks may have millions of cells: their lists are made in one piece.
+        let mut materials = Vec::with_capacity(blocks.len());
+        for (block, values) in blocks.iter().enumerate() {
+            let mut own = Vec::with_capacity(values.len());
+            for cell in 0..values.len() {
+                own.push(of((block, cell), *young.at(block, cell), *poisson.at(block, cell))?);
+            }
+            materials.push(own);
+        }
         let materials = CellMap::of_blocks(materials);
         let moduli = materials.map(|material| Hooke::Isotropic(material.moduli()));
         Ok(MaterialMap { materials: Some(materials), moduli, ..MaterialMap::from(like) })
