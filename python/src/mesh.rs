@@ -90,11 +90,11 @@ pub fn restored_mesh(
 }
 
 impl Mesh {
-    /// A mesh whose elements are these, or shipped.
+    /// Of the library, some of whose elements are these; others are shipped.
     ///
     /// # Errors
-    /// Another element.
-    pub fn of(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
+    /// An element is neither.
+    pub fn of_library(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
         let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
             Some(own) => Ok(own.clone()),
             None => Element::named(&block.element.name),
@@ -145,7 +145,7 @@ impl Mesh {
             source.space = space.or(source.space);
             mesh::Mesh::resolve_within(&source, &asked, scale, Some(gate)).map_err(|error| error.in_file(&path))
         })?;
-        Mesh::of(Arc::new(mesh), &own).map_err(|error| raised(py, error))
+        Mesh::of_library(Arc::new(mesh), &own).map_err(|error| raised(py, error))
     }
 
     /// What the file says besides the body, one sentence each.
