@@ -124,11 +124,11 @@ pub fn restored_mesh(
 }
 
 impl Mesh {
-    /// A mesh whose elements are these, or shipped.
+    /// Of the library, some of whose elements are these; others are shipped.
     ///
     /// # Errors
-    /// Another element.
-    pub fn of(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
+    /// An element is neither.
+    pub fn of_library(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
         let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
             Some(own) => Ok(own.clone()),
             None => Element::named(&block.element.name),

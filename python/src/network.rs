@@ -123,7 +123,8 @@ impl Network {
             let facts = (fit.as_ref().map(|fit| fit.name.clone()), fit.map(|fit| fit.status), record.notes);
             Ok((GivenBody { mesh, network, masses: record.masses }, has_cells, facts))
         })?;
-        let mesh = has_cells.then(|| Mesh::of(given.mesh.clone(), &own)).transpose().map_err(|e| raised(py, e))?;
+        let mesh =
+            has_cells.then(|| Mesh::of_library(given.mesh.clone(), &own)).transpose().map_err(|e| raised(py, e))?;
         Ok((Body::given(given, false).into(), mesh, facts))
     }
 
