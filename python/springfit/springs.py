@@ -13,6 +13,7 @@ import numpy as np
 from . import _core
 from ._arguments import ElementLike, array, elements_of, failure, matrix, shown, typed, warn
 from ._contents import changed_groups, given_groups, numbers, places_of_points
+from ._lazy import Package
 from ._network_state import GIVEN, STATISTICS, frozen, lines, restored, state, table
 from ._npz import mesh_of, read_arrays
 from ._sparse import csr
@@ -24,6 +25,8 @@ from .motion import Motion, simulate
 if TYPE_CHECKING:
     import pyvista
     from scipy.sparse import csr_matrix
+else:
+    pyvista, csr_matrix = Package("pyvista"), Any
 
 
 class Network:

@@ -184,7 +184,7 @@ impl<'a> Level<'a> {
     }
 
     fn followed(&self, laws: &EnergyMap, newton: Newton) -> Result<Option<Vec<Solved>>> {
-        let model = Body { mesh: &self.mesh, laws };
+        let model = Body::new(&self.mesh, laws);
         let Some(rest) = model.respond(&self.mesh.points) else { return Ok(None) };
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let mut all = Vec::new();
@@ -217,7 +217,7 @@ impl<'a> Level<'a> {
                     theta[p] += step;
                     let materials = at.unknowns.materials(&self.mesh, &self.materials, &self.owners, &theta)?;
                     let laws = laws(&self.mesh, &materials)?;
-                    Body { mesh: &self.mesh, laws: &laws }
+                    Body::new(&self.mesh, &laws)
                         .forces(&displaced(&self.mesh.points, &displacements[0]), force);
                 }
                 let [more, less] = beside;
@@ -276,7 +276,7 @@ impl<'a> Level<'a> {
             Some((laws, _)) => {
                 let laws = laws(&self.mesh, at.materials)?;
                 let Some(response) =
-                    (Body { mesh: &self.mesh, laws: &laws }).respond(&displaced(&self.mesh.points, &displacements[0]))
+                    Body::new(&self.mesh, &laws).respond(&displaced(&self.mesh.points, &displacements[0]))
                 else {
                     return Err(Error::expected("load", "an equilibrium", "none"));
                 };
