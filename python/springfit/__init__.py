@@ -12,6 +12,8 @@ Lengths are in metres, forces in newtons, stresses in pascals, masses in kilogra
 from ._core import Element, SpringfitError, __version__, shipped_elements
 from .gradients import Gradient, SpringConstants
 from .material import Material
+from .matrix import MatrixFit, fit_matrix
+from .measure import Elasticity, Measurement, Region, measure
 from .mesh import Mesh
 from .network import Network, fit, mass, sampled, stiffness, whole
 from .report import Report, run
@@ -19,11 +21,15 @@ from .studies import compare, converge, learning_curve, stability
 from .sweep import sweep
 
 __all__ = [
+    "Elasticity",
     "Element",
     "Gradient",
     "Material",
+    "MatrixFit",
+    "Measurement",
     "Mesh",
     "Network",
+    "Region",
     "Report",
     "SpringConstants",
     "SpringfitError",
@@ -31,8 +37,10 @@ __all__ = [
     "compare",
     "converge",
     "fit",
+    "fit_matrix",
     "learning_curve",
     "mass",
+    "measure",
     "run",
     "sampled",
     "shipped_elements",

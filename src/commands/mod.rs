@@ -14,6 +14,8 @@ mod groups;
 mod interrupt;
 mod man;
 mod materials;
+mod matrix;
+mod measure;
 mod merge;
 mod mesh_file;
 mod new;
@@ -65,6 +67,8 @@ commands! {
     Merge: merge::Merge,
     Check: check::Check,
     Export: export::Export,
+    Measure: Box<measure::Measure>,
+    Matrix: Box<matrix::Matrix>,
     Derive: derive::Derive,
     Generate: generate::Generate,
     Compare: compare::Compare,

@@ -8,9 +8,10 @@ mod points;
 pub use crate::network::{
     ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
     LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Merged, NETWORK_VERSION, NetworkDampingRecord,
-    NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts, ProvenanceRecord, Shard,
-    ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord, merge_shards, network_csv,
-    network_npz, network_npz_with, network_schema, read_network,
+    NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts, PointTable, ProvenanceRecord,
+    Shard, ShardRun, ShareRecord, SpecimenFile, SpecimenOptions, SpringRecord, TermRecord, TimedForceRecord,
+    TimedPullRecord, merge_shards, network_csv, network_npz, network_npz_with, network_schema, read_matrix,
+    read_network, read_points, read_specimen, specimen_endings,
 };
 pub use file::NetworkFile;
 pub use format::{NETWORK_FORMATS, NetworkFormat};

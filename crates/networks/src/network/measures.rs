@@ -79,7 +79,7 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
         Measure::Content(element) => content(Some(&element.name), cell_terms(&element.tabulation), whole()),
         Measure::PointContent(element, q) => {
             let (table, q) = (&element.tabulation, *q as usize);
-            content(Some(&element.name), vec![term(table, q, table.point_weight(q))], whole())
+            content(Some(&element.name), vec![point_term(table, q)], whole())
         }
         Measure::Span(table) => content(None, vec![term(table, 0, table.point_weight(0))], whole()),
         Measure::Patch(patch) => {
@@ -96,13 +96,18 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
 }
 
 /// The terms of the content of a whole cell.
-fn cell_terms(table: &Tabulation) -> Vec<TermRecord> {
+pub fn cell_terms(table: &Tabulation) -> Vec<TermRecord> {
     let weights = table.weights.iter().enumerate();
     // A single point may have its weight in the other rule.
     match table.points() {
-        1 => vec![term(table, 0, table.point_weight(0))],
+        1 => vec![point_term(table, 0)],
         _ => weights.filter(|(_, w)| **w != 0.0).map(|(q, w)| term(table, q, *w)).collect(),
     }
+}
+
+/// The term of one point alone.
+pub(super) fn point_term(table: &Tabulation, q: usize) -> TermRecord {
+    term(table, q, table.point_weight(q))
 }
 
 fn term(table: &Tabulation, q: usize, weight: f64) -> TermRecord {
