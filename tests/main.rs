@@ -55,6 +55,7 @@ mod loads;
 mod locking;
 mod material;
 mod matrix_errors;
+mod measured;
 mod measurements;
 mod measures;
 mod mesh_files;

@@ -15,6 +15,8 @@ from .factorized import Factorized
 from .calibration import Calibration, calibrate
 from .gradients import Gradient, SpringBlock, SpringConstants, SpringValues
 from .material import Material
+from .matrix import MatrixFit, fit_matrix
+from .measure import Elasticity, Measurement, Region, measure
 from .mesh import Mesh
 from .motion import Motion
 from .network import fit, mass, sampled, stiffness, whole
@@ -25,13 +27,17 @@ from .sweep import sweep
 
 __all__ = [
     "Calibration",
+    "Elasticity",
     "Element",
     "Factorized",
     "Gradient",
     "Material",
+    "MatrixFit",
+    "Measurement",
     "Mesh",
     "Motion",
     "Network",
+    "Region",
     "Report",
     "SpringBlock",
     "SpringConstants",
@@ -45,8 +51,10 @@ __all__ = [
     "compare",
     "converge",
     "fit",
+    "fit_matrix",
     "learning_curve",
     "mass",
+    "measure",
     "run",
     "sampled",
     "shipped_elements",

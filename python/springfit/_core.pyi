@@ -147,6 +147,25 @@ class Mesh:
     def __copy__(self) -> Mesh: ...
     def __deepcopy__(self, _memo: Any) -> Mesh: ...
 
+def measure_arrays(network: dict[str, Any], mesh: Mesh | None, options: dict[str, Any]) -> str: ...
+def measure_file(
+    path: str,
+    points: str | None,
+    cell: NDArray[np.float64] | None,
+    periodic: bool | None,
+    options: dict[str, Any],
+) -> str: ...
+def read_matrix(path: str) -> NDArray[np.float64]: ...
+def fit_stiffness(
+    stiffness: NDArray[np.float64],
+    points: NDArray[np.float64],
+    springs: NDArray[np.int64] | None,
+    displacements: NDArray[np.int64] | None,
+    objective: str,
+    weight: str | None,
+    nonnegative: bool,
+) -> tuple[NDArray[np.int64], NDArray[np.float64], float, float, bool, bool, float | None, int]: ...
+
 @final
 class Network:
     @staticmethod

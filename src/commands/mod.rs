@@ -15,6 +15,8 @@ mod groups;
 mod interrupt;
 mod man;
 mod materials;
+mod matrix;
+mod measure;
 mod merge;
 mod mesh_file;
 mod new;
@@ -68,6 +70,8 @@ commands! {
     Calibrate: calibrate::Calibrate,
     Check: check::Check,
     Export: export::Export,
+    Measure: Box<measure::Measure>,
+    Matrix: Box<matrix::Matrix>,
     Derive: derive::Derive,
     Generate: generate::Generate,
     Compare: compare::Compare,

@@ -8,6 +8,6 @@ pub mod analysis;
 
 // The layers below, by the same names as everywhere.
 use springfit_bodies::{model, solve};
-use springfit_foundation::{clock, error, named, number, random, scalar};
+use springfit_foundation::{clock, error, named, number, random, scalar, symbolic};
 use springfit_kernels::{element, fit, material, springs, stiffness};
 use springfit_mesh::mesh;

@@ -9,8 +9,10 @@ pub use crate::network::{
     ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
     LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Measuring, Merged, NETWORK_VERSION,
     NetworkDampingRecord, NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts,
-    ProvenanceRecord, Shard, ShardRun, ShareRecord, SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord,
-    cell_terms, merge_shards, network_csv, network_npz, network_npz_with, network_schema, read_network, simplex_term,
+    PointTable, ProvenanceRecord, Shard, ShardRun, ShareRecord, SpecimenFile, SpecimenOptions, SpringRecord,
+    TermRecord, TimedForceRecord, TimedPullRecord, cell_terms, merge_shards, network_csv, network_npz,
+    network_npz_with, network_schema, read_matrix, read_network, read_points, read_specimen, simplex_term,
+    specimen_endings,
 };
 pub use file::NetworkFile;
 pub use format::{NETWORK_FORMATS, NetworkFormat};

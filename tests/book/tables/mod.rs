@@ -7,6 +7,7 @@ mod bodies;
 mod cantilevers;
 mod choice;
 mod large;
+mod lattices;
 mod motion;
 mod norms;
 mod paper;
@@ -45,7 +46,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 17] = [
+const MAKERS: [Maker; 18] = [
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),
@@ -53,6 +54,7 @@ const MAKERS: [Maker; 17] = [
     ("block", choice::block, false, Kept::ToRounding),
     ("indefinite", choice::indefinite, false, Kept::ToRounding),
     ("cantilevers", cantilevers::table, true, Kept::ToRounding),
+    ("lattices", lattices::table, false, Kept::ToRounding),
     ("large-tet", large::tetrahedra, true, Kept::Roughly),
     ("large-hex", large::hexahedra, true, Kept::Roughly),
     ("whole", whole::table, true, Kept::Roughly),

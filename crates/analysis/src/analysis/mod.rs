@@ -2,6 +2,7 @@
 //! and how far displacements are from each other.
 
 pub mod check;
+pub mod homogenise;
 pub mod metrics;
 pub mod moduli;
 pub mod shapes;

@@ -1,5 +1,6 @@
 //! The effective elastic moduli of a network of springs, measured on a periodic box.
 
+use crate::analysis::homogenise::period_tensor;
 use crate::analysis::metrics::SOLVED;
 use crate::element::Element;
 use crate::error::Result;
@@ -145,33 +146,23 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
 fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
     let d = mesh.dimension;
     let (image, count) = images(mesh);
-    let size = mesh.points.len();
-    let mut k = DMatrix::zeros(size, size);
-    for e in entries {
-        k[(e.row, e.col)] += e.val;
-        if e.row != e.col {
-            k[(e.col, e.row)] += e.val;
-        }
+    // Own points come first.
+    let mut order = Vec::with_capacity(image.len());
+    let mut place = vec![usize::MAX; image.len()];
+    for class in 0..count {
+        order.extend((0..image.len()).find(|&p| image[p] == class));
     }
-    let mut periodic = DMatrix::zeros(size, count * d);
-    for (p, &class) in image.iter().enumerate() {
-        (0..d).for_each(|c| periodic[(p * d + c, class * d + c)] = 1.0);
-    }
-    let strains = strains(d);
-    let affine = DMatrix::from_fn(size, strains.len(), |row, case| {
-        let x = mesh.point(row / d);
-        (0..d).map(|l| strains[case][(row % d, l)] * x[l]).sum()
-    });
-    // ũ = −(PᵀKP)⁺ PᵀK ε x, with a pseudoinverse because of the translations.
-    let inner = periodic.transpose() * &k * &periodic;
-    let eigen = inner.symmetric_eigen();
-    let floor = 1e-10 * eigen.eigenvalues.amax();
-    let inverse = eigen.eigenvalues.map(|e| if e.abs() > floor { 1.0 / e } else { 0.0 });
-    let forces = periodic.transpose() * &k * &affine;
-    let relaxed = &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.tr_mul(&forces);
-    let u = affine - periodic * relaxed;
-    let stiffness = u.transpose() * k * &u / volume(mesh);
-    moduli(stiffness, d)
+    let first: BTreeSet<usize> = order.iter().copied().collect();
+    order.extend((0..image.len()).filter(|p| !first.contains(p)));
+    order.iter().enumerate().for_each(|(at, &p)| place[p] = at);
+    let dof = |dof: usize| place[dof / d] * d + dof % d;
+    let moved = entries.iter().map(|e| Triplet::new(dof(e.row).max(dof(e.col)), dof(e.row).min(dof(e.col)), e.val));
+    let points: Vec<f64> = order.iter().flat_map(|&p| mesh.point(p)).copied().collect();
+    let moved: Entries = moved.collect();
+    let (kelvin, _) = period_tensor(&moved, (&points, d), |at| image[order[at]], count, volume(mesh)).ok()?;
+    // The shears of Kelvin's notation are √2 ε, those here 2 ε.
+    let scale = |i: usize| if i < d { 1.0 } else { f64::sqrt(0.5) };
+    moduli(DMatrix::from_fn(kelvin.nrows(), kelvin.ncols(), |i, j| scale(i) * scale(j) * kelvin[(i, j)]), d)
 }
 
 /// Points at opposite positions of the box are images of each other.

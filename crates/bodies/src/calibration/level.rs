@@ -217,8 +217,7 @@ impl<'a> Level<'a> {
                     theta[p] += step;
                     let materials = at.unknowns.materials(&self.mesh, &self.materials, &self.owners, &theta)?;
                     let laws = laws(&self.mesh, &materials)?;
-                    Body::new(&self.mesh, &laws)
-                        .forces(&displaced(&self.mesh.points, &displacements[0]), force);
+                    Body::new(&self.mesh, &laws).forces(&displaced(&self.mesh.points, &displacements[0]), force);
                 }
                 let [more, less] = beside;
                 own[0] = more.iter().zip(&less).map(|(a, b)| (a - b) / (2.0 * STEP)).collect();

@@ -107,6 +107,11 @@ impl<T: Real> Method<T> {
     /// None for objectives that do not require the reduced element.
     pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
         let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+        Some(Method::weighted(any, springs, fit, weight))
+    }
+
+    /// The method that reduces a matrix seen through this weight.
+    pub fn weighted(any: &T, springs: &Springs, fit: &Fit, weight: MotionWeight) -> Method<T> {
         let reduced = Reduced::like(any, springs, fit.tied);
         let m = springs.len();
         let solver = match fit.objective {
@@ -122,15 +127,26 @@ impl<T: Real> Method<T> {
             }
         };
         let measures = !springs.functions.is_empty();
-        Some(Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver })
+        Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver }
     }
 
     /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
     pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, hooke: &Hooke<T>, measured: &[T]) {
         self.reduced.set(self.weight, springs, x, geometry, hooke, measured);
+        self.solve_reduced(springs);
+    }
+
+    /// Solves for a matrix `r` in place of that of an element, with springs on lengths alone.
+    pub fn solve_matrix(&mut self, springs: &Springs, x: &[T], r: &[T]) {
+        self.reduced.set_matrix(self.weight, springs, x, r);
+        self.solve_reduced(springs);
+    }
+
+    fn solve_reduced(&mut self, springs: &Springs) {
+        let any = self.reduced.size.clone();
         match &mut self.solver {
             Solver::LeastSquares { normal, products } => {
-                let (c, zero) = (self.reduced.scales.len(), x[0].zero());
+                let (c, zero) = (self.reduced.scales.len(), any.zero());
                 normal.gram.resize(c * c, zero.clone());
                 let m = springs.len();
                 self.reduced.gram(&mut products[..m * m], &mut normal.gram);
@@ -138,7 +154,7 @@ impl<T: Real> Method<T> {
                 normal.rhs.resize(c, zero);
                 let (p, h) = (self.reduced.order, self.reduced.rows());
                 row_products(h, &self.reduced.stiffness[..p * p], p, false, &mut products[..m * p]);
-                x[0].vectorize(
+                any.vectorize(
                     #[inline(always)]
                     || {
                         for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {

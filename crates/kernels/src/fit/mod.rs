@@ -23,6 +23,7 @@ mod divergence;
 mod edge_cell;
 mod exact;
 mod extremes;
+mod given;
 mod gradient;
 mod input;
 mod jacobi;
@@ -69,6 +70,7 @@ pub use exact::{
     DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, check_flat,
     exact_constants_of_kind, exact_double_double_constants, fit_exact,
 };
+pub use given::{GivenFit, GivenStiffness, condense};
 pub use gradient::{CellFunction, CellNumbers, GradientFit, Inputs};
 pub use least_squares::constants_in;
 pub use method::Certificate;

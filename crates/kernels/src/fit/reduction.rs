@@ -106,6 +106,55 @@ impl<T: Real> Reduced<T> {
         self.normalise();
     }
 
+    /// Fills in a matrix `r`, `[nodes·dimension × nodes·dimension]`, in place of that of an element, with springs on lengths alone.
+    pub fn set_matrix(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {
+        match springs.dimension {
+            1 => self.set_matrix_in::<1>(weight, springs, x, r),
+            2 => self.set_matrix_in::<2>(weight, springs, x, r),
+            _ => self.set_matrix_in::<3>(weight, springs, x, r),
+        }
+    }
+
+    fn set_matrix_in<const D: usize>(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {
+        let n = springs.nodes;
+        let x = &x.as_chunks::<D>().0[..n];
+        self.set_mix(weight, x);
+        self.mix_matrix::<D>(n, r);
+        self.set_lengths(springs, x);
+        self.take_out_rotations::<D>(n);
+        if weight.divides_by_stiffness() {
+            self.divide_by_stiffness();
+        }
+        self.normalise();
+    }
+
+    /// `C R Cᵀ` with the map C from nodes to differences, lower triangle.
+    fn mix_matrix<const D: usize>(&mut self, n: usize, r: &[T]) {
+        let (full, size) = ((n - 1) * D, n * D);
+        let zero = self.size.zero();
+        let mut half = vec![zero.clone(); full * size];
+        for (i, row) in self.mix.chunks_exact(n).enumerate() {
+            for k in 0..D {
+                let sums = &mut half[(i * D + k) * size..][..size];
+                for (a, c) in row.iter().enumerate() {
+                    for (sum, entry) in sums.iter_mut().zip(&r[(a * D + k) * size..]) {
+                        *sum = sum.clone().plus_product(c, entry);
+                    }
+                }
+            }
+        }
+        for at in 0..full {
+            for (j, row) in self.mix.chunks_exact(n).enumerate() {
+                for l in 0..D {
+                    let own = &half[at * size..(at + 1) * size];
+                    let sum =
+                        row.iter().enumerate().fold(zero.clone(), |sum, (b, c)| sum.plus_product(c, &own[b * D + l]));
+                    self.stiffness[at * full + j * D + l] = sum;
+                }
+            }
+        }
+    }
+
     /// The map from nodes to differences, `[nodes − 1 × nodes]`. For modal weights it is multiplied by `h + (1 − h) P`,
     /// with P the projection on the linear motions, `X S⁻¹ Xᵀ`, X the positions in differences and `S = XᵀX`.
     #[inline(always)]
@@ -172,16 +221,7 @@ impl<T: Real> Reduced<T> {
     ) {
         let n = x.len();
         let full = (n - 1) * D;
-        for ((g, norm), &[i, j]) in self.gradients.chunks_exact_mut(full).zip(&mut self.norms).zip(&springs.pairs) {
-            let d = difference(&x[j], &x[i]);
-            *norm = norm.one() / &dot(&d, &d);
-            for (g, row) in g.as_chunks_mut::<D>().0.iter_mut().zip(self.mix.chunks_exact(n)) {
-                let factor = row[j].clone() - &row[i];
-                for k in 0..D {
-                    g[k] = d[k].clone() * &factor;
-                }
-            }
-        }
+        self.set_lengths(springs, x);
         for (s, g) in (springs.pairs.len()..).zip(measured.chunks_exact(n * D)) {
             mixed(&self.mix, g.as_chunks::<D>().0, self.gradients[s * full..][..full].as_chunks_mut::<D>().0);
             self.norms[s] = self.size.one();
@@ -191,6 +231,23 @@ impl<T: Real> Reduced<T> {
             let c = geometry.content_gradient();
             mixed(&self.mix, c.as_chunks::<D>().0, self.gradients[last * full..][..full].as_chunks_mut::<D>().0);
             self.norms[last] = self.size.one();
+        }
+    }
+
+    /// The gradients of springs on lengths.
+    #[inline(always)]
+    fn set_lengths<const D: usize>(&mut self, springs: &Springs, x: &[[T; D]]) {
+        let n = x.len();
+        let full = (n - 1) * D;
+        for ((g, norm), &[i, j]) in self.gradients.chunks_exact_mut(full).zip(&mut self.norms).zip(&springs.pairs) {
+            let d = difference(&x[j], &x[i]);
+            *norm = norm.one() / &dot(&d, &d);
+            for (g, row) in g.as_chunks_mut::<D>().0.iter_mut().zip(self.mix.chunks_exact(n)) {
+                let factor = row[j].clone() - &row[i];
+                for k in 0..D {
+                    g[k] = d[k].clone() * &factor;
+                }
+            }
         }
     }
 

@@ -133,6 +133,24 @@ impl Springs {
         Ok(springs)
     }
 
+    /// Springs between pairs of nodes of anything with so many nodes.
+    pub(crate) fn between(pairs: Vec<[usize; 2]>, nodes: usize, dimension: usize) -> Springs {
+        Springs {
+            dimension,
+            space: dimension,
+            nodes,
+            functions: Vec::new(),
+            areas: Vec::new(),
+            points: Vec::new(),
+            content: None,
+            groups: (0..pairs.len()).collect(),
+            names: vec![String::new(); pairs.len()],
+            touching: sharing(&pairs, 1),
+            parallel: sharing(&pairs, 2),
+            pairs,
+        }
+    }
+
     /// The length springs with these indices, then springs on functions and on the content, each with the name of its
     /// group.
     pub(crate) fn with(

@@ -6,6 +6,7 @@ mod division;
 mod json;
 mod lines;
 mod lists;
+mod matrix_market;
 mod measures;
 mod model;
 mod npz;
@@ -15,11 +16,13 @@ mod parts;
 mod reader;
 mod record;
 mod shard;
+mod specimen;
 
 pub use csv::{network_csv, write_points};
 pub use division::Division;
 pub use json::write_json;
 pub use lists::{CellList, ListedRecord, Lists, SpringList};
+pub use matrix_market::read_matrix;
 pub use measures::cell_terms;
 pub use model::Measuring;
 pub use npz::{ArrayFile, network_npz, network_npz_with, write_npz};
@@ -33,3 +36,4 @@ pub use record::{
     TimedPullRecord, network_schema,
 };
 pub use shard::{Merged, NetworkShard, ShardRun, merge_shards};
+pub use specimen::{PointTable, SpecimenFile, SpecimenOptions, read_points, read_specimen, specimen_endings};

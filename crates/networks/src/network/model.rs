@@ -36,6 +36,15 @@ impl Measuring {
         self.elements.entry(name.into()).or_insert_with(shipped).clone()
     }
 
+    /// The element of the whole cells whose content springs of this kind measure on so many points, if it is a simplex.
+    pub fn simplex(&mut self, kind: SpringKind, points: usize) -> Option<Arc<Element>> {
+        match (kind, self.dimension, points) {
+            (SpringKind::Area, 2, 3) => self.element("tri3"),
+            (SpringKind::Volume, 3, 4) => self.element("tet4"),
+            _ => None,
+        }
+    }
+
     /// The law of this expression.
     ///
     /// # Errors

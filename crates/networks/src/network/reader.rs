@@ -24,7 +24,7 @@ pub fn read_network(path: &Path) -> Result<NetworkRecord> {
     parse(&text).map_err(|e| e.in_file(path))
 }
 
-fn parse(text: &[u8]) -> Result<NetworkRecord> {
+pub(super) fn parse(text: &[u8]) -> Result<NetworkRecord> {
     let head: Head = serde_json::from_slice(text).map_err(|e| syntax(&e, text))?;
     match head.format.as_ref().and_then(|format| format.as_str()) {
         Some(FORMAT) => {}

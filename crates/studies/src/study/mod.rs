@@ -27,6 +27,7 @@ mod keys;
 mod learning;
 mod locking;
 mod masses;
+mod measure;
 mod outcome;
 mod own_name;
 mod paper;
@@ -41,6 +42,7 @@ mod time;
 mod timing;
 
 pub use crate::analysis::check::{Inspection, Mark, Property, inspect, spurious_modes};
+pub use crate::analysis::homogenise::{ClosedTensor, Elasticity, NamedLattice, Root, Tension, strain_names};
 pub use crate::analysis::metrics::{DisplacementError, displacement_error};
 pub use crate::analysis::moduli::{EffectiveModuli, Lattice, moduli_of_body};
 pub use crate::analysis::shapes::random_shapes;
@@ -64,9 +66,9 @@ pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use extent::extent;
 pub use fits::{
-    CellMethod, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe, ExactRecord,
-    FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad, FittedMasses,
-    ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError,
+    CellMethod, EngineEntry, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe,
+    ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad,
+    FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError,
     ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
     SampledRecipe, SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start,
     StartOutcome, StiffnessOutcome, StiffnessRecord, SupportFrequencies, SupportPart, Task, TensionOutcome,
@@ -77,6 +79,7 @@ pub use forecast::{ExpectedStage, Forecast};
 pub use learning::{LearningPoint, learning_curve};
 pub use locking::{is_one_cell_across, locks_at};
 pub use masses::{PointMasses, point_masses};
+pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
     MotionEnding, MotionOutcome, Outcome, Reading, Record, Standard, TimedForce, TimedPull, standing_word,

@@ -4,7 +4,7 @@ use crate::material::{Hooke, Moduli, State, strains};
 use nalgebra::DMatrix;
 
 /// The orthonormal strains `e_k e_k`, then `(e_k e_l + e_l e_k)/√2`, each `[d × d]`.
-pub(super) fn basis(d: usize) -> Vec<DMatrix<f64>> {
+pub fn basis(d: usize) -> Vec<DMatrix<f64>> {
     let unit = |k: usize, l: usize| {
         let mut strain = DMatrix::zeros(d, d);
         let value = if k == l { 1.0 } else { f64::sqrt(0.5) };
@@ -55,7 +55,7 @@ pub(super) fn flattened(stiffness: DMatrix<f64>, bent: DMatrix<f64>, flat: &DMat
 /// ```
 ///
 /// `None` if some strain meets no resistance or a slope is infinite; a rod has no Poisson's ratio.
-pub(super) fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, Option<f64>)> {
+pub fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, Option<f64>)> {
     let (d, size) = (state.dimension(), stiffness.nrows());
     if !stiffness.iter().all(|c| c.is_finite()) {
         return None;

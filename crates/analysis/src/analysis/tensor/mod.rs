@@ -8,6 +8,7 @@ mod piece;
 mod relaxation;
 mod sample;
 
+pub(super) use isotropic::{basis, constants};
 pub use network_material::most_samples;
 pub use network_material::{NetworkMaterial, network_material};
 pub use owners::SpringOwners;

@@ -15,7 +15,7 @@ mod schema;
 mod stiffness;
 mod whole;
 
-pub use engine::{EngineErrors, EngineLimit, EngineOutcome, EngineVibration, FitLimit};
+pub use engine::{EngineEntry, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, FitLimit};
 pub use entry::FitEntry;
 pub use exact::{ExactOutcome, ExactRecipe, ExactRecord};
 pub use facts::SceneFacts;

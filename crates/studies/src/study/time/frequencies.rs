@@ -145,7 +145,7 @@ impl Vibrations<'_> {
     /// Returns the frequencies of a body whose stiffness has no Cholesky factor, Hz, from `(K + σ M) φ = (ω² + σ) M φ`.
     fn raised(&self, stiffness: &Entries, masses: Masses) -> Result<Vec<f64>> {
         let d = self.mesh.dimension;
-        let mut raised = Raised::new(stiffness.clone(), masses, self.support, self.mesh);
+        let mut raised = Raised::new(stiffness.clone(), masses, self.support, (&self.mesh.points, d));
         let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
         raised.by(RELEASE * largest)?.cholesky()?.ok_or_else(releases)?;

@@ -8,3 +8,4 @@ mod plan;
 mod raised;
 
 pub use plan::TimePlan;
+pub(in crate::study) use raised::{RELEASE, Raised};

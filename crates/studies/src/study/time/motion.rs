@@ -278,7 +278,7 @@ fn growth(network: &Network, masses: &[f64], mesh: &Mesh, planned: &Planned) -> 
     }
     network.check_size()?;
     let stiffness = network.stiffness(&mesh.points);
-    let mut raised = Raised::new(stiffness, masses, &planned.support, mesh);
+    let mut raised = Raised::new(stiffness, masses, &planned.support, (&mesh.points, mesh.dimension));
     let largest = raised.largest;
     if !(largest > 0.0 && largest.is_finite()) {
         return Ok(None);

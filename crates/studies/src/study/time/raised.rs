@@ -2,7 +2,6 @@
 
 use crate::dynamics::largest_square;
 use crate::error::Result;
-use crate::mesh::Mesh;
 use crate::model::{Entries, Support};
 use crate::solve::{Masses, System};
 use faer::sparse::Triplet;
@@ -18,7 +17,8 @@ pub struct Raised<'a> {
     /// The entries of M, kg, in this order.
     masses: Vec<f64>,
     support: &'a Support,
-    mesh: &'a Mesh,
+    /// The positions of the points, and their dimension.
+    at: (&'a [f64], usize),
     system: Option<System>,
     /// An upper bound of the largest ω² with the diagonal of M, rad²/s².
     pub largest: f64,
@@ -30,9 +30,9 @@ impl<'a> Raised<'a> {
         mut entries: Entries,
         masses: impl Into<Masses<'m>>,
         support: &'a Support,
-        mesh: &'a Mesh,
+        at: (&'a [f64], usize),
     ) -> Raised<'a> {
-        let (d, masses) = (mesh.dimension, masses.into());
+        let (d, masses) = (at.1, masses.into());
         let diagonal: Vec<f64> = masses.diagonal().iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
         let held: Vec<bool> = (0..diagonal.len()).map(|dof| support.is_fixed(dof)).collect();
         let largest = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &diagonal, &held);
@@ -43,7 +43,7 @@ impl<'a> Raised<'a> {
             entries.extend((0..d).map(|k| Triplet::new(a * d + k, b * d + k, 0.0)));
             values.extend(std::iter::repeat_n(mass, d));
         }
-        Raised { entries, springs, masses: values, support, mesh, system: None, largest }
+        Raised { entries, springs, masses: values, support, at, system: None, largest }
     }
 
     /// The equations with this σ, rad²/s².
@@ -56,7 +56,7 @@ impl<'a> Raised<'a> {
             Some(system) => system.renewed(&self.entries, self.support),
             None => {
                 let system = System::new(&self.entries, self.support)?;
-                let system = self.system.insert(system.placed(&self.mesh.points, self.mesh.dimension));
+                let system = self.system.insert(system.placed(self.at.0, self.at.1));
                 system.renewed(&self.entries, self.support)
             }
         }

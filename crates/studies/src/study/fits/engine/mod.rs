@@ -5,5 +5,5 @@
 mod entry;
 mod outcome;
 
-pub(super) use entry::EngineEntry;
+pub use entry::EngineEntry;
 pub use outcome::{EngineErrors, EngineLimit, EngineOutcome, EngineVibration, FitLimit};

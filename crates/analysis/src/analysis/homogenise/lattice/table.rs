@@ -1,0 +1,82 @@
+//! The lattices that are known by name: a new one is a row here.
+
+use super::{NamedLattice, Root};
+
+const CUBE: [[i64; 3]; 3] = [[12, 0, 0], [0, 12, 0], [0, 0, 12]];
+const FACES: [[i64; 3]; 3] = [[0, 6, 6], [6, 0, 6], [6, 6, 0]];
+
+/// The lattices that are known by name.
+pub const LATTICES: [NamedLattice; 8] = [
+    NamedLattice {
+        name: "triangular",
+        title: "triangles of equal sides",
+        shells: &["edges"],
+        root: Root::OfThree,
+        cell: &[[12, 0, 0], [6, 6, 0]],
+        points: &[[0, 0, 0]],
+        squares: &[144],
+    },
+    NamedLattice {
+        name: "square",
+        title: "squares with both diagonals",
+        shells: &["edges", "diagonals"],
+        root: Root::One,
+        cell: &[[12, 0, 0], [0, 12, 0]],
+        points: &[[0, 0, 0]],
+        squares: &[144, 288],
+    },
+    NamedLattice {
+        name: "honeycomb",
+        title: "hexagons whose sides are a/√3 long, with second neighbours at the distance a",
+        shells: &["sides", "second neighbours"],
+        root: Root::OfThree,
+        cell: &[[12, 0, 0], [6, 6, 0]],
+        points: &[[0, 0, 0], [6, 2, 0]],
+        squares: &[48, 144],
+    },
+    NamedLattice {
+        name: "kagome",
+        title: "triangles that share corners, with sides a/2, and second neighbours",
+        shells: &["sides", "second neighbours"],
+        root: Root::OfThree,
+        cell: &[[12, 0, 0], [6, 6, 0]],
+        points: &[[0, 0, 0], [6, 0, 0], [3, 3, 0]],
+        squares: &[36, 108],
+    },
+    NamedLattice {
+        name: "cubic",
+        title: "Born's cubic lattice: edges, and the diagonals of faces and of cubes",
+        shells: &["edges", "face diagonals", "space diagonals"],
+        root: Root::One,
+        cell: &CUBE,
+        points: &[[0, 0, 0]],
+        squares: &[144, 288, 432],
+    },
+    NamedLattice {
+        name: "bcc",
+        title: "body-centred cubes: half space diagonals, and edges",
+        shells: &["nearest neighbours", "edges"],
+        root: Root::One,
+        cell: &[[-6, 6, 6], [6, -6, 6], [6, 6, -6]],
+        points: &[[0, 0, 0]],
+        squares: &[108, 144],
+    },
+    NamedLattice {
+        name: "fcc",
+        title: "face-centred cubes: half face diagonals, and edges",
+        shells: &["nearest neighbours", "edges"],
+        root: Root::One,
+        cell: &FACES,
+        points: &[[0, 0, 0]],
+        squares: &[72, 144],
+    },
+    NamedLattice {
+        name: "diamond",
+        title: "diamond: four nearest neighbours, and second neighbours",
+        shells: &["nearest neighbours", "second neighbours"],
+        root: Root::One,
+        cell: &FACES,
+        points: &[[0, 0, 0], [3, 3, 3]],
+        squares: &[27, 72],
+    },
+];

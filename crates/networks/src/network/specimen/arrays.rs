@@ -1,0 +1,146 @@
+//! Reads arrays of NumPy: a ZIP file of `.npy` files.
+
+use crate::error::{Error, ErrorKind, Result};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+
+/// An array of numbers, rows first.
+#[derive(Debug)]
+pub struct Array {
+    pub shape: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+/// The arrays of a file by name. Arrays of texts and objects are left out.
+pub struct Arrays(BTreeMap<String, Array>);
+
+/// Bytes that the arrays of a file may have together.
+const MOST: u64 = 1 << 36;
+
+impl Arrays {
+    pub fn read(bytes: &[u8]) -> Result<Arrays> {
+        let wrong = |e: &dyn std::fmt::Display| {
+            Error::new(format!("expected a ZIP file of arrays of NumPy: {e}")).of_kind(ErrorKind::Syntax)
+        };
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| wrong(&e))?;
+        let mut arrays = BTreeMap::new();
+        let mut total = 0u64;
+        for index in 0..archive.len() {
+            let mut file = archive.by_index(index).map_err(|e| wrong(&e))?;
+            let name = file.name().map_err(|e| wrong(&e))?.into_owned();
+            let name = name.strip_suffix(".npy").unwrap_or(&name).to_string();
+            total = total.saturating_add(file.size());
+            if total > MOST {
+                return Err(Error::new("the arrays are larger than 64 GB").of_kind(ErrorKind::Limit));
+            }
+            let mut content = Vec::new();
+            file.read_to_end(&mut content).map_err(|e| wrong(&e).at_key(&*name))?;
+            if let Some(array) = parse(&content).map_err(|e| e.at_key(&*name))? {
+                arrays.insert(name, array);
+            }
+        }
+        Ok(Arrays(arrays))
+    }
+
+    pub fn get(&self, name: &str) -> Option<&Array> {
+        self.0.get(name)
+    }
+
+    pub fn names(&self) -> Vec<&str> {
+        self.0.keys().map(String::as_str).collect()
+    }
+
+    /// The first of several names that there is.
+    pub fn first<'a>(&self, names: &[&'a str]) -> Option<(&'a str, &Array)> {
+        names.iter().find_map(|name| Some((*name, self.get(name)?)))
+    }
+
+    /// A list of numbers.
+    pub fn list(&self, name: &str, count: usize) -> Result<Option<Vec<f64>>> {
+        let Some(array) = self.get(name) else { return Ok(None) };
+        match array.values.len() == count {
+            true => Ok(Some(array.values.clone())),
+            false => {
+                Err(Error::expected(name, format!("{count} numbers"), format!("an array of shape {:?}", array.shape)))
+            }
+        }
+    }
+
+    /// Rows of whole numbers, `[rows][width]`.
+    pub fn places(&self, name: &str, widths: &[usize]) -> Result<Option<(Vec<i64>, usize)>> {
+        let Some(array) = self.get(name) else { return Ok(None) };
+        let width = match array.shape[..] {
+            [_, width] if widths.contains(&width) => width,
+            _ => {
+                let widths: Vec<String> = widths.iter().map(usize::to_string).collect();
+                let expected = format!("an array of shape (n, {})", widths.join(" or "));
+                return Err(Error::expected(name, expected, format!("one of shape {:?}", array.shape)));
+            }
+        };
+        match array.values.iter().find(|value| value.fract() != 0.0 || !value.is_finite()) {
+            Some(value) => Err(Error::expected(name, "whole numbers", value)),
+            None => Ok(Some((array.values.iter().map(|value| *value as i64).collect(), width))),
+        }
+    }
+}
+
+/// A file of the format; `None` of texts and objects.
+fn parse(bytes: &[u8]) -> Result<Option<Array>> {
+    let wrong = |what: &str| Error::expected("array", "a file of NumPy's format", what).of_kind(ErrorKind::Syntax);
+    let (header, data) = match bytes {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, rest @ ..] => rest
+            .split_at_checked(usize::from(u16::from_le_bytes([*a, *b])))
+            .ok_or_else(|| wrong("one that is cut short"))?,
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, rest @ ..] => {
+            let length = u32::from_le_bytes([*a, *b, *c, *d]) as usize;
+            rest.split_at_checked(length).ok_or_else(|| wrong("one that is cut short"))?
+        }
+        _ => return Err(wrong("other bytes")),
+    };
+    let header = std::str::from_utf8(header).map_err(|_| wrong("a header that is no text"))?;
+    let after = |key: &str| header.split_once(&format!("'{key}':")).map(|(_, rest)| rest.trim_start());
+    let descr = after("descr").and_then(|rest| rest.split('\'').nth(1)).unwrap_or_default();
+    let is_turned = after("fortran_order").is_some_and(|rest| rest.starts_with("True"));
+    let shape = after("shape").and_then(|rest| rest.strip_prefix('(')).and_then(|rest| rest.split(')').next());
+    let sizes = shape.ok_or_else(|| wrong("a header without a shape"))?.split(',').map(str::trim);
+    let shape: Vec<usize> = sizes
+        .filter(|size| !size.is_empty())
+        .map(|size| size.parse().map_err(|_| wrong("a shape that is no list of numbers")))
+        .collect::<Result<_>>()?;
+    let Some((size, number)) = number(descr) else { return Ok(None) };
+    let count = shape.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
+    let count = count.filter(|count| count.checked_mul(size).is_some_and(|bytes| bytes <= data.len()));
+    let count = count.ok_or_else(|| wrong("fewer numbers than its shape says"))?;
+    let values: Vec<f64> = data.chunks_exact(size).take(count).map(number).collect();
+    let values = match (&shape[..], is_turned) {
+        ([rows, columns], true) => (0..count).map(|at| values[at % columns * rows + at / columns]).collect(),
+        ([_, _, _, ..], true) => return Err(wrong("an array of three axes in Fortran's order")),
+        _ => values,
+    };
+    Ok(Some(Array { shape, values }))
+}
+
+/// The bytes of a number of this type, and what reads them.
+fn number(descr: &str) -> Option<(usize, fn(&[u8]) -> f64)> {
+    macro_rules! of {
+        ($type:ty) => {
+            Some((size_of::<$type>(), |bytes| {
+                <$type>::from_le_bytes(bytes.try_into().expect("a chunk has the size of a number")) as f64
+            }))
+        };
+    }
+    match descr {
+        "<f8" => of!(f64),
+        "<f4" => of!(f32),
+        "<i8" => of!(i64),
+        "<i4" => of!(i32),
+        "<i2" => of!(i16),
+        "|i1" => of!(i8),
+        "<u8" => of!(u64),
+        "<u4" => of!(u32),
+        "<u2" => of!(u16),
+        "|u1" | "|b1" => of!(u8),
+        _ => None,
+    }
+}

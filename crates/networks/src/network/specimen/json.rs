@@ -1,0 +1,44 @@
+//! Networks in JSON, as springfit writes them.
+
+use super::{SpecimenFile, SpecimenOptions};
+use crate::error::Result;
+use crate::material::Plane;
+use crate::model::{Specimen, Support};
+use crate::network::reader::parse;
+
+pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
+    let record = parse(bytes)?;
+    let d = record.dimension;
+    let network = record.model(&options.elements)?;
+    let mut prescribed = vec![None; record.points.len() * d];
+    for held in &record.held {
+        let at = &mut prescribed[held.point * d..][..d];
+        at.iter_mut().zip(&held.displacement).for_each(|(all, own)| *all = own.map(|_| 0.0));
+    }
+    let forces = |load: &super::super::record::NodalLoadRecord| {
+        let mut all = vec![0.0; record.points.len() * d];
+        for force in &load.forces {
+            all[force.point * d..][..d].iter_mut().zip(&force.force).for_each(|(all, own)| *all += own);
+        }
+        all
+    };
+    let moves = |load: &&super::super::record::NodalLoadRecord| {
+        load.held.iter().any(|held| held.displacement.iter().flatten().any(|u| *u != 0.0))
+    };
+    let loads = record.loads.iter().filter(|load| !moves(load)).map(forces);
+    let loads: Vec<Vec<f64>> = loads.filter(|load| load.iter().any(|f| *f != 0.0)).collect();
+    let specimen = Specimen {
+        masses: record.masses.clone(),
+        mesh: record.mesh(&options.elements),
+        support: (!record.held.is_empty()).then_some(Support { prescribed }),
+        loads,
+        ..Specimen::new(network, record.points.concat())
+    };
+    let state = record.provenance.material.as_ref().and_then(|material| match material.state.as_str() {
+        "plane stress" => Some((Plane::Stress, material.thickness)),
+        "plane strain" => Some((Plane::Strain, material.thickness)),
+        _ => None,
+    });
+    let plain = SpecimenFile::plain(specimen, "springfit, JSON");
+    Ok(SpecimenFile { state, engine: record.engine, notes: record.notes.clone(), ..plain })
+}

@@ -1,0 +1,391 @@
+//! Networks of anyone as materials: lattices against published closed forms, exact networks against their material, files of other programs
+//! against what was written, matrices against elements.
+
+use crate::shapes::elements;
+use nalgebra::DMatrix;
+use springfit::element::Element;
+use springfit::fit::{Fit, GivenStiffness, Objective, Weight, condense, fit_element, plain};
+use springfit::material::{Hooke, Material, State};
+use springfit::report::{SpecimenOptions, read_matrix, read_specimen};
+use springfit::springs::Springs;
+use springfit::study::{MeasureOptions, MeasuredNetwork, NamedLattice, measure};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Arc;
+use tempfile::TempDir;
+
+fn program(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn refused(folder: &Path, arguments: &[&str], words: &str) {
+    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
+    let found = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {found}");
+    assert!(found.contains(words), "{arguments:?}: {found}");
+}
+
+fn of_file(path: &Path, options: &MeasureOptions) -> MeasuredNetwork {
+    let file = read_specimen(path, &SpecimenOptions::default()).unwrap();
+    measure(&file.specimen, options).unwrap()
+}
+
+/// Names, constants, and C11, C12, C44 with the spacing 2.
+type Published = (&'static str, &'static [f64], [f64; 3]);
+
+/// Born's cubic lattice and the cubic crystals with first and second neighbours (Born and Huang, *Dynamical Theory of Crystal Lattices*, 1954),
+/// triangles and squares with diagonals (Ostoja-Starzewski, Applied Mechanics Reviews 55, 2002; of the honeycomb a side of a/√3 has the modulus of
+/// area k/(2√3) and no shear). C44 in the plane is C66.
+#[test]
+fn lattices_have_their_published_moduli() {
+    let root = 3f64.sqrt();
+    let a = 2.0;
+    let published: [Published; 7] = [
+        ("cubic", &[3.0, 5.0], [(3.0 + 10.0) / a, 5.0 / a, 5.0 / a]),
+        ("cubic", &[3.0], [3.0 / a, 0.0, 0.0]),
+        ("bcc", &[3.0, 5.0], [(2.0 + 10.0) / a, 2.0 / a, 2.0 / a]),
+        ("fcc", &[3.0, 5.0], [(6.0 + 20.0) / a, 3.0 / a, 3.0 / a]),
+        ("triangular", &[4.0], [3.0 * root, root, root]),
+        ("square", &[3.0, 5.0], [8.0, 5.0, 5.0]),
+        ("honeycomb", &[4.0], [4.0 / (2.0 * root), 4.0 / (2.0 * root), 0.0]),
+    ];
+    for (name, constants, expected) in published {
+        let lattice = NamedLattice::named(name).unwrap();
+        let d = lattice.dimension();
+        let closed = lattice.closed(constants.len()).unwrap();
+        let found = closed.entries.each_ref().map(|entry| closed.value(entry, constants, a, d).unwrap());
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-12 * expected.abs().max(1.0), "{name}: {found} {expected}");
+        }
+    }
+    // E = 2k/√3 and ν = 1/3 of triangles.
+    let closed = NamedLattice::named("triangular").unwrap().closed(1).unwrap();
+    let young = closed.value(closed.young.as_ref().unwrap(), &[1.0], 1.0, 2).unwrap();
+    let poisson = closed.ratio(closed.poisson.as_ref().unwrap(), &[1.0]).unwrap();
+    assert!((young - 2.0 / root).abs() < 1e-15 && (poisson - 1.0 / 3.0).abs() < 1e-15, "{young} {poisson}");
+}
+
+/// The unit cell problem in numbers knows nothing of the formulas.
+#[test]
+fn closed_forms_are_the_homogenised_tensors() {
+    for lattice in NamedLattice::all() {
+        let d = lattice.dimension();
+        for shells in 1..=lattice.shells.len() {
+            let constants: Vec<f64> = [2.0, 0.7, 0.3][..shells].to_vec();
+            let closed = lattice.closed(shells).unwrap();
+            let specimen = lattice.specimen(1.5, &constants).unwrap();
+            let measured = measure(&specimen, &MeasureOptions::default()).unwrap();
+            let found = measured.relaxed.unwrap().matrix();
+            let [c11, c12, c44] =
+                closed.entries.each_ref().map(|entry| closed.value(entry, &constants, 1.5, d).unwrap());
+            let expected = DMatrix::from_fn(found.nrows(), found.nrows(), |i, j| match (i == j, i < d, j < d) {
+                (true, true, _) => c11,
+                (false, true, true) => c12,
+                (true, false, _) => 2.0 * c44,
+                _ => 0.0,
+            });
+            assert!(
+                (&found - &expected).amax() < 1e-9 * expected.amax(),
+                "{} {shells}: {found} {expected}",
+                lattice.name
+            );
+            assert!((lattice.volume(1.5) - measured.volume).abs() < 1e-12 * measured.volume);
+        }
+    }
+}
+
+/// The exact network of a mesh, whatever its element, is the material: affine and relaxed, to ten digits (the file has all digits).
+#[test]
+fn exact_networks_are_the_material_they_came_from() {
+    let folder = TempDir::new().unwrap();
+    let meshes =
+        [("cube_tet.msh", "0.3"), ("specimen_hex.msh", "0.45"), ("tissue_quad.msh", "0.3"), ("tissue_tri.msh", "0.2")];
+    for (mesh, poisson) in meshes {
+        let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes").join(mesh);
+        let name = format!("{}.json", mesh.file_stem().unwrap().to_string_lossy());
+        let arguments = [
+            "fit",
+            mesh.to_str().unwrap(),
+            "--scale",
+            "0.01",
+            "--young",
+            "10kPa",
+            "--poisson",
+            poisson,
+            "--density",
+            "1000",
+            "-o",
+            &name,
+        ];
+        program(folder.path(), &arguments);
+        let measured =
+            of_file(&folder.path().join(&name), &MeasureOptions { frequencies: 3, ..MeasureOptions::default() });
+        let poisson: f64 = poisson.parse().unwrap();
+        for found in [Some(&measured.affine), measured.relaxed.as_ref()].into_iter().flatten() {
+            let (young, ratio) = (found.young.unwrap(), found.poisson.unwrap());
+            assert!((young - 1e4).abs() < 1e-10 * 1e4 && (ratio - poisson).abs() < 1e-10, "{name}: {young} {ratio}");
+            assert!(found.anisotropy < 1e-10 && (found.zener.unwrap() - 1.0).abs() < 1e-9);
+        }
+        assert!(measured.relaxed.is_some() && measured.stability.is_stable(), "{name}: {:?}", measured.stability);
+        assert!((measured.density.unwrap() - 1000.0).abs() < 1e-6, "{name}");
+        assert!(measured.tension.as_ref().unwrap().is_balanced(), "{name}: {:?}", measured.tension);
+        let frequencies = measured.frequencies.unwrap();
+        assert!(
+            frequencies.len() == 3
+                && frequencies[0] > 0.0
+                && frequencies.windows(2).all(|f| f[0] <= f[1] * (1.0 + 1e-9))
+        );
+    }
+}
+
+/// Springs alone, pulled and held: what PhysTwin, LAMMPS, arrays and a table say is what the JSON file says.
+#[test]
+fn files_of_other_programs_hold_the_same_network() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let scene = "title = \"block\"\nmesh = { box = { element = \"tet4\", size = [0.1, 0.1, 0.2], cells = [2, 2, 4] } }\n\
+                 material = { young = 1e4, poisson = 0.25, density = 1000 }\n\
+                 fit = [{ name = \"springs\", objective = \"offdiag\", nonnegative = true }]\nfix = [{ group = \"zmin\" }]\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
+    program(at, &["run", "s.toml", "--out", "out"]);
+    let network = fs::read_dir(at.join("out"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .find(|p| p.extension().is_some_and(|e| e == "json") && !p.ends_with("report.json"));
+    let json = network.unwrap();
+    let truth = of_file(&json, &MeasureOptions::default());
+    let volume = Some(truth.volume);
+    let gravity = ["--gravity", "0 0 -9.8"];
+    for (target, file) in [("phystwin", "phystwin.npz"), ("lammps", "network.data"), ("npz", "network.npz")] {
+        program(at, &[&["export", json.to_str().unwrap(), "--to", target, "--out", target][..], &gravity].concat());
+        let path: PathBuf = at.join(target).join(file);
+        let found = of_file(&path, &MeasureOptions { volume, ..MeasureOptions::default() });
+        let apart = (found.affine.matrix() - truth.affine.matrix()).amax() / truth.affine.matrix().amax();
+        // LAMMPS' file has all digits, and the logarithms of PhysTwin too.
+        assert!(apart < 1e-13, "{target}: {apart}");
+        assert!(
+            (found.mass.unwrap() - truth.mass.unwrap()).abs() < 1e-12 && found.springs == truth.springs,
+            "{target}"
+        );
+    }
+    refused(at, &["measure", "lammps/network.data"], "volume");
+    refused(at, &["measure", "phystwin/phystwin.npz", "--engine", "nonsense", "--hull"], "--engine");
+}
+
+/// A face-centred lattice in a periodic box of LAMMPS, whose bonds cross the box: the tensor of the crystal, by the file alone.
+#[test]
+fn a_periodic_box_is_homogenised() {
+    let folder = TempDir::new().unwrap();
+    let n = 3i64;
+    let sites = [[0, 0, 0], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
+    let mut atoms: Vec<[i64; 3]> = Vec::new();
+    for cell in 0..n * n * n {
+        let corner = [cell % n, cell / n % n, cell / (n * n)];
+        atoms.extend(sites.iter().map(|site| [0, 1, 2].map(|k| 2 * corner[k] + site[k])));
+    }
+    let place =
+        |x: [i64; 3]| atoms.iter().position(|own| (0..3).all(|k| (own[k] - x[k]).rem_euclid(2 * n) == 0)).unwrap();
+    let mut bonds = Vec::new();
+    for (i, x) in atoms.iter().enumerate() {
+        for step in [[0, 1, 1], [1, 0, 1], [1, 1, 0], [0, 1, -1], [1, 0, -1], [1, -1, 0]] {
+            bonds.push([i, place([0, 1, 2].map(|k| x[k] + step[k]))]);
+        }
+    }
+    // Half of a cube of edge 2 is the unit: k = 3 N/m, so that K = 1.5; C11 = 2k/a, C12 = C44 = k/a.
+    let mut text = format!("fcc\n\n{} atoms\n{} bonds\n1 atom types\n1 bond types\n\n", atoms.len(), bonds.len());
+    text += &["x", "y", "z"].map(|axis| format!("0 {} {axis}lo {axis}hi\n", 2 * n)).concat();
+    text += &format!("\nMasses\n\n1 2.0\n\nBond Coeffs # harmonic\n\n1 1.5 {}\n\nAtoms # bond\n\n", 2f64.sqrt());
+    atoms.iter().enumerate().for_each(|(i, x)| text += &format!("{} 1 1 {} {} {}\n", i + 1, x[0], x[1], x[2]));
+    text += "\nBonds\n\n";
+    bonds.iter().enumerate().for_each(|(s, [i, j])| text += &format!("{} 1 {} {}\n", s + 1, i + 1, j + 1));
+    let path = folder.path().join("fcc.data");
+    fs::write(&path, text).unwrap();
+    let found = of_file(&path, &MeasureOptions::default());
+    assert_eq!((found.volume_of.as_str(), found.stability.rigid), ("period", 3));
+    let c = found.relaxed.unwrap();
+    let expected = [3.0, 1.5, 3.0];
+    for (value, expected) in [c.stiffness[0][0], c.stiffness[0][1], c.stiffness[3][3]].iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-9, "{value} {expected}");
+    }
+    assert!((c.zener.unwrap() - 2.0).abs() < 1e-9 && (found.density.unwrap() - 1.0).abs() < 1e-12);
+    // As a body the same bonds would cross it: a cell of one lattice spacing leaves two images equally near.
+    let small = SpecimenOptions { cell: Some(DMatrix::identity(3, 3) * 2.0), ..SpecimenOptions::default() };
+    assert!(read_specimen(&path, &small).is_err());
+}
+
+/// A flex whose edges are springs, and one of finite elements, which has its material in the file.
+#[test]
+fn flexes_of_mujoco_are_networks_of_their_edges() {
+    let folder = TempDir::new().unwrap();
+    let flex = |inner: &str| {
+        format!(
+            "<mujoco><worldbody><body pos=\"1 2 3\"><flexcomp name=\"f\" type=\"direct\" dim=\"2\" mass=\"3\"\n\
+             point=\"0 0 0  1 0 0  0.5 0.8660254037844386 0  1.5 0.8660254037844386 0\" element=\"0 1 2  1 3 2\">{inner}</flexcomp>\
+             </body></worldbody></mujoco>"
+        )
+    };
+    let path = folder.path().join("f.xml");
+    fs::write(&path, flex("<edge stiffness=\"10\"/>")).unwrap();
+    let found = of_file(&path, &MeasureOptions::default());
+    assert_eq!((found.points, found.springs, found.dimension), (4, 5, 2));
+    assert!((found.mass.unwrap() - 3.0).abs() < 1e-15 && found.volume_of == "cells");
+    // The energy of the five springs by hand: edges along x (two of length 1), and three at ±60°, over √3/2 m².
+    let area = 3f64.sqrt() / 2.0;
+    let xx = 10.0 * (2.0 + 3.0 / 16.0) / area;
+    assert!((found.affine.stiffness[0][0] - xx).abs() < 1e-12 * xx, "{:?}", found.affine);
+    fs::write(&path, flex("<elasticity young=\"1e4\"/>")).unwrap();
+    refused(folder.path(), &["measure", "f.xml"], "elasticity");
+    fs::write(&path, flex("<edge stiffness=\"10\"/>").replace("1 3 2\"", "1 3 4\"")).unwrap();
+    refused(folder.path(), &["measure", "f.xml"], "a point from 0 to 3");
+}
+
+/// Springs whose rest lengths are not those of the shape are told first.
+#[test]
+fn springs_that_pull_at_rest_are_told_first() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
+    fs::write(folder.path().join("s.csv"), "i,j,k,rest\n0,1,5,0.9\n0,2,5,1\n0,3,5,1\n1,2,5,1.4142135623730951\n1,3,5,1.4142135623730951\n2,3,5,1.4142135623730951\n").unwrap();
+    let text = program(folder.path(), &["measure", "s.csv", "--points", "p.csv", "--hull"]);
+    let second = text.lines().nth(1).unwrap();
+    assert!(second.contains("not at rest in this shape"), "{text}");
+    assert!(text.contains("volume 0.166667"), "{text}");
+    refused(folder.path(), &["measure", "s.csv"], "--points");
+    refused(folder.path(), &["measure", "s.csv", "--points", "p.csv"], "--hull");
+    fs::write(folder.path().join("bad.csv"), "i,j,k\n0,1,5\n0,4,5\n").unwrap();
+    refused(folder.path(), &["measure", "bad.csv", "--points", "p.csv", "--hull"], "are points numbered from 1?");
+}
+
+/// What an engine reaches at its settings is what the fits for engines print of the same body, to the loads.
+#[test]
+fn the_limit_of_an_engine_is_measured() {
+    let folder = TempDir::new().unwrap();
+    program(
+        folder.path(),
+        &[
+            "measure",
+            "--lattice",
+            "cubic",
+            "--constants",
+            "100,50,20",
+            "--spacing",
+            "1cm",
+            "--cells",
+            "4,4,10",
+            "-o",
+            "b.json",
+        ],
+    );
+    let path = folder.path().join("b.json");
+    let file = read_specimen(&path, &SpecimenOptions::default()).unwrap();
+    let setting = springfit::engine::Setting::usual(springfit::engine::Engine::Xpbd);
+    let count = file.specimen.count();
+    let options = MeasureOptions {
+        hull: true,
+        point_volumes: Some(vec![1e-6; count]),
+        density: Some(1000.0),
+        ..MeasureOptions::default()
+    };
+    let limit = |substeps: usize| {
+        let options = MeasureOptions { engine: Some(setting.with_substeps(substeps)), ..options.clone() };
+        measure(&file.specimen, &options).unwrap().engine.unwrap()
+    };
+    let (few, many) = (limit(2), limit(40));
+    assert!(few.ceiling.unwrap() < many.ceiling.unwrap(), "{few:?} {many:?}");
+    let least = few.least_substeps.unwrap();
+    assert_eq!(Some(least), many.least_substeps);
+    assert!(limit(least).ceiling.unwrap() >= 1.0 && (least == 1 || limit(least - 1).ceiling.unwrap() < 1.0));
+}
+
+fn shifted(element: &Element) -> Vec<f64> {
+    // The reference cell, stretched and sheared.
+    let d = element.dimension();
+    element
+        .positions
+        .chunks_exact(d)
+        .flat_map(|x| (0..d).map(move |k| (1.0 + 0.2 * k as f64) * x[k] + 0.1 * x[(k + 1) % d]))
+        .collect()
+}
+
+/// R of each shipped element, written as a matrix and read back, has the constants of the element's own fit.
+#[test]
+fn matrices_of_elements_have_the_constants_of_the_elements() {
+    let folder = TempDir::new().unwrap();
+    let mut seen = 0;
+    for element in elements().into_iter().map(Arc::new) {
+        let d = element.dimension();
+        let Ok(springs) = Springs::select(&element, None) else { continue };
+        let x = shifted(&element);
+        let state = match d {
+            1 => State::Rod { area: 1.0 },
+            2 => State::PlaneStress { thickness: 1.0 },
+            _ => State::Solid,
+        };
+        let material = Material::new(1e4, 0.3, state).unwrap();
+        let Ok(r) = plain::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())) else { continue };
+        if springs.pairs().len() != springs.len() {
+            continue;
+        }
+        let path = folder.path().join("r.mtx");
+        let mut text = format!(
+            "%%MatrixMarket matrix coordinate real symmetric\n{0} {0} {1}\n",
+            r.nrows(),
+            r.nrows() * (r.nrows() + 1) / 2
+        );
+        for (i, j) in (0..r.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+            text += &format!("{} {} {:e}\n", i + 1, j + 1, r[(i, j)]);
+        }
+        fs::write(&path, text).unwrap();
+        let given = GivenStiffness::new(read_matrix(&path).unwrap(), x.clone(), d).unwrap();
+        let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
+        if element.nodes() <= 8 {
+            objectives.push(Objective::Spectral(springfit::fit::MotionWeight::None));
+        }
+        for objective in objectives {
+            let fit = Fit::new(objective);
+            let own = fit_element(&element, &springs, &x, material.moduli(), &fit).unwrap();
+            let found = given.fit(springs.pairs(), &fit).unwrap();
+            let largest = own.iter().fold(0.0f64, |largest, k| largest.max(k.abs()));
+            let apart = own.iter().zip(&found.constants).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
+            // An optimum of the 2-norm is known to its gap, and may be one of several.
+            let enough = if matches!(objective, Objective::Spectral(_)) { 1e-4 } else { 1e-12 };
+            assert!(apart < enough || !found.is_unique, "{} {}: {apart:e}", element.name, objective.title());
+        }
+        seen += 1;
+    }
+    assert!(seen > 10, "{seen}");
+}
+
+#[test]
+fn a_matrix_is_proved_before_it_is_fitted() {
+    let element = Element::load("hex8").unwrap();
+    let x = shifted(&element);
+    let material = Material::new(1e4, 0.3, State::Solid).unwrap();
+    let r = plain::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())).unwrap();
+    let key = |r: DMatrix<f64>, x: Vec<f64>| GivenStiffness::new(r, x, 3).unwrap_err().key().unwrap().to_string();
+    let mut skew = r.clone();
+    skew[(0, 5)] += 100.0;
+    assert_eq!(key(skew, x.clone()), "symmetry");
+    let mut held = r.clone();
+    held[(0, 0)] += 1e3;
+    assert_eq!(key(held, x.clone()), "rigid motions");
+    // A rotation of other points is none of these.
+    let mut moved = x.clone();
+    moved[0] += 0.5;
+    assert_eq!(key(r.clone(), moved), "rigid motions");
+    assert_eq!(key(r.clone(), x[..21].to_vec()), "matrix");
+    let mut odd = r.clone();
+    odd[(2, 3)] = f64::NAN;
+    assert_eq!(key(odd, x.clone()), "matrix[2][3]");
+    // Two hexahedra on each other, whose middle points are condensed, are a superelement: R_kk − R_kc R_cc⁻¹ R_ck.
+    let kept: Vec<usize> = (0..12).collect();
+    let own = condense(&r, &kept).unwrap();
+    let at = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>| {
+        r.view((rows.start, columns.start), (rows.len(), columns.len())).into_owned()
+    };
+    let expected = at(0..12, 0..12) - at(0..12, 12..24) * at(12..24, 12..24).try_inverse().unwrap() * at(12..24, 0..12);
+    assert!((own - &expected).amax() < 1e-9 * expected.amax());
+    assert!(condense(&r, &[0, 0]).is_err() && condense(&r, &[24]).is_err());
+}
