@@ -17,7 +17,7 @@ from nbformat.v4 import new_code_cell
 
 HERE = Path(__file__).resolve().parent
 BOOK = HERE.parents[1] / "docs/src/notebooks"
-NAMES = ["fit_my_mesh", "add_an_element", "norms", "sampled", "into_a_simulator"]
+NAMES = ["fit_my_mesh", "add_an_element", "norms", "sampled", "into_a_simulator", "inclusion"]
 # Figures are the same from run to run, and their text is text.
 STYLE = """
 %config InlineBackend.figure_formats = ["svg"]

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("page", ["docs/src/start/python.md", "docs/src/start/gradients.md", "docs/src/start/measure.md", "docs/src/theory/gradients.md", "python/README.md"])
+@pytest.mark.parametrize("page", ["docs/src/start/python.md", "docs/src/start/calibrate.md", "docs/src/start/gradients.md", "docs/src/start/measure.md", "docs/src/theory/gradients.md", "python/README.md"])
 def test_the_examples_run_in_an_empty_folder(page, tmp_path):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.DOTALL)
     assert blocks

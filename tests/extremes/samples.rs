@@ -40,6 +40,9 @@ body = [0, 0, 1.0]
 group = "zmax"
 displacement = ["free", "free", 0.01]
 measured = { file = "measured.csv", scale = 1.0, sigma = 0.0001 }
+reactions = [{ group = "zmax", force = ["free", 0, 1.0], sigma = 0.01 }]
+[calibrate]
+refinements = 0
 [[load]]
 sum = ["load 1", "load 3"]
 [[load]]

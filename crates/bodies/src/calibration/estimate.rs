@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Calibration* of the book.
 
-use super::limit::{Limit, Limiting, Rest};
+use super::limit::{Limit, Limiting};
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::dot;
 use crate::whole::{Determination, ninety_five};
@@ -128,18 +128,9 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     };
     let changes: Vec<Vec<f64>> = (0..limit.levels.len() - 1).map(|level| pulled(&now.change(level))).collect();
     // The errors of meshes move all unknowns together.
-    let spread = |rest: Rest, last: &[f64], before: Option<&Vec<f64>>| -> Vec<f64> {
-        let before = |p: usize| before.map_or(0.0, |before| before[p]);
+    let mesh = now.rest.zip(changes.last()).map(|(rest, last)| {
+        let before = |p: usize| changes.len().checked_sub(2).map_or(0.0, |before| changes[before][p]);
         last.iter().enumerate().map(|(p, last)| rest.spread(*last, before(p))).collect()
-    };
-    let mesh = now
-        .rest
-        .zip(changes.last())
-        .map(|(rest, last)| spread(rest, last, changes.len().checked_sub(2).map(|before| &changes[before])));
-    let left = now.rest.map_or(0.0, |rest| {
-        let [last, before] = now.changes();
-        let all = spread(rest, &last, Some(&before));
-        all.iter().zip(&limit.weights).map(|(c, w)| (c * w).powi(2)).sum()
     });
     Ok(Estimate {
         theta,
@@ -148,7 +139,7 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
         mesh,
         changes,
         ratio: now.rest.and_then(|rest| rest.ratio),
-        left,
+        left: limit.left(&now),
         misfit: known.residual,
         residuals,
         weak: known.weak,

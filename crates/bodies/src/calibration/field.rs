@@ -1,4 +1,5 @@
-//! Young's modulus of each cell, with a prior of smoothness whose weight is the largest that the noise allows (Morozov 1966).
+//! Young's modulus of each cell, with a prior of smoothness whose weight is the largest that the noise and the error of the mesh allow
+//! (Morozov 1966).
 //!
 //! `min_θ Σ r² + ρ Σ_ab s_ab φ(θ_a − θ_b)` over neighbours a and b with a side of size s. The smooth prior has `φ = (θ_a − θ_b)²/d`, with the
 //! distance d of the cells; that of edges `φ = √((θ_a − θ_b)² + ε²)`, the total variation of the field, which lets a modulus jump (Vogel and Oman
@@ -87,6 +88,8 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
         let r = limit.residuals(&at.values());
         (dot(&r, &r) / n).sqrt()
     };
+    // What is left of the error of the meshes is as little to be fitted as the noise.
+    let is_within = |at: &Limiting| misfit(at) <= (1.0 + limit.left(at) / n).sqrt();
     // One factor for the whole body first: the prior does not see it.
     let mut theta = vec![0.0; m];
     let mut now = search.at(&theta)?.ok_or_else(no_equilibrium)?;
@@ -99,7 +102,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
             break;
         }
         (theta, now) = search.stage(theta, now, rho)?;
-        if misfit(&now) <= 1.0 {
+        if is_within(&now) {
             inside = Some(rho);
             best = (theta.clone(), rho);
             break;
@@ -112,7 +115,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
         for _ in 0..BISECTIONS {
             let middle = (high * low).sqrt();
             let (tried, at) = search.stage(best.0.clone(), search.again(&best.0)?, middle)?;
-            if misfit(&at) <= 1.0 {
+            if is_within(&at) {
                 (low, best) = (middle, (tried, middle));
             } else {
                 high = middle;

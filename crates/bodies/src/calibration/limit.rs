@@ -144,6 +144,14 @@ impl Limit<'_> {
         (before > SAME * size(&at.answers[0])).then(|| last / before)
     }
 
+    /// What the error of the meshes gives to the sum of the squares of the residuals.
+    pub(super) fn left(&self, at: &Limiting) -> f64 {
+        let Some(rest) = at.rest else { return 0.0 };
+        let [last, before] = at.changes();
+        let all = last.iter().zip(&before).zip(&self.weights);
+        all.map(|((last, before), weight)| (weight * rest.spread(*last, *before)).powi(2)).sum()
+    }
+
     /// The residuals `(y − u)/σ`.
     pub(super) fn residuals(&self, values: &[f64]) -> Vec<f64> {
         let all = self.observations.iter().zip(values).zip(&self.weights);

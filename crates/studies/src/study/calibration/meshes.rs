@@ -51,7 +51,11 @@ pub(super) fn level<'a>(
         }
         loads.push(LoadCase { name: case.name.clone(), support: case.support.clone(), forces: case.forces.clone() });
     }
-    let places = Embedding::of(&observed.places, &mesh).map_err(|e| e.under("measured"))?;
+    let outside = |e: Error| match e.kind() {
+        ErrorKind::Unsupported => e.under("measured"),
+        _ => Error::expected("measured", "places in the body", e.problem().replace("of the other mesh", "of the mesh")),
+    };
+    let places = Embedding::of(&observed.places, &mesh).map_err(outside)?;
     if first.is_none() {
         observed.check_inside(mesh.dimension, &places.multiples)?;
     }
