@@ -1,6 +1,8 @@
 //! One element on its deformations: R and the g_s in an orthonormal basis of all motions that are not rigid, weighted
 //! and scaled to a size of one. Theory: page *Stiffness and the reduced space* of the book.
 
+mod matrix;
+
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
 use super::weight::MotionWeight;
@@ -104,55 +106,6 @@ impl<T: Real> Reduced<T> {
             self.divide_by_stiffness();
         }
         self.normalise();
-    }
-
-    /// Fills in a matrix `r`, `[nodes·dimension × nodes·dimension]`, in place of that of an element, with springs on lengths alone.
-    pub fn set_matrix(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {
-        match springs.dimension {
-            1 => self.set_matrix_in::<1>(weight, springs, x, r),
-            2 => self.set_matrix_in::<2>(weight, springs, x, r),
-            _ => self.set_matrix_in::<3>(weight, springs, x, r),
-        }
-    }
-
-    fn set_matrix_in<const D: usize>(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {
-        let n = springs.nodes;
-        let x = &x.as_chunks::<D>().0[..n];
-        self.set_mix(weight, x);
-        self.mix_matrix::<D>(n, r);
-        self.set_lengths(springs, x);
-        self.take_out_rotations::<D>(n);
-        if weight.divides_by_stiffness() {
-            self.divide_by_stiffness();
-        }
-        self.normalise();
-    }
-
-    /// `C R Cᵀ` with the map C from nodes to differences, lower triangle.
-    fn mix_matrix<const D: usize>(&mut self, n: usize, r: &[T]) {
-        let (full, size) = ((n - 1) * D, n * D);
-        let zero = self.size.zero();
-        let mut half = vec![zero.clone(); full * size];
-        for (i, row) in self.mix.chunks_exact(n).enumerate() {
-            for k in 0..D {
-                let sums = &mut half[(i * D + k) * size..][..size];
-                for (a, c) in row.iter().enumerate() {
-                    for (sum, entry) in sums.iter_mut().zip(&r[(a * D + k) * size..]) {
-                        *sum = sum.clone().plus_product(c, entry);
-                    }
-                }
-            }
-        }
-        for at in 0..full {
-            for (j, row) in self.mix.chunks_exact(n).enumerate() {
-                for l in 0..D {
-                    let own = &half[at * size..(at + 1) * size];
-                    let sum =
-                        row.iter().enumerate().fold(zero.clone(), |sum, (b, c)| sum.plus_product(c, &own[b * D + l]));
-                    self.stiffness[at * full + j * D + l] = sum;
-                }
-            }
-        }
     }
 
     /// The map from nodes to differences, `[nodes − 1 × nodes]`. For modal weights it is multiplied by `h + (1 − h) P`,

@@ -1,7 +1,7 @@
 //! Networks as flexes of MuJoCo: the edges of the cells of `<flexcomp type="direct">` and `<flex>`.
 
-use super::flex_places::Places;
-use super::{SpecimenFile, SpecimenOptions, place};
+use super::file::{SpecimenFile, SpecimenOptions, place};
+use super::flex_places::{Places, numbers};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{Gate, Mesh, MeshArrays};
@@ -104,13 +104,4 @@ fn mesh(points: &[f64], d: usize, dim: usize, nodes: &[usize]) -> Result<Option<
         groups: BTreeMap::new(),
     };
     Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
-}
-
-/// Numbers with spaces between them.
-pub fn numbers(key: &str, text: &str) -> Result<Vec<f64>> {
-    let number = |word: &str| {
-        let number = word.parse::<f64>().ok().filter(|x| x.is_finite());
-        number.ok_or_else(|| Error::expected(key, "numbers", format!("\"{word}\"")))
-    };
-    text.split_whitespace().map(number).collect()
 }

@@ -1,6 +1,5 @@
 //! Where the vertices of a flex are.
 
-use super::flex::numbers;
 use crate::error::{Error, ErrorKind, Result};
 use roxmltree::{Document, Node};
 
@@ -84,4 +83,13 @@ impl Places<'_, '_> {
         let found = values.len();
         <[f64; 3]>::try_from(values).map(Some).map_err(|_| Error::expected(name, "three numbers", found))
     }
+}
+
+/// Numbers with spaces between them.
+pub fn numbers(key: &str, text: &str) -> Result<Vec<f64>> {
+    let number = |word: &str| {
+        let number = word.parse::<f64>().ok().filter(|x| x.is_finite());
+        number.ok_or_else(|| Error::expected(key, "numbers", format!("\"{word}\"")))
+    };
+    text.split_whitespace().map(number).collect()
 }

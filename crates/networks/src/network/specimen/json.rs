@@ -1,10 +1,11 @@
 //! Networks in JSON, as springfit writes them.
 
-use super::{SpecimenFile, SpecimenOptions};
+use super::file::{SpecimenFile, SpecimenOptions};
 use crate::error::Result;
 use crate::material::Plane;
 use crate::model::{Specimen, Support};
 use crate::network::reader::parse;
+use crate::network::record::NodalLoadRecord;
 
 pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
     let record = parse(bytes)?;
@@ -15,16 +16,15 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
         let at = &mut prescribed[held.point * d..][..d];
         at.iter_mut().zip(&held.displacement).for_each(|(all, own)| *all = own.map(|_| 0.0));
     }
-    let forces = |load: &super::super::record::NodalLoadRecord| {
+    let forces = |load: &NodalLoadRecord| {
         let mut all = vec![0.0; record.points.len() * d];
         for force in &load.forces {
             all[force.point * d..][..d].iter_mut().zip(&force.force).for_each(|(all, own)| *all += own);
         }
         all
     };
-    let moves = |load: &&super::super::record::NodalLoadRecord| {
-        load.held.iter().any(|held| held.displacement.iter().flatten().any(|u| *u != 0.0))
-    };
+    let moves =
+        |load: &&NodalLoadRecord| load.held.iter().any(|held| held.displacement.iter().flatten().any(|u| *u != 0.0));
     let loads = record.loads.iter().filter(|load| !moves(load)).map(forces);
     let loads: Vec<Vec<f64>> = loads.filter(|load| load.iter().any(|f| *f != 0.0)).collect();
     let specimen = Specimen {

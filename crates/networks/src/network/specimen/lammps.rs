@@ -1,6 +1,6 @@
 //! Networks as data files of LAMMPS: atoms, and harmonic bonds.
 
-use super::{SpecimenFile, SpecimenOptions};
+use super::file::{SpecimenFile, SpecimenOptions};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{LengthSpring, Network, Specimen};
 use nalgebra::DMatrix;

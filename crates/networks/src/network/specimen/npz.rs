@@ -1,7 +1,7 @@
 //! Networks as arrays of NumPy: those of springfit, of PhysTwin, and of anyone with the same names.
 
 use super::arrays::{Array, Arrays};
-use super::{SpecimenFile, SpecimenOptions, place};
+use super::file::{SpecimenFile, SpecimenOptions, place};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{Gate, Mesh, MeshArrays};

@@ -1,6 +1,6 @@
 //! Networks as tables: one spring per line, and a table of the points.
 
-use super::{SpecimenFile, SpecimenOptions, place};
+use super::file::{SpecimenFile, SpecimenOptions, place};
 use crate::element::SpringKind;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{LengthSpring, MeasureSpring, Network, Specimen, SpringLaw};

@@ -1,6 +1,6 @@
 //! The elasticity tensor of a lattice as formulas of its constants.
 
-use super::{NamedLattice, Root, UNIT};
+use super::definition::{NamedLattice, Root, UNIT};
 use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::Fraction;
 use num_rational::BigRational;

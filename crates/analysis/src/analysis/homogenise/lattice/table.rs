@@ -1,12 +1,14 @@
 //! The lattices that are known by name: a new one is a row here.
 
-use super::{NamedLattice, Root};
+use super::definition::{NamedLattice, Root};
+use crate::error::Result;
+use crate::named::unknown;
 
 const CUBE: [[i64; 3]; 3] = [[12, 0, 0], [0, 12, 0], [0, 0, 12]];
 const FACES: [[i64; 3]; 3] = [[0, 6, 6], [6, 0, 6], [6, 6, 0]];
 
 /// The lattices that are known by name.
-pub const LATTICES: [NamedLattice; 8] = [
+const LATTICES: [NamedLattice; 8] = [
     NamedLattice {
         name: "triangular",
         title: "triangles of equal sides",
@@ -80,3 +82,21 @@ pub const LATTICES: [NamedLattice; 8] = [
         squares: &[27, 72],
     },
 ];
+
+impl NamedLattice {
+    /// All of them.
+    pub fn all() -> &'static [NamedLattice] {
+        &LATTICES
+    }
+
+    /// The lattice of this name.
+    ///
+    /// # Errors
+    /// None has it.
+    pub fn named(name: &str) -> Result<&'static NamedLattice> {
+        LATTICES.iter().find(|lattice| lattice.name == name).ok_or_else(|| {
+            let names: Vec<&str> = LATTICES.iter().map(|lattice| lattice.name).collect();
+            unknown(format!("one of {}", names.join(", ")), names.iter().copied(), name)
+        })
+    }
+}
