@@ -71,6 +71,7 @@ impl Specimen {
             points: self.points.clone(),
             blocks: vec![(element, ends)],
             groups: BTreeMap::new(),
+            cell_groups: BTreeMap::new(),
         };
         let mesh = given.build(Gate::default())?;
         match mesh.points == self.points {

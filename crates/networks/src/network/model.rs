@@ -217,6 +217,7 @@ impl NetworkRecord {
             points: points.clone(),
             blocks: blocks.into_iter().map(|block| (block.element, block.connectivity)).collect(),
             groups: BTreeMap::new(),
+            cell_groups: BTreeMap::new(),
         };
         arrays.build(Gate::default()).ok().filter(|mesh| mesh.points == points && mesh.reversed == 0)
     }

@@ -102,6 +102,7 @@ fn mesh(points: &[f64], d: usize, dim: usize, nodes: &[usize]) -> Result<Option<
         points: points.to_vec(),
         blocks: vec![(element, nodes.to_vec())],
         groups: BTreeMap::new(),
+        cell_groups: BTreeMap::new(),
     };
     Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
 }
