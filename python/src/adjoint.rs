@@ -156,7 +156,7 @@ impl SpringBody {
 
     fn body(&self, points: Vec<f64>, network: model::Network) -> Body {
         let mesh = Arc::new(Mesh::of_cells(self.dimension, points, Vec::new()));
-        Body::Given(Arc::new(GivenBody { mesh, network, masses: None }))
+        Body::given(GivenBody { mesh, network, masses: None }, false)
     }
 
     fn support(&self, py: Python, held: &PyReadonlyArray2<bool>, u: Option<Vec<f64>>) -> PyResult<Support> {

@@ -123,21 +123,6 @@ pub fn restored_mesh(
     Ok(Mesh { mesh: Arc::new(mesh), elements: elements_of(&blocks) })
 }
 
-impl Mesh {
-    /// Of the library, some of whose elements are these; others are shipped.
-    ///
-    /// # Errors
-    /// An element is neither.
-    pub fn of_library(mesh: Arc<mesh::Mesh>, own: &[Element]) -> Result<Mesh> {
-        let element = |block: &mesh::CellBlock| match own.iter().find(|own| own.0.name == block.element.name) {
-            Some(own) => Ok(own.clone()),
-            None => Element::named(&block.element.name),
-        };
-        let elements = mesh.blocks.iter().map(element).collect::<Result<_>>()?;
-        Ok(Mesh { mesh, elements })
-    }
-}
-
 #[pymethods]
 impl Mesh {
     /// `points` in metres, `[points, dimension]`; the nodes of cells are places in them, in the order of the element.

@@ -64,7 +64,7 @@ impl Specimen {
     /// # Errors
     /// A point has no spring, or a spring no length.
     pub fn bars(&self) -> Result<Mesh> {
-        let element = Arc::new(Element::load("bar2")?);
+        let element = Arc::new(Element::linear_simplex(1)?);
         let ends = self.network.lengths.iter().flat_map(|spring| spring.points).collect();
         let given = MeshArrays {
             dimension: self.network.dimension,

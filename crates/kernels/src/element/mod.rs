@@ -89,6 +89,20 @@ pub struct SideTable {
 }
 
 impl Element {
+    /// The shipped element of linear simplices of this dimension: bars, triangles or tetrahedra with nodes at their corners alone.
+    ///
+    /// # Errors
+    /// There is none; or a shipped file is wrong, which tests exclude.
+    pub fn linear_simplex(dimension: usize) -> Result<Element> {
+        for file in SHIPPED {
+            let element = Element::shipped(file)?;
+            if element.dimension() == dimension && element.nodes() == dimension + 1 {
+                return Ok(element);
+            }
+        }
+        Err(Error::expected("dimension", "1, 2 or 3", dimension))
+    }
+
     /// The shipped element with this name, or the element in the file at this path.
     ///
     /// # Errors

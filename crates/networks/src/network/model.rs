@@ -39,8 +39,10 @@ impl Measuring {
     /// The element of the whole cells whose content springs of this kind measure on so many points, if it is a simplex.
     pub fn simplex(&mut self, kind: SpringKind, points: usize) -> Option<Arc<Element>> {
         match (kind, self.dimension, points) {
-            (SpringKind::Area, 2, 3) => self.element("tri3"),
-            (SpringKind::Volume, 3, 4) => self.element("tet4"),
+            (SpringKind::Area, 2, 3) | (SpringKind::Volume, 3, 4) => {
+                let element = Element::linear_simplex(self.dimension).ok()?;
+                self.element(&element.name)
+            }
             _ => None,
         }
     }

@@ -96,7 +96,7 @@ fn mesh(points: &[f64], d: usize, dim: usize, nodes: &[usize]) -> Result<Option<
     if dim != d {
         return Ok(None);
     }
-    let element = Arc::new(Element::load(if d == 2 { "tri3" } else { "tet4" })?);
+    let element = Arc::new(Element::linear_simplex(d)?);
     let given = MeshArrays {
         dimension: d,
         points: points.to_vec(),

@@ -117,7 +117,7 @@ fn mesh(arrays: &Arrays, points: &[f64], d: usize) -> Result<Option<Mesh>> {
     }
     let (nodes, _) = arrays.places("tets", &[d + 1])?.unwrap_or_default();
     let nodes = nodes.iter().map(|&p| place("tets", p, 0, points.len() / d)).collect::<Result<Vec<usize>>>()?;
-    let element = Arc::new(Element::load(if d == 2 { "tri3" } else { "tet4" })?);
+    let element = Arc::new(Element::linear_simplex(d)?);
     let given = MeshArrays {
         dimension: d,
         points: points.to_vec(),

@@ -9,7 +9,7 @@ use super::input::MeshInput;
 use super::laws::laws_of_cells;
 use super::lists::{check_fits, read_fits};
 use super::load::{LoadCase, read_loads};
-use super::material::{Bending, MaterialEntries, MaterialEntry};
+use super::material::{MaterialEntries, MaterialEntry};
 use super::motion_recipe::MotionRecipe;
 use super::output::Output;
 use super::part::Part;
@@ -258,12 +258,8 @@ impl Scene {
     /// The file or an element is wrong, or a cell has no volume; or a mesh that is to bend is no surface of triangles.
     pub fn build_mesh(&self) -> Result<Mesh> {
         let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
-        if self.material.first().bending != Bending::Plate {
-            return Ok(mesh);
-        }
-        let gyration = self.material_of(&mesh)?.thicknesses().map(|t| t * t / 12.0);
-        let of_cells = mesh.cell_indices().map(|cell| *gyration.at(cell.block, cell.cell)).collect();
-        mesh.with_directors(of_cells).map_err(|e| self.at(&self.material.key(0), e))
+        let bent = self.material.first().bending.of(mesh, |mesh| self.material_of(mesh));
+        bent.map_err(|e| e.placed(|e| self.at(&self.material.key(0), e)))
     }
 
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong

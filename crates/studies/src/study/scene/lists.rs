@@ -1,7 +1,8 @@
 //! The fits and loads of a scene, each with a name of its own, and what fits require of the rest.
 
+use super::bending::Bending;
 use super::load::LoadCase;
-use super::material::{Bending, MaterialEntries};
+use super::material::MaterialEntries;
 use crate::error::{Error, ErrorKind, Result};
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
 use crate::study::own_name::{BODY, expect_own_name};

@@ -4,6 +4,7 @@ use super::anisotropic::{
     AnisotropicLaw, Axis, AxisEntry, CubicEntry, NumberField, OrthotropicEntry, StiffnessEntry, TransverseEntry,
     of_rows,
 };
+use super::bending::Bending;
 use super::constants::{Constant, young_and_poisson};
 use super::distribution::{self, Distribution};
 use super::part::Part;
@@ -106,17 +107,6 @@ pub struct MaterialEntry {
     /// The fibres of the law have this direction: a vector of numbers or expressions of x, y, z in m, or data of a file with three numbers.
     #[schemars(extend("x-type" = "vector", "x-default" = "that of the law"))]
     pub fibre: Option<AxisEntry>,
-}
-
-/// How a surface in space resists bending.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Bending {
-    /// It does not: the surface is a membrane.
-    #[default]
-    None,
-    /// It does as a thin plate of this thickness, with the flexural stiffness `D = E t³/(12 (1 − ν²))`.
-    Plate,
 }
 
 /// One material for the whole body, or one for each region.

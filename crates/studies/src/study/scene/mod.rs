@@ -1,6 +1,7 @@
 //! The scene file: its entries, and the checks that can be made before the mesh is read.
 
 mod anisotropic;
+mod bending;
 mod calibrate;
 mod constants;
 mod distribution;
