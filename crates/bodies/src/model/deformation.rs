@@ -1,7 +1,8 @@
 //! Whether displacements are small enough for the linear theory.
 
 use super::network::Network;
-use super::system::{dofs, each_cell};
+use super::numbering::dofs;
+use super::system::each_cell;
 use crate::mesh::Mesh;
 use crate::stiffness::Placement;
 use nalgebra::DMatrix;

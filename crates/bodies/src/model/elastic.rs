@@ -2,9 +2,10 @@
 
 use super::blocks::BlockStiffness;
 use super::network::Network;
+use super::numbering::dofs;
 use super::plate::plate_at_large_deformation;
 use super::rows::Rows;
-use super::system::{self, dofs};
+use super::system;
 use super::{Entries, Response};
 use crate::material::{Energy, EnergyMap, State};
 use crate::mesh::{CellIndex, Mesh};

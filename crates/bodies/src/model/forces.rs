@@ -2,7 +2,7 @@
 
 use super::functions::{function_pulls, function_tensions};
 use super::network::{LengthSpring, MeasureSpring, Network};
-use super::system::dofs;
+use super::numbering::dofs;
 use crate::stiffness::gather;
 use crate::symbolic::Jet;
 use std::array::from_fn;

@@ -62,7 +62,7 @@ pub use lumping::{Lumping, lumped_masses, masses};
 pub use means::cell_means;
 pub use moments::Moments;
 pub use network::{LengthSpring, MeasureSpring, Network, SpringLaw};
-pub(crate) use numbering::places;
+pub(crate) use numbering::{dofs, places};
 pub(crate) use parts::{PartVectors, Places};
 pub use patches::patch_springs;
 pub use plate::plate_springs;
@@ -78,7 +78,6 @@ pub(crate) use size::ADVICE;
 pub use size::check_body;
 pub use specimen::{Period, Specimen};
 pub use support::{Support, Unheld, unheld_bodies, unheld_parts};
-pub(crate) use system::dofs;
 pub use system::{cell_places, content, each_cell_forces, finite_elements};
 pub use tension::RestTension;
 

@@ -1,8 +1,8 @@
 //! The mass-spring model: springs on the points of a mesh.
 
 use super::Entries;
+use super::numbering::dofs;
 use super::steady::steady_law;
-use super::system::dofs;
 use crate::element::SpringKind;
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{Law, Measure, distance, linear};

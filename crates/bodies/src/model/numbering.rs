@@ -41,3 +41,8 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
     order.iter().rev().enumerate().for_each(|(row, &point)| place[point] = row);
     place
 }
+
+/// The degrees of freedom of `nodes`, in order.
+pub(crate) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
+    nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
+}

@@ -3,6 +3,7 @@
 //! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Entries;
+use super::numbering::dofs;
 use super::plate::plate_springs;
 use crate::element::Tabulation;
 use crate::material::{CellMap, Hooke};
@@ -114,9 +115,4 @@ pub(super) fn in_space(table: &Tabulation, points: &[f64], nodes: &[usize], r: &
         q[(a * space + k, a * d + l)] = placement.frame[l * space + k];
     }
     &q * r * q.transpose()
-}
-
-/// The degrees of freedom of `nodes`, in order.
-pub(crate) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
-    nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
 }

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Sheets that bend* of the book.
 
-use super::mesh::Mesh;
+use super::mesh::{Directors, Mesh};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{cross, distance, norm};
@@ -11,17 +11,6 @@ use std::sync::Arc;
 
 /// The sum of the normals at an edge, relative to their number, below which the sheet is folded onto itself there.
 const FOLDED: f64 = 0.1;
-
-/// The directors of a sheet. They are the last points of its mesh, and no cell has them as nodes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Directors {
-    /// The ends of the edge of each director, ascending.
-    pub edges: Vec<[usize; 2]>,
-    /// The points that are the directors of each triangle, in the order of the corners that are opposite to their edges.
-    pub of_cells: Vec<[usize; 3]>,
-    /// `t²/12` of each triangle, m²: a plate of thickness t resists curvature by that times the stiffness of the membrane.
-    pub gyration: Vec<f64>,
-}
 
 impl Mesh {
     /// The number of points that are nodes of cells. Those after them are the directors of a sheet.

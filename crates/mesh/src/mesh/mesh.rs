@@ -1,7 +1,6 @@
 //! The points, cells and groups of a mesh.
 
 use super::annotations::Annotations;
-use super::directors::Directors;
 use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
@@ -34,6 +33,17 @@ pub struct Mesh {
     pub numbering: Option<Numbering>,
     /// The quality of the cells.
     pub quality: Quality,
+}
+
+/// The directors of a sheet. They are the last points of its mesh, and no cell has them as nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Directors {
+    /// The ends of the edge of each director, ascending.
+    pub edges: Vec<[usize; 2]>,
+    /// The points that are the directors of each triangle, in the order of the corners that are opposite to their edges.
+    pub of_cells: Vec<[usize; 3]>,
+    /// `t²/12` of each triangle, m²: a plate of thickness t resists curvature by that times the stiffness of the membrane.
+    pub gyration: Vec<f64>,
 }
 
 /// The cells of one element type.

@@ -12,11 +12,10 @@ use super::value;
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::range;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
@@ -138,20 +137,6 @@ impl<'de> Deserialize<'de> for MaterialEntries {
             }
         }
         deserializer.deserialize_any(OneOrMany)
-    }
-}
-
-impl JsonSchema for MaterialEntries {
-    fn schema_name() -> Cow<'static, str> {
-        "MaterialEntries".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let one = generator.subschema_for::<MaterialEntry>();
-        json_schema!({
-            "description": "One material for the whole body, or one for each region.",
-            "anyOf": [one, { "type": "array", "items": one }],
-        })
     }
 }
 

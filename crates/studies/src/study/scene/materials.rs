@@ -8,6 +8,8 @@ use crate::file;
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::study::body_material::assumed;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use std::borrow::Cow;
 use std::borrow::Cow;
 use std::path::Path;
 use toml::Table;
@@ -89,5 +91,19 @@ impl Materials {
             every(|entry| entry.thickness.is_some() || entry.area.is_some()),
             every(|entry| entry.area.is_some()),
         )
+    }
+}
+
+impl JsonSchema for MaterialEntries {
+    fn schema_name() -> Cow<'static, str> {
+        "MaterialEntries".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let one = generator.subschema_for::<MaterialEntry>();
+        json_schema!({
+            "description": "One material for the whole body, or one for each region.",
+            "anyOf": [one, { "type": "array", "items": one }],
+        })
     }
 }
