@@ -10,7 +10,6 @@ use crate::mesh::Mesh;
 use crate::study::body_material::assumed;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
-use std::borrow::Cow;
 use std::path::Path;
 use toml::Table;
 
