@@ -121,7 +121,7 @@ fn a_run_without_loads_and_one_of_a_single_spring_have_pages() {
 #[test]
 fn a_run_without_fits_has_a_page_and_a_scene_without_them_an_error() {
     let error = Scene::parse(&[PLANE, LOAD].concat(), Path::new("scene.toml")).unwrap_err().to_string();
-    assert_eq!(error, "scene.toml: fit: expected at least one [[fit]], found none");
+    assert_eq!(error, "scene.toml: fit: expected at least one [[fit]], or [calibrate], found none");
     let mut without = outcome(&[PLANE, FIT, LOAD].concat());
     without.fits.clear();
     let record = record(&page(&without));

@@ -89,7 +89,7 @@ assert edges >= 0.9 and edges > smooth
 figure, axes = plt.subplots(1, 3, figsize=(8, 2.8), sharey=True)
 angle = np.linspace(0, 2 * np.pi, 100)
 for plot, (title, young) in zip(axes, [("truth", truth), *((prior, own.young) for prior, own in found.items())]):
-    colours = plot.tripcolor(*mesh.points.T, cells, young / 1e3, vmin=10, vmax=50)
+    colours = plot.tripcolor(*mesh.points.T, cells, young / 1e3, vmin=10, vmax=50, rasterized=True)
     plot.plot(0.6 + 0.2 * np.cos(angle), 0.55 + 0.2 * np.sin(angle), "w", lw=1)
     plot.set(title=title, aspect="equal")
     plot.grid(False)

@@ -1,8 +1,6 @@
 """Moduli from measurements: against exact answers, other meshes and elements, and wrong input."""
 
 import importlib.util
-import json
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -123,7 +121,7 @@ def test_known_regions_keep_their_moduli():
 
 
 WRONG = [
-    ({"measured": {"pull": (np.array([[0.5, 0.5, 3.0]]), np.ones((1, 3)))}}, "places in the body"),
+    ({"measured": {"pull": (np.array([[1.3, 0.5, 0.5]]), np.ones((1, 3)))}}, "places in the body"),
     ({"measured": {"push": np.zeros((45, 3))}}, "loads of pull"),
     ({"measured": {"pull": np.zeros((3, 3))}}, "shape"),
     ({"measured": {"pull": np.full((45, 3), np.nan)}}, "measured"),
@@ -200,7 +198,7 @@ def bench():
 
 def test_intervals_hold_the_truth_of_another_mesh_and_element():
     pytest.importorskip("skfem")
-    found = bench().study(["bracket"], range(6), noises=(0.0, 0.05), kinds=("interior",))
+    found = bench().study(["bracket"], range(5), noises=(0.0, 0.05), kinds=("interior",))
     rows = sum(row["intervals"] * row["held"] for row in found.values())
-    # Of 24 intervals of 95 %, fewer than 19 hold with a chance of 0.2 %.
-    assert rows >= 19, found
+    # Of 20 intervals of 95 %, fewer than 16 hold with a chance of 0.3 %.
+    assert rows >= 16, found
