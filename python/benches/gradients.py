@@ -27,7 +27,7 @@ for name, objectives in (("tet4", ["exact", "offdiag", "frobenius"]), ("hex8", [
     mesh = sf.Mesh.box(name, size=[1, 1, 1], cells=[side] * 3)
     rng = np.random.default_rng(1)
     points = mesh.points + 0.1 / side * rng.uniform(-1, 1, mesh.points.shape)
-    count = sum(len(cells) for _, cells in mesh.cells)
+    count = sum(len(cells) for _, cells in mesh.cells.items())
     young, poisson = 1e4 * rng.uniform(0.5, 2, count), rng.uniform(0.1, 0.4, count)
     for objective in objectives:
         start = time.process_time()

@@ -202,7 +202,9 @@ def calibrate(
         if regions is not None or fix or loads is not None or law is not None:
             raise failure("mesh", "a Mesh, with regions, fix and loads", shown(mesh))
         settings = {**{f"calibrate.{key}": value for key, value in keys.items()}, **settings_of(set)}
-        scene, base = given(mesh, folder)
+        scene, base, _, held = given(mesh, folder)
+        if held:
+            raise failure("mesh", "a scene with files; calibrate(mesh, regions, …) takes what is in memory", "a mesh or an array in memory")
         with listener(progress) as told:
             found = _core.calibrate(scene, base, settings, None, *_readings(None, measured or {}, noise), told)
         return Calibration._of(json.loads(found))

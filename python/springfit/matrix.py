@@ -59,7 +59,7 @@ def fit_matrix(
     >>> R = sf.stiffness(mesh, sf.Material(young=1e4, poisson=0.3))
     >>> found = sf.fit_matrix(R, mesh.points)
     >>> len(found.constants), round(found.frobenius, 6)
-    (28, 0.330094)
+    (28, 0.330061)
 
     Args:
         stiffness: R, an array [rows, rows] or a sparse matrix of SciPy, N/m; or the path of a file of Matrix Market.

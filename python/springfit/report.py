@@ -52,7 +52,7 @@ class Report:
         >>> u.shape == report.points.shape
         True
         >>> report.networks["exact"]
-        <springfit.Network exact: 15 points, 38 springs, 32 point-content>
+        <springfit.Network exact: 15 points, 70 springs (38 between two points, 32 point-content)>
     """
 
     record: dict
@@ -86,10 +86,10 @@ class Report:
             SpringfitError: The report is of a comparison, which has none.
         """
         if self._networks is None:
-            from .network import Network
+            from .springs import Network
 
             ran, mesh = self._found("networks"), self.mesh
-            self._networks = {name: Network(ran.network(i), mesh) for i, name in enumerate(ran.fits)}
+            self._networks = {name: Network._of(ran.network(i), mesh) for i, name in enumerate(ran.fits)}
         return self._networks
 
     def _found(self, key: str) -> Any:

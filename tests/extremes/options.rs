@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 24] = [
+const RUNS: [&[&str]; 25] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -38,6 +38,7 @@ const RUNS: [&[&str]; 24] = [
     &["fit", "rods.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json", "--objective", "frobenius"],
     &["compare", "tri3", "--shapes=1", "--iterations=5"],
     &["converge", "scene.toml", "--levels=2"],
+    &["measure", "--lattice", "cubic", "--constants=100,50"],
     &["run", "scene.toml"],
     &["sweep", "scene.toml", "--set=sweep.over={material.poisson=[0.1,0.2]}"],
     &["derive", "bar2"],

@@ -209,6 +209,10 @@ fn content_of(specimen: &Specimen, options: &MeasureOptions) -> Result<Content> 
     let mesh = filled(specimen);
     let boundary = mesh.map(Mesh::outer_points);
     if let Some(period) = &specimen.period {
+        if let Some(volume) = options.volume {
+            let expected = "none of a network that repeats itself, whose period has one";
+            return Err(Error::expected("volume", expected, volume));
+        }
         return Ok(Content { value: period.cell.determinant().abs(), of: "period", boundary: None });
     }
     if let Some(volume) = options.volume {
