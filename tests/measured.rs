@@ -147,7 +147,7 @@ fn files_of_other_programs_hold_the_same_network() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     let scene = "title = \"block\"\nmesh = { box = { element = \"tet4\", size = [0.1, 0.1, 0.2], cells = [2, 2, 4] } }\n\
-                 material = { young = 1e4, poisson = 0.25, density = 1000 }\n\
+                 material = { young = 1e7, poisson = 0.25, density = 1000 }\n\
                  fit = [{ name = \"springs\", objective = \"offdiag\", nonnegative = true }]\nfix = [{ group = \"zmin\" }]\n";
     fs::write(at.join("s.toml"), scene).unwrap();
     program(at, &["run", "s.toml", "--out", "out"]);
@@ -158,7 +158,7 @@ fn files_of_other_programs_hold_the_same_network() {
     let json = network.unwrap();
     let truth = of_file(&json, &MeasureOptions::default());
     let volume = Some(truth.volume);
-    let gravity = ["--gravity", "0 0 -0.01"];
+    let gravity = ["--gravity", "0 0 -9.8"];
     for (target, file) in [("phystwin", "phystwin.npz"), ("lammps", "network.data"), ("npz", "network.npz")] {
         program(at, &[&["export", json.to_str().unwrap(), "--to", target, "--out", target][..], &gravity].concat());
         let path: PathBuf = at.join(target).join(file);

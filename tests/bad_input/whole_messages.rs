@@ -14,7 +14,7 @@ fn whole_messages_read_well() {
     for ([scene, element, mesh], line) in [
         (
             scene("poisson = 0.3", "poison = 0.3"),
-            "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"group\", \"where\", \
+            "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"name\", \"group\", \"where\", \
              \"young\", \"poisson\", \"shear_modulus\", \"bulk_modulus\", \"lambda\", \"orthotropic\", \"transversely-isotropic\", \"cubic\", \"stiffness\", \"axes\", \"plane\", \
              \"thickness\", \"bending\", \"area\", \"density\", \"law\", \"parameters\", \"fibre\"; did you mean \"poisson\"?",
         ),
