@@ -72,13 +72,16 @@ fn cell_stiffness(
     if table.dimension < mesh.dimension { in_space(table, &mesh.points, nodes, &r) } else { r }
 }
 
+/// What is done with the forces of a cell: its index, its nodes, and the forces of each part.
+pub type ForceVisit<'a> = dyn FnMut(CellIndex, &[usize], &[Vec<Vec<f64>>]) + 'a;
+
 /// Calls `visit(cell, nodes, forces)` with the forces `K_e u` of every cell for each of several moduli of it, which `moduli` lists, and each of
 /// several displacements u, `[moduli][displacements]` of `[nodes · dimension]`, N.
 pub fn each_cell_forces(
     mesh: &Mesh,
     displacements: &[&[f64]],
     moduli: &dyn Fn(CellIndex) -> Vec<Hooke>,
-    visit: &mut dyn FnMut(CellIndex, &[usize], &[Vec<Vec<f64>>]),
+    visit: &mut ForceVisit,
 ) {
     let d = mesh.dimension;
     each_cell(mesh, |cell, nodes, geometry| {

@@ -5,6 +5,7 @@ use super::selection::outer_sides;
 use crate::element::Element;
 use crate::error::Result;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 impl Mesh {
@@ -18,9 +19,9 @@ impl Mesh {
         let mut found: Vec<(CellBlock, Vec<CellIndex>)> = Vec::new();
         for side in outer_sides(self, &vec![true; self.point_count()]) {
             let kind = (side.cell.block, side.side);
-            if !known.contains_key(&kind) {
-                // To read elements takes longer than all else here.
-                known.insert(kind, self.of_side(&side)?);
+            // To read elements takes longer than all else here.
+            if let Entry::Vacant(place) = known.entry(kind) {
+                place.insert(self.of_side(&side)?);
             }
             let (element, places) = &known[&kind];
             let place = found.iter().position(|(block, _)| block.element.name == element.name).unwrap_or_else(|| {
