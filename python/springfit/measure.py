@@ -12,7 +12,8 @@ from typing import Any, Union
 import numpy as np
 
 from . import _core
-from ._arguments import array, count, failure, matrix, number, places, shown, typed
+from ._arguments import array, count, failure, matrix, number, places, shown
+from ._contents import numbers
 from .mesh import Mesh
 from .network import Network
 
@@ -138,22 +139,13 @@ def _measurement(text: str) -> Measurement:
     )
 
 
-def _vector(key: str, values: Any) -> "np.ndarray | None":
-    if values is None:
-        return None
-    found = array(key, values)
-    if found.ndim != 1:
-        raise failure(key, "an array of one dimension", f"one of shape {found.shape}")
-    return typed(key, found, np.float64)
-
-
 def _contents(contents: Any) -> Any:
     if contents is None:
         return None
     if not isinstance(contents, (tuple, list)) or len(contents) != 3:
         raise failure("contents", "points, constants and rest contents", shown(contents))
     nodes, constants, rest = contents
-    return matrix("contents", nodes, np.int64), _vector("contents constants", constants), _vector("contents rest", rest)
+    return matrix("contents", nodes, np.int64), numbers("contents constants", constants), numbers("contents rest", rest)
 
 
 def measure(
@@ -229,7 +221,7 @@ def measure(
     options = {
         "volume": None if found is None or found.ndim else number("volumes", volumes, "a number, m³"),
         "hull": isinstance(volumes, str),
-        "volumes": None if found is None or not found.ndim else _vector("volumes", found),
+        "volumes": None if found is None or not found.ndim else numbers("volumes", found),
         "plane": plane,
         "thickness": None if thickness is None else number("thickness", thickness, "a number, m"),
         "density": None if density is None else number("density", density, "a number, kg/m³"),
@@ -260,10 +252,10 @@ def measure(
     network = {
         "points": matrix("points", points, np.float64),
         "springs": matrix("springs", springs, np.int64),
-        "constants": _vector("constants", constants),
-        "rest": _vector("rest", rest),
+        "constants": numbers("constants", constants),
+        "rest": numbers("rest", rest),
         "contents": _contents(contents),
-        "masses": _vector("masses", masses),
+        "masses": numbers("masses", masses),
         "cell": vectors,
         "held": held,
     }

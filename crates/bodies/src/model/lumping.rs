@@ -6,7 +6,7 @@ use super::integration::each_cell_points;
 use crate::element::Integrand;
 use crate::material::CellMap;
 use crate::mesh::{CellIndex, Mesh};
-use crate::springs::{cross, distance, norm};
+use crate::springs::{distance, norm};
 
 /// How the mass of a cell is distributed among its nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -74,19 +74,13 @@ pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec
     let first = mesh.node_count();
     let mut masses = Vec::new();
     for (index, (points, gyration)) in mesh.cell_indices().zip(directors.of_cells.iter().zip(&directors.gyration)) {
-        let area = area(mesh, mesh.cell_nodes(index));
+        let area = norm(&mesh.area_vector(mesh.cell_nodes(index)));
         for &point in points {
             let [a, b] = directors.edges[point - first].map(|end| mesh.point(end));
             masses.push((point, of(index) * area / 3.0 * gyration / distance(a, b).powi(2)));
         }
     }
     masses
-}
-
-/// The area of a triangle, m².
-fn area(mesh: &Mesh, nodes: &[usize]) -> f64 {
-    let from = |b: usize| std::array::from_fn(|k| mesh.point(nodes[b])[k] - mesh.point(nodes[0])[k]);
-    norm(&cross(from(1), from(2))) / 2.0
 }
 
 /// The nodal masses `m_a = ∫ ρ N_a dV`, `[points]`, kg: the row sums of the consistent mass matrix. Each node of a

@@ -54,8 +54,9 @@ pub(super) fn plate_at_large_deformation(mesh: &Mesh, laws: &EnergyMap) -> Netwo
 fn bends(mesh: &Mesh, points: &SmallVec<[usize; 4]>, d: &Matrix3<f64>) -> Vec<MeasureSpring> {
     let at = |place: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(points[place])[k]) };
     let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| a[k] - b[k]) };
-    let twice = cross(minus(at(1), at(0)), minus(at(2), at(0)));
-    let (area, normal) = (norm(&twice) / 2.0, twice.map(|n| n / norm(&twice)));
+    let vector = mesh.area_vector(&points[..3]);
+    let area = norm(&vector);
+    let normal = vector.map(|a| a / area);
     let edge = |corner: usize| minus(at((corner + 2) % 3), at((corner + 1) % 3));
     // The axes of the triangle: along its first edge, as those of its membrane are, and across it.
     let along = minus(at(1), at(0));

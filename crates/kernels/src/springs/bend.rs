@@ -27,13 +27,13 @@ pub struct Bend {
 
 impl Bend {
     pub(super) fn value(&self, x: &[f64]) -> f64 {
-        (0..3).map(|i| self.weights[i] * turn(&points(x, i)).0).sum()
+        (0..3).map(|i| self.weights[i] * turn(&points(x, i))).sum()
     }
 
     pub(super) fn gradient(&self, x: &[f64]) -> Vec<f64> {
         let mut gradient = vec![0.0; 3 * BEND_POINTS];
         for (i, weight) in self.weights.iter().enumerate() {
-            let (_, slopes) = turn(&points(x, i));
+            let slopes = slopes(&points(x, i));
             for (k, &dof) in dofs(i).iter().enumerate() {
                 gradient[dof] += weight * slopes[k / 3][k % 3];
             }
@@ -71,10 +71,10 @@ fn dofs(corner: usize) -> [usize; 12] {
     std::array::from_fn(|k| 3 * places[k / 3] + k % 3)
 }
 
-/// The turn of the triangle with this apex and edge a → b from the director, and its gradient at apex, a, b and director.
-fn turn(points: &[Vector<f64>; 4]) -> (f64, [Vector<f64>; 4]) {
+/// The turn of the triangle with this apex and edge a → b from the director.
+fn turn(points: &[Vector<f64>; 4]) -> f64 {
     let arms = Arms::of(points);
-    (arms.across.atan2(arms.along), slopes(points))
+    arms.across.atan2(arms.along)
 }
 
 /// The gradient of the turn at apex, a, b and director: `N/h` at the apex, `(x N − y n)/(x² + y²)` at the director, and what keeps motions of the whole

@@ -39,7 +39,8 @@ impl Mesh {
         let mut of_cells = Vec::with_capacity(block.cells().len());
         let first = self.point_count();
         for nodes in block.cells() {
-            let normal = self.normal(nodes);
+            let area = self.area_vector(nodes);
+            let normal = area.map(|a| a / norm(&area));
             of_cells.push(std::array::from_fn(|corner| {
                 let edge = ascending([nodes[(corner + 1) % 3], nodes[(corner + 2) % 3]]);
                 let place = *places.entry(edge).or_insert_with(|| {
@@ -100,12 +101,10 @@ impl Mesh {
         points.iter().copied().chain(own).collect()
     }
 
-    /// The unit normal of a triangle.
-    fn normal(&self, nodes: &[usize]) -> [f64; 3] {
+    /// The area of a triangle in space with these corners, m², times its unit normal.
+    pub fn area_vector(&self, nodes: &[usize]) -> [f64; 3] {
         let from = |b: usize| std::array::from_fn(|k| self.point(nodes[b])[k] - self.point(nodes[0])[k]);
-        let normal = cross(from(1), from(2));
-        let size = norm(&normal);
-        normal.map(|n| n / size)
+        cross(from(1), from(2)).map(|twice| twice / 2.0)
     }
 }
 

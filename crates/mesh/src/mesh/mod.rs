@@ -68,6 +68,7 @@ pub use fill::{FaceCrossings, FillBoundary, FillLayers, FillMesh, FillSpacing, F
 pub use formats::{MESH_FORMATS, MeshFormat, listed_endings};
 pub use mesh::{CellBlock, CellIndex, Chosen, Directors, Group, Mesh, SideIndex};
 pub use numbering::{NumberOrigin, Numbering};
+pub use numpy::NumpyFile;
 pub use quality::{Below, Gate, Quality, Worst};
 pub use selection::{ListedSides, Selection};
 pub use source::{Format, MeshSource, SourceBlock};

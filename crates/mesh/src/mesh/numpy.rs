@@ -19,8 +19,8 @@ const NAME: &str = "label";
 /// The file is of another kind, damaged or cut short; the array has another number of dimensions or no whole numbers; all labels are
 /// zero, or they are grey values.
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshSource> {
-    let (header, data) = split(bytes)?;
-    let array = Array::read(header)?;
+    let file = NumpyFile::split(bytes)?;
+    let (data, array) = (file.data, Array::of(&file)?);
     let count = array.shape.iter().try_fold(1_u64, |count, n| count.checked_mul(*n));
     let size = count.and_then(|count| count.checked_mul(array.scalar.size().unwrap_or(1)));
     if size != Some(data.len() as u64) {
@@ -54,26 +54,84 @@ fn turned(values: Vec<i128>, [a, b, c]: [u64; 3]) -> Vec<i128> {
     (0..values.len()).map(|at| values[index(at % a, at / a % b, at / a / b)]).collect()
 }
 
-/// The header and the numbers.
-fn split(bytes: &[u8]) -> Result<(&str, &[u8])> {
-    let wrong = |problem: Error| problem.of_kind(ErrorKind::Syntax);
-    let Some(rest) = bytes.strip_prefix(MARK) else {
-        let found = quoted(&bytes[..bytes.len().min(6)]);
-        return Err(wrong(Error::expected("header", "an array of NumPy, which begins with \\x93NUMPY", found)));
-    };
-    let ends = || wrong(Error::new("the file ends inside header"));
-    let (length, rest) = match rest {
-        [1, _, a, b, rest @ ..] => (u32::from(u16::from_le_bytes([*a, *b])), rest),
-        [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]), rest),
-        [1..=3, ..] | [] => return Err(ends()),
-        [other, ..] => return Err(wrong(Error::expected("header", "version 1, 2 or 3", other))),
-    };
-    let (header, data) = rest.split_at_checked(length as usize).ok_or_else(ends)?;
-    let header = std::str::from_utf8(header).map_err(|_| wrong(Error::expected("header", "text", "other bytes")))?;
-    Ok((header, data))
+/// A file of NumPy's format: a header that describes an array, and the bytes of its numbers.
+///
+/// The format: <https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html>, versions 1 to 3.
+#[derive(Debug, Clone, Copy)]
+pub struct NumpyFile<'a> {
+    /// The dictionary `{'descr': '<i4', 'fortran_order': False, 'shape': (6, 4, 3), }`.
+    header: &'a str,
+    /// The bytes of the numbers.
+    pub data: &'a [u8],
 }
 
-/// What the header says.
+impl<'a> NumpyFile<'a> {
+    /// Takes the header from the numbers.
+    ///
+    /// # Errors
+    /// The bytes are of another kind, or end inside the header.
+    pub fn split(bytes: &'a [u8]) -> Result<NumpyFile<'a>> {
+        let wrong = |problem: Error| problem.of_kind(ErrorKind::Syntax);
+        let Some(rest) = bytes.strip_prefix(MARK) else {
+            let found = quoted(&bytes[..bytes.len().min(6)]);
+            return Err(wrong(Error::expected("header", "an array of NumPy, which begins with \\x93NUMPY", found)));
+        };
+        let ends = || wrong(Error::new("the file ends inside header"));
+        let (length, rest) = match rest {
+            [1, _, a, b, rest @ ..] => (u32::from(u16::from_le_bytes([*a, *b])), rest),
+            [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]), rest),
+            [1..=3, ..] | [] => return Err(ends()),
+            [other, ..] => return Err(wrong(Error::expected("header", "version 1, 2 or 3", other))),
+        };
+        let (header, data) = rest.split_at_checked(length as usize).ok_or_else(ends)?;
+        let header =
+            std::str::from_utf8(header).map_err(|_| wrong(Error::expected("header", "text", "other bytes")))?;
+        Ok(NumpyFile { header, data })
+    }
+
+    /// The type of a number, such as `<i4`; empty where it is no single text.
+    ///
+    /// # Errors
+    /// The header does not say it.
+    pub fn number(&self) -> Result<&'a str> {
+        let text = self.value("descr")?.strip_prefix('\'').and_then(|rest| rest.split_once('\''));
+        Ok(text.map_or("", |(kind, _)| kind))
+    }
+
+    /// Whether the first index is the fastest.
+    ///
+    /// # Errors
+    /// The header does not say it.
+    pub fn is_fortran(&self) -> Result<bool> {
+        let order = self.value("fortran_order")?;
+        match (order.starts_with("True"), order.starts_with("False")) {
+            (true, _) => Ok(true),
+            (_, true) => Ok(false),
+            _ => Err(syntax("fortran_order", "True or False", order)),
+        }
+    }
+
+    /// The numbers along each axis.
+    ///
+    /// # Errors
+    /// The header does not say them.
+    pub fn shape(&self) -> Result<Vec<u64>> {
+        let shape = self.value("shape")?;
+        let inner = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).map(|(inner, _)| inner);
+        let counts = inner.map(|inner| inner.split(',').map(str::trim).filter(|count| !count.is_empty()));
+        let counts: Option<Vec<u64>> = counts.and_then(|counts| counts.map(|count| count.parse().ok()).collect());
+        counts.ok_or_else(|| syntax("shape", "counts such as (6, 4, 3)", shape))
+    }
+
+    /// The text after the key of the dictionary.
+    fn value(&self, key: &str) -> Result<&'a str> {
+        let header = self.header;
+        let found = header.split_once(&format!("'{key}'")).and_then(|(_, rest)| rest.trim_start().strip_prefix(':'));
+        found.map(str::trim_start).ok_or_else(|| syntax("header", &format!("a dictionary with '{key}'"), header))
+    }
+}
+
+/// What the header says of labels.
 struct Array {
     scalar: ScalarType,
     big_endian: bool,
@@ -82,11 +140,8 @@ struct Array {
 }
 
 impl Array {
-    /// Reads `{'descr': '<i4', 'fortran_order': False, 'shape': (6, 4, 3), }`.
-    fn read(header: &str) -> Result<Array> {
-        let descr = value(header, "descr")?;
-        let text = descr.strip_prefix('\'').and_then(|rest| rest.split_once('\''));
-        let kind = text.map_or("", |(kind, _)| kind);
+    fn of(file: &NumpyFile) -> Result<Array> {
+        let kind = file.number()?;
         let (order, number) = kind.split_at_checked(1).unwrap_or_default();
         let scalar = match number {
             "b1" | "u1" => ScalarType::UInt8,
@@ -99,38 +154,23 @@ impl Array {
             "u8" => ScalarType::UInt64,
             _ => {
                 let expected = "whole numbers or bool, such as '<i4' or '|b1'";
-                let found = format!("{}; labels.astype(\"int32\") makes them", quoted(start(descr).as_bytes()));
+                let descr = quoted(start(file.value("descr")?).as_bytes());
+                let found = format!("{descr}; labels.astype(\"int32\") makes them");
                 return Err(Error::expected("descr", expected, found).of_kind(ErrorKind::Unsupported));
             }
         };
         let big_endian = match order {
             "<" | "|" | "=" => false,
             ">" => true,
-            _ => return Err(syntax("descr", "a byte order, one of < > |", descr)),
+            _ => return Err(syntax("descr", "a byte order, one of < > |", file.value("descr")?)),
         };
-        let order = value(header, "fortran_order")?;
-        let is_fortran = match (order.starts_with("True"), order.starts_with("False")) {
-            (true, _) => true,
-            (_, true) => false,
-            _ => return Err(syntax("fortran_order", "True or False", order)),
-        };
-        let shape = value(header, "shape")?;
-        let inner = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).map(|(inner, _)| inner);
-        let counts = inner.map(|inner| inner.split(',').map(str::trim).filter(|count| !count.is_empty()));
-        let counts: Option<Vec<u64>> = counts.and_then(|counts| counts.map(|count| count.parse().ok()).collect());
-        let Some(counts) = counts else { return Err(syntax("shape", "counts such as (6, 4, 3)", shape)) };
+        let (is_fortran, counts) = (file.is_fortran()?, file.shape()?);
         if !(2..=3).contains(&counts.len()) || counts.iter().any(|count| *count >= u64::MAX / 2) {
             let error = Error::expected("shape", "an array of 2 or 3 dimensions", self::shown(&counts));
             return Err(error.of_kind(ErrorKind::Unsupported));
         }
         Ok(Array { scalar, big_endian, is_fortran, shape: counts })
     }
-}
-
-/// The text after the key of a dictionary.
-fn value<'a>(header: &'a str, key: &str) -> Result<&'a str> {
-    let found = header.split_once(&format!("'{key}'")).and_then(|(_, rest)| rest.trim_start().strip_prefix(':'));
-    found.map(str::trim_start).ok_or_else(|| syntax("header", &format!("a dictionary with '{key}'"), header))
 }
 
 fn syntax(key: &str, expected: &str, found: &str) -> Error {

@@ -1,6 +1,7 @@
 //! Two methods on the same cases, and several on all of them.
 
 use super::bootstrap::{Interval, median_interval};
+use super::normal::beyond;
 use super::quantile::median;
 use serde::Serialize;
 
@@ -102,7 +103,7 @@ pub fn signed_rank(differences: &[f64]) -> f64 {
     }
     let variance = (n * (n + 1) * (2 * n + 1)) as f64 / 24.0 - ties / 48.0;
     let z = ((smaller - all / 2.0).abs() - 0.5).max(0.0) / variance.sqrt();
-    erfc(z / std::f64::consts::SQRT_2)
+    2.0 * beyond(z)
 }
 
 /// The ranks from 1 of ascending values, those of equal ones their mean, and `Σ t³ − t` over groups of t equal ones.
@@ -129,21 +130,6 @@ fn share_below(n: usize, most: usize) -> f64 {
         }
     }
     ways[..=most.min(total)].iter().sum::<f64>() / 2f64.powi(n as i32)
-}
-
-/// `erfc(x)` of x from 0 on: the continued fraction, and the power series for small x.
-fn erfc(x: f64) -> f64 {
-    let scale = 2.0 / std::f64::consts::PI.sqrt();
-    if x < 2.0 {
-        let (mut term, mut sum) = (x, x);
-        for n in 1..80 {
-            term *= -x * x / f64::from(n);
-            sum += term / f64::from(2 * n + 1);
-        }
-        return (1.0 - scale * sum).max(0.0);
-    }
-    let fraction = (1..60).rev().fold(x, |below, n| x + f64::from(n) / 2.0 / below);
-    scale / 2.0 * (-x * x).exp() / fraction
 }
 
 /// Probabilities of comparisons that were made together, each raised so that not even one verdict of all is wrong more often than the

@@ -183,6 +183,14 @@ impl<'a> Batch<'a, '_> {
         Seeds { x, moduli: Moduli { lambda: zero.clone(), mu: zero.clone() } }
     }
 
+    /// What solves for the constants of a fit in closed form; none of exact networks, and where there is no closed form.
+    fn closed<N: Real>(&self) -> Option<Closed<N>> {
+        match &self.function.fit {
+            GradientFit::Closed(fit) => Closed::of(self.function.springs, fit),
+            GradientFit::Exact(_) => None,
+        }
+    }
+
     /// Derivatives of constants and rest contents; returns the groups that have none in these numbers.
     fn values<T: Packed, N: Seeded<T>>(&mut self, zero: &T, groups: &[(usize, usize)]) -> Vec<(usize, usize)> {
         let CellFunction { element, springs, fit, .. } = self.function;
@@ -192,10 +200,7 @@ impl<'a> Batch<'a, '_> {
         let mut geometry = Geometry::like(&any, table);
         let (mut constants, mut rests) = (vec![any.clone(); m], vec![any.clone(); r]);
         let mut own = vec![any.clone(); element.nodes()];
-        let mut closed = match fit {
-            GradientFit::Closed(fit) => Closed::<N>::of(springs, fit),
-            GradientFit::Exact(_) => None,
-        };
+        let mut closed = self.closed::<N>();
         let mut refused = Vec::new();
         for &(first, count) in groups {
             self.gather(zero, (first, count), &mut seeds);
@@ -243,10 +248,7 @@ impl<'a> Batch<'a, '_> {
         let mut slopes = Slopes::like(&any, &geometry);
         let mut room = EdgeSlopes::like(&any, springs);
         let (mut weights, mut rests, mut k) = (vec![any.clone(); m], vec![any.clone(); r], vec![any.clone(); m]);
-        let mut closed = match fit {
-            GradientFit::Closed(fit) => Closed::<N>::of(springs, fit),
-            GradientFit::Exact(_) => None,
-        };
+        let mut closed = self.closed::<N>();
         let mut refused = Vec::new();
         for &(first, count) in groups {
             self.gather(zero, (first, count), &mut seeds);

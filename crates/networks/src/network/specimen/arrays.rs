@@ -1,6 +1,7 @@
 //! Reads arrays of NumPy: a ZIP file of `.npy` files.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::mesh::NumpyFile;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
@@ -88,26 +89,9 @@ impl Arrays {
 /// A file of the format; `None` of texts and objects.
 fn parse(bytes: &[u8]) -> Result<Option<Array>> {
     let wrong = |what: &str| Error::expected("array", "a file of NumPy's format", what).of_kind(ErrorKind::Syntax);
-    let (header, data) = match bytes {
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, rest @ ..] => rest
-            .split_at_checked(usize::from(u16::from_le_bytes([*a, *b])))
-            .ok_or_else(|| wrong("one that is cut short"))?,
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, rest @ ..] => {
-            let length = u32::from_le_bytes([*a, *b, *c, *d]) as usize;
-            rest.split_at_checked(length).ok_or_else(|| wrong("one that is cut short"))?
-        }
-        _ => return Err(wrong("other bytes")),
-    };
-    let header = std::str::from_utf8(header).map_err(|_| wrong("a header that is no text"))?;
-    let after = |key: &str| header.split_once(&format!("'{key}':")).map(|(_, rest)| rest.trim_start());
-    let descr = after("descr").and_then(|rest| rest.split('\'').nth(1)).unwrap_or_default();
-    let is_turned = after("fortran_order").is_some_and(|rest| rest.starts_with("True"));
-    let shape = after("shape").and_then(|rest| rest.strip_prefix('(')).and_then(|rest| rest.split(')').next());
-    let sizes = shape.ok_or_else(|| wrong("a header without a shape"))?.split(',').map(str::trim);
-    let shape: Vec<usize> = sizes
-        .filter(|size| !size.is_empty())
-        .map(|size| size.parse().map_err(|_| wrong("a shape that is no list of numbers")))
-        .collect::<Result<_>>()?;
+    let file = NumpyFile::split(bytes)?;
+    let (descr, is_turned, data) = (file.number()?, file.is_fortran()?, file.data);
+    let shape: Vec<usize> = file.shape()?.iter().map(|size| usize::try_from(*size).unwrap_or(usize::MAX)).collect();
     let Some((size, number)) = number(descr) else { return Ok(None) };
     let count = shape.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
     let count = count.filter(|count| count.checked_mul(size).is_some_and(|bytes| bytes <= data.len()));
@@ -121,8 +105,11 @@ fn parse(bytes: &[u8]) -> Result<Option<Array>> {
     Ok(Some(Array { shape, values }))
 }
 
-/// The bytes of a number of this type, and what reads them.
-fn number(descr: &str) -> Option<(usize, fn(&[u8]) -> f64)> {
+/// The bytes that a number has, and what reads it from them.
+type Number = (usize, fn(&[u8]) -> f64);
+
+/// How numbers of this type are read; none of texts and objects.
+fn number(descr: &str) -> Option<Number> {
     macro_rules! of {
         ($type:ty) => {
             Some((size_of::<$type>(), |bytes| {

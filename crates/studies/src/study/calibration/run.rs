@@ -4,6 +4,7 @@ use super::meshes::{level, meshes};
 use super::outcome::{CalibratedLoad, CalibrationOutcome, MeshStep};
 use super::readings::{Observed, Readings};
 use super::regions::{Spread, regions};
+use crate::analysis::statistics::beyond;
 use crate::calibration::{Asked, Estimate, FieldEstimate, Laws, Limit, Unknown, Unknowns, estimate, estimate_field};
 use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
@@ -31,7 +32,7 @@ pub fn calibrate(scene: &Scene, progress: &mut Progress) -> Result<CalibrationOu
 /// Calibrates as [`calibrate`] does, with another mesh than that of the scene and measurements that the scene does not name.
 ///
 /// # Errors
-/// Those of [`calibrate`].
+/// This returns the errors of [`calibrate`].
 pub fn calibrate_with(
     scene: &Scene,
     mesh: Option<Mesh>,
@@ -155,7 +156,7 @@ fn of_regions(
     let freedom = found.residuals.len() - limit.unknowns.count();
     let square: f64 = found.residuals.iter().map(|r| r * r).sum();
     // What is left of the error of the meshes is no fault of the model.
-    let probability = noise.then(|| beyond((square - found.left).max(0.0), freedom));
+    let probability = noise.then(|| chi_squared_beyond((square - found.left).max(0.0), freedom));
     let is_unexplained = probability.is_some_and(|probability| probability < UNLIKELY);
     let excess = if is_unexplained { found.misfit.max(1.0) } else { 1.0 };
     let region = |region: usize| &names[region];
@@ -254,16 +255,9 @@ fn loads(limit: &Limit, residuals: &[f64], noise: bool) -> Vec<CalibratedLoad> {
     all
 }
 
-/// The probability that χ² of so many degrees of freedom is larger (Wilson and Hilferty 1931).
-fn beyond(square: f64, freedom: usize) -> f64 {
+/// The probability that a number with the χ² distribution of `freedom` degrees of freedom exceeds `square` (Wilson and Hilferty 1931).
+fn chi_squared_beyond(square: f64, freedom: usize) -> f64 {
     let k = freedom.max(1) as f64;
     let share = 2.0 / (9.0 * k);
-    let z = ((square / k).cbrt() - (1.0 - share)) / share.sqrt();
-    // Half of the complementary error function, by Abramowitz and Stegun 1964, 7.1.26, to 1e-7.
-    let x = z.abs() / std::f64::consts::SQRT_2;
-    let t = 1.0 / (1.0 + 0.327_591_1 * x);
-    let series =
-        t * (0.254_829_592 + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
-    let tail = 0.5 * series * (-x * x).exp();
-    if z > 0.0 { tail } else { 1.0 - tail }
+    beyond(((square / k).cbrt() - (1.0 - share)) / share.sqrt())
 }
