@@ -31,7 +31,7 @@ class Products:
 
 
 def of_jax(name: str, products: Products, inputs: int, shapes: Sequence[tuple]) -> Callable[..., tuple]:
-    """The function of so many arrays of JAX, whose results have these shapes. ``jax.jit``, ``jax.grad``, ``jax.jvp``, ``jax.jacfwd``, ``jax.jacrev``,
+    """A function of ``inputs`` arrays of JAX, whose results have these shapes. ``jax.jit``, ``jax.grad``, ``jax.jvp``, ``jax.jacfwd``, ``jax.jacrev``,
     ``jax.hessian`` and ``jax.vmap`` pass through it, the last one call after the other.
 
     A primitive for each product, because a function of JAX with a rule of its own has one for one direction alone.

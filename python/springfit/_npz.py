@@ -51,7 +51,7 @@ def read_arrays(path: str) -> "tuple[dict[str, Any], np.ndarray]":
 
 
 def mesh_of(points: np.ndarray, cells: np.ndarray) -> "Any | None":
-    """The mesh of simplices that have all points; None if there is none."""
+    """The mesh of these simplices; None unless they are simplices of the space and have every point as a node."""
     from .mesh import Mesh
 
     names = {2: "bar2", 3: "tri3", 4: "tet4"}

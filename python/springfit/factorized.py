@@ -12,6 +12,8 @@ from ._supports import displacement_of, forces_of
 
 if TYPE_CHECKING:
     from .springs import Network
+else:
+    Network = Any
 
 #: A solution that leaves more of the forces than this is warned of.
 _LEFT = 1e-6

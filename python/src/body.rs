@@ -26,9 +26,9 @@ pub struct Body {
 
 #[derive(Clone)]
 enum Source {
-    /// By a fit of the finite elements.
+    /// A fit of the finite elements made it.
     Fitted(Arc<Outcome>),
-    /// From arrays or a file.
+    /// Arrays or a file gave it.
     Given(Arc<GivenBody>),
 }
 
@@ -43,7 +43,7 @@ pub struct GivenBody {
 }
 
 impl Body {
-    /// That of the one fit of an outcome.
+    /// The body of the one fit of an outcome.
     pub fn fitted(outcome: Outcome, has_functions: bool) -> Body {
         Body { source: Source::Fitted(Arc::new(outcome)), has_functions }
     }

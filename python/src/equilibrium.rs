@@ -25,10 +25,10 @@ pub struct Found {
     pub inverted: usize,
 }
 
-/// Finds the equilibrium from the positions that are given, or where there are none, or none is found from there, along the load.
+/// Finds the equilibrium from the positions that are given. Without positions, or if no equilibrium is found from them, the load is applied step by step from rest.
 ///
 /// # Errors
-/// None is found; or the support leaves the network free to move as it is.
+/// No equilibrium is found; or the support leaves the network free to move as it is.
 pub fn find(body: &Body, loads: &Loads) -> Result<Found> {
     let Loads { forces, support, start } = loads;
     if !body.is_held(support) {

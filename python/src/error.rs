@@ -65,7 +65,7 @@ fn new(py: Python, error: &Error) -> PyErr {
     made.unwrap_or_else(|fault| fault)
 }
 
-/// The error without a file and a line, if it is in this file, which is none of the user's: a dictionary stands for it.
+/// An error in the text that a dictionary was written as has neither file nor line, because the user has no such file. Other errors are left as they are.
 pub fn unwritten(error: Error, file: Option<&Path>) -> Error {
     if file.is_none() || error.file() != file {
         return error;

@@ -76,7 +76,7 @@ impl Factorized {
             all => self.system.solve_each(&self.factor, all, REFINED),
         };
         let whole = |((mut u, left), held): ((Vec<f64>, f64), &Vec<f64>)| {
-            if !(left <= LEFT) {
+            if left.is_nan() || left > LEFT {
                 return Err(loose("a motion without stiffness, on which forces act"));
             }
             u.iter_mut().zip(held).for_each(|(u, held)| *u += held);

@@ -20,6 +20,9 @@ pub struct GivenLengths<'a, 'py> {
     pub rest: Option<&'a PyReadonlyArray1<'py, f64>>,
 }
 
+/// The cells of a spring on several: the places of their nodes, and their shares.
+type Shares = Vec<(Vec<usize>, f64)>;
+
 /// A group of springs on other measures, as [`record`] has it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -33,7 +36,7 @@ pub struct GivenGroup<'py> {
     element: Option<String>,
     weights: Option<PyReadonlyArray1<'py, f64>>,
     gradients: Option<PyReadonlyArray2<'py, f64>>,
-    cells: Option<Vec<Vec<(Vec<usize>, f64)>>>,
+    cells: Option<Vec<Shares>>,
     expression: Option<String>,
 }
 
@@ -135,7 +138,7 @@ struct MeasureRecords {
     base: MeasureRecord,
     /// The weight and the gradients of each spring.
     terms: Option<(Vec<f64>, Vec<f64>, usize)>,
-    cells: Option<Vec<Vec<(Vec<usize>, f64)>>>,
+    cells: Option<Vec<Shares>>,
     nodes: usize,
 }
 

@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// Fewer cells than these take some milliseconds.
 const FEW: usize = 1000;
 
+/// Two lists of numbers.
+type Lists<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// The constants of the cells of one element by one fit.
 #[pyclass(frozen, module = "springfit._core")]
 pub struct CellConstants {
@@ -126,7 +129,7 @@ impl CellConstants {
         young: Numbers,
         poisson: Numbers,
         thickness: Numbers,
-    ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    ) -> PyResult<Lists<'py>> {
         let materials = self.rule.materials(&young, &poisson, &thickness).map_err(|error| raised(py, error))?;
         let moduli: Vec<Moduli> = materials.iter().map(Material::moduli).collect();
         let of = |number: fn(&Moduli) -> f64| list(py, moduli.iter().map(number).collect());

@@ -12,10 +12,13 @@ use springfit::springs::{Measure, turn_points};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
+/// The kind, the number of points, the law, the element and the number of the expression.
+type GroupKey<'a> = (&'a str, usize, Option<&'a str>, Option<&'a str>, usize);
+
 /// The places of the springs on other measures than lengths, gathered by kind, number of points, element, law and expression.
 pub fn groups(network: &Network) -> Vec<Vec<usize>> {
     let mut functions: HashMap<*const (), usize> = HashMap::new();
-    let mut lists: BTreeMap<(&str, usize, Option<&str>, Option<&str>, usize), Vec<usize>> = BTreeMap::new();
+    let mut lists: BTreeMap<GroupKey, Vec<usize>> = BTreeMap::new();
     for (place, spring) in network.others.iter().enumerate() {
         let law = spring.law.as_deref().map(|own| &own.law.text[..]);
         let next = functions.len() + 1;
@@ -101,7 +104,7 @@ pub struct Changed<'py> {
     parameters: BTreeMap<String, PyReadonlyArray1<'py, f64>>,
 }
 
-/// The same springs with these numbers: of the springs between two points, and of each group of the others.
+/// A network of the same springs with other numbers of those between two points, and of each group of the others.
 pub fn changed(
     py: Python,
     network: &Network,

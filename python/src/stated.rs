@@ -48,7 +48,7 @@ pub struct Stated {
 }
 
 impl Stated {
-    /// Of a `Material`, or of a dictionary of them by group.
+    /// Reads a `Material`, or a dictionary of them by group.
     ///
     /// # Errors
     /// It is another object, or its values are wrong.

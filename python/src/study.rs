@@ -25,7 +25,7 @@ type Found<'py> = (String, BTreeMap<String, BTreeMap<String, Bound<'py, PyArray2
 #[pyclass(frozen, module = "springfit._core")]
 pub struct Ran {
     outcome: Arc<Outcome>,
-    /// Of meshes in memory.
+    /// The elements of meshes in memory.
     elements: Vec<Element>,
     /// Files of elements that the scene names.
     files: Vec<PathBuf>,

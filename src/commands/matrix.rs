@@ -82,12 +82,9 @@ impl Matrix {
         let at = |p: usize| &points[p * d..(p + 1) * d];
         let is_short = |[i, j]: &[usize; 2]| self.longest.is_none_or(|longest| distance(at(*i), at(*j)) <= longest);
         let pairs: Vec<[usize; 2]> = given.pairs().into_iter().filter(is_short).collect();
-        if pairs.is_empty() {
-            return Err(Error::expected(
-                "--longest",
-                "a length of at least one pair of points, m",
-                format!("{:?}", self.longest),
-            ));
+        // Without a limit the fit tells that there are no pairs.
+        if let (Some(longest), true) = (self.longest, pairs.is_empty()) {
+            return Err(Error::expected("--longest", "a length of at least one pair of points, m", longest));
         }
         let found = given.fit(&pairs, &fit).map_err(of_matrix)?;
         let spring = |(points, constant): (&[usize; 2], &f64)| LengthSpring {

@@ -5,7 +5,7 @@ use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use serde::Serialize;
-use springfit::error::{Error, Result};
+use springfit::error::{Error, ErrorKind, Result};
 use springfit::material::{Plane, State as BodyState};
 use springfit::model::Specimen;
 use springfit::quantity::Quantity;
@@ -32,7 +32,7 @@ pub struct Measure {
     /// The spacing a of a lattice, such as 2mm [default: 1 m]
     #[arg(long, allow_hyphen_values = true, requires = "lattice", help_heading = "Lattices")]
     spacing: Option<String>,
-    /// Cells along each vector of a lattice: a piece of it is measured, in place of the whole, and may be written
+    /// Cells along each vector of a lattice, or one number for all: a piece of it is measured, in place of the whole, and may be written
     #[arg(long, value_delimiter = ',', requires = "lattice", help_heading = "Lattices")]
     cells: Vec<usize>,
     /// Where the piece of a lattice is written: .json, .npz, .csv or .vtu
@@ -111,6 +111,7 @@ impl Measure {
                 let closed = lattice.closed(constants.len().min(lattice.shells.len())).map_err(Error::of_option)?;
                 let specimen = match &self.cells[..] {
                     [] => lattice.specimen(spacing, &constants),
+                    [all] => lattice.piece(spacing, &constants, &vec![*all; lattice.dimension()]),
                     cells => lattice.piece(spacing, &constants, cells),
                 };
                 let specimen = specimen.map_err(Error::of_option)?;
@@ -129,7 +130,11 @@ impl Measure {
         };
         let options = self.options(&file)?;
         let of_file = |e: Error| match (&self.network, e.key()) {
-            (_, Some("volume")) => e.followed_by("; --volume or --hull says it").of_option(),
+            (_, Some("volume")) => e.followed_by(format!("; --volume or --hull says it{}", self.ranges())).of_option(),
+            (Some(path), Some("springs")) if e.kind() == ErrorKind::Limit => {
+                e.followed_by(self.ranges()).placed(|e| e.in_file(path))
+            }
+            (None, Some("springs")) if e.kind() == ErrorKind::Limit => e.followed_by(self.ranges()),
             (_, Some("density" | "plane" | "engine")) => e.of_option(),
             (Some(path), _) => e.placed(|e| e.in_file(path)),
             (None, _) => e,
@@ -166,10 +171,22 @@ impl Measure {
         text.as_deref().map(|text| Quantity::Length.parse(text).map_err(|e| e.under(key))).transpose()
     }
 
+    /// The options whose numbers may be too large or too small for a stiffness or a volume to be one; nothing where none is given.
+    fn ranges(&self) -> String {
+        let options = [
+            ("--spacing", self.spacing.is_some()),
+            ("--constants", !self.constants.is_empty()),
+            ("--volume", self.volume.is_some()),
+            ("--thickness", self.thickness.is_some()),
+        ];
+        let given: Vec<&str> = options.iter().filter_map(|(name, is_given)| is_given.then_some(*name)).collect();
+        if given.is_empty() { String::new() } else { format!("; is {} in the right unit?", given.join(", ")) }
+    }
+
     fn options(&self, file: &SpecimenFile) -> Result<MeasureOptions> {
         let d = file.specimen.network.dimension;
         let thickness = self.length("--thickness", &self.thickness)?;
-        if let Some(thickness) = thickness.filter(|thickness| !(*thickness > 0.0)) {
+        if let Some(thickness) = thickness.filter(|thickness| !(*thickness > 0.0 && thickness.is_finite())) {
             return Err(Error::expected("--thickness", "a length above zero", thickness));
         }
         if d != 2 && (self.plane.is_some() || thickness.is_some()) {

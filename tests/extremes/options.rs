@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// What the options go with: runs that succeed without them, so that each numeric option is taken by one of them at least.
-const RUNS: [&[&str]; 25] = [
+const RUNS: [&[&str]; 29] = [
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "modal", "--density=1000"],
     &["fit", "mesh.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.csv", "--objective", "divergence"],
@@ -39,6 +39,10 @@ const RUNS: [&[&str]; 25] = [
     &["compare", "tri3", "--shapes=1", "--iterations=5"],
     &["converge", "scene.toml", "--levels=2"],
     &["measure", "--lattice", "cubic", "--constants=100,50"],
+    &["measure", "--lattice", "cubic", "--constants=100,50", "--cells=2", "--hull"],
+    &["measure", "--lattice", "triangular", "--constants=100"],
+    &["measure", "triangle.csv", "--points=corners.csv", "--volume=0.45"],
+    &["matrix", "bar.mtx", "--points=ends.csv", "--output=springs.json"],
     &["run", "scene.toml"],
     &["sweep", "scene.toml", "--set=sweep.over={material.poisson=[0.1,0.2]}"],
     &["derive", "bar2"],
@@ -59,7 +63,11 @@ const RUNS: [&[&str]; 25] = [
 const EXTREMES: [&str; 12] =
     ["0", "-1", "1e-308", "1e-160", "1e160", "1e308", "nan", "inf", "1e-30", "1e30", "5e-324", "1e-31"];
 
-const FILES: [(&str, &str); 5] = [
+const FILES: [(&str, &str); 9] = [
+    ("triangle.csv", "a,b,k\n0,1,10\n1,2,10\n2,0,10\n"),
+    ("corners.csv", "x,y\n0,0\n1,0\n0.5,0.9\n"),
+    ("bar.mtx", "%%MatrixMarket matrix coordinate real symmetric\n6 6 3\n1 1 200\n4 1 -200\n4 4 200\n"),
+    ("ends.csv", "x,y,z\n0,0,0\n1,0,0\n"),
     (
         "mesh.msh",
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n$Elements\n1\n\

@@ -20,7 +20,7 @@ pub struct Estimate {
     pub reach: f64,
     /// The deviation of each unknown that the error of the extrapolated meshes causes; `None` without a finer mesh.
     pub mesh: Option<Vec<f64>>,
-    /// By how much each unknown changes from each mesh to the next, by linearisation, `[meshes − 1][unknowns]`.
+    /// Each unknown changes by this much from each mesh to the next, by linearisation, `[meshes − 1][unknowns]`.
     pub changes: Vec<Vec<f64>>,
     /// The ratio of the last two changes of the answers; `None` with fewer than three meshes.
     pub ratio: Option<f64>,

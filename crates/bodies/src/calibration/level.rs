@@ -360,8 +360,8 @@ type Seen<'a> = (&'a [Observation], &'a [usize], &'a dyn Fn(usize) -> usize);
 struct Solved {
     loads: Vec<usize>,
     equations: Equations,
-    /// By load, `[points · dimension]`, m.
+    /// The displacements under each load, `[points · dimension]`, m.
     displacements: Vec<Vec<f64>>,
-    /// By load, the forces of the body, `[points · dimension]`, N; zero where none were measured.
+    /// The forces of the body under each load, `[points · dimension]`, N; zero where none were measured.
     internal: Vec<Vec<f64>>,
 }

@@ -11,7 +11,7 @@ use crate::whole::ninety_five;
 
 /// The order of displacements of linear elements where strains are bounded.
 const LINEAR: f64 = 2.0;
-/// That of quadratic ones.
+/// The order of displacements of quadratic elements where strains are bounded.
 const QUADRATIC: f64 = 4.0;
 /// The order where strains are singular, as at the edge of a clamped face: twice the exponent of 0.7 of the displacements there.
 const SINGULAR: f64 = 1.4;
@@ -23,7 +23,7 @@ const TWICE: (f64, f64) = (0.17, 0.3);
 const ONCE: (f64, f64) = (0.5, 0.7);
 /// Answers that change from mesh to mesh by a larger ratio have no order yet; their rest grows with it, and what is known of it as well.
 const ORDERLY: f64 = 0.4;
-/// By how much.
+/// The rest and what is known of it grow by this multiple of the excess over [`ORDERLY`].
 const GROWTH: f64 = 1.5;
 /// The largest ratio that is believed.
 const SLOWEST: f64 = 0.6;
@@ -43,7 +43,7 @@ pub struct Rest {
 }
 
 impl Rest {
-    /// That of a body with these elements and this ratio after so many refinements; `None` without any.
+    /// The limit of a body with these elements and this ratio of changes after this number of refinements; `None` without refinements.
     fn of(mesh: &Mesh, refinements: usize, ratio: Option<f64>) -> Option<Rest> {
         let is_linear = mesh.blocks.iter().all(|block| block.element.has_corners_alone());
         let multiple = |order: f64| 1.0 / (order.exp2() - 1.0);

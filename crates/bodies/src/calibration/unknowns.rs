@@ -49,7 +49,7 @@ pub struct Unknowns {
 const STEP: f64 = 1e-5;
 
 impl Unknowns {
-    /// Those of regions, of which some are known, or of `cells` cells.
+    /// The unknowns of regions, of which some are known, or those of `cells` cells.
     pub fn new(asked: Asked, is_known: &[bool], cells: usize) -> Unknowns {
         let mut found = Unknowns {
             all: Vec::new(),

@@ -92,7 +92,7 @@ impl Element {
     /// The shipped element of linear simplices of this dimension: bars, triangles or tetrahedra with nodes at their corners alone.
     ///
     /// # Errors
-    /// There is none; or a shipped file is wrong, which tests exclude.
+    /// No shipped element is such a simplex; or a shipped file is wrong, which tests exclude.
     pub fn linear_simplex(dimension: usize) -> Result<Element> {
         for file in SHIPPED {
             let element = Element::shipped(file)?;

@@ -94,7 +94,7 @@ impl MeshArrays {
                 return Err(Error::expected(key, format!("one or more cells of {n} nodes"), found));
             }
             if let Some(found) = outside(connectivity) {
-                // Of a program that counts from 1.
+                // Other programs count from 1.
                 let from_one = found == count && !self.blocks.iter().any(|(_, nodes)| nodes.contains(&0));
                 let hint = if from_one { "; all are from 1 to that: are they numbered from 1?" } else { "" };
                 return Err(Error::expected(key, expected(), format!("{found}{hint}")));

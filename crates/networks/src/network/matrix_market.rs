@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use nalgebra::DMatrix;
 use std::path::Path;
 
-/// Rows of a matrix at most: a dense one of so many takes 800 MB.
+/// A matrix has at most this number of rows: a dense one with as many columns takes 800 MB.
 const MOST: usize = 10_000;
 
 /// Reads a real matrix, `[rows × columns]`: coordinate or array, general, symmetric or skew-symmetric.

@@ -24,7 +24,7 @@ pub struct Measuring {
 }
 
 impl Measuring {
-    /// For points of so many coordinates. `elements` are those that are not shipped.
+    /// The measures of springs on points with `dimension` coordinates. `elements` are the elements that are not shipped.
     pub fn new(dimension: usize, elements: &[Arc<Element>]) -> Measuring {
         let elements = elements.iter().map(|element| (element.name.clone(), Some(element.clone()))).collect();
         Measuring { dimension, elements, tables: HashMap::new(), laws: HashMap::new() }

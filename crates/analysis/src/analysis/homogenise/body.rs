@@ -64,7 +64,7 @@ pub fn of_period(specimen: &Specimen, volume: f64) -> Result<(DMatrix<f64>, bool
 /// [`of_period`] of any stiffness K: `owner` is the own point of a point, and the first `count` points are own ones.
 ///
 /// # Errors
-/// Those of [`of_period`].
+/// This returns the errors of [`of_period`].
 pub fn period_tensor(
     k: &Entries,
     (points, d): (&[f64], usize),

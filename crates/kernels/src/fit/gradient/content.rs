@@ -10,7 +10,7 @@ use crate::material::Moduli;
 use crate::scalar::{Real, difference, dot};
 
 impl<T: Real> LeastSquaresCell<'_, T> {
-    /// Those of the row of the content in M, and of its entry in b.
+    /// Adds the slopes in the row of the content in M, and in its entry in b.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "the vectors of the springs, and the slopes in them")]
     pub fn add_content<const D: usize>(
@@ -152,7 +152,7 @@ impl<T: Real> LeastSquaresCell<'_, T> {
                     }
                 }
             }
-            // Of the terms with λ w and with μ v.
+            // The energy has a term with λ w and one with μ v.
             let [volumetric, shear] = point.of;
             slopes.moduli[0] = slopes.moduli[0].clone().plus_product(&volumetric, w);
             slopes.moduli[1] = slopes.moduli[1].clone().plus_product(&shear, v);
@@ -187,7 +187,7 @@ struct PointSlopes<'a, T> {
 }
 
 impl<T: Real> PointSlopes<'_, T> {
-    /// Those in H of `p (λ w (tr H)² + μ v (H : H + H : Hᵀ))`.
+    /// The slopes in H of `p (λ w (tr H)² + μ v (H : H + H : Hᵀ))`.
     #[inline(always)]
     fn energy<const D: usize>(&mut self, h: &[[T; D]; D], p: &T) -> [[T; D]; D] {
         let mut trace = p.zero();

@@ -113,7 +113,7 @@ impl<'a> CellFunction<'a> {
         check_finite("moduli", &change.moduli)
     }
 
-    /// Writes a product of the cells into two arrays of so many numbers for each.
+    /// Writes a product of the cells into two arrays: `[cells × of_first]` into `first`, and `[cells × of_second]` into `second`.
     fn each_chunk(
         &self,
         product: Product,
@@ -136,7 +136,7 @@ impl<'a> CellFunction<'a> {
     }
 }
 
-/// The numbers of each chunk of cells, of so many for each cell; nothing where a cell has none.
+/// Divides numbers, `[cells × width]`, into those of each chunk of cells. A chunk has none where the width is zero.
 fn chunks(all: &mut [f64], width: usize, cells: usize) -> Vec<&mut [f64]> {
     if width > 0 {
         all.chunks_mut(CHUNK * width).collect()

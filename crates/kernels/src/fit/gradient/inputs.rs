@@ -11,14 +11,14 @@ use crate::springs::Springs;
 /// How the constants of a cell follow from its nodes and moduli.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum GradientFit {
-    /// By least squares with a closed form.
+    /// Least squares in closed form give the constants.
     Closed(Fit),
-    /// Those of the exact network for small deformations, on lengths and on contents.
+    /// The exact network for small deformations gives the constants on lengths and on contents.
     Exact(ExactFit),
 }
 
 /// The constants `k_cs` and the rest contents `c₀_cj` of the cells of one element: functions of the points and of λ and μ of each cell. The
-/// springs on contents are the last ones of a cell; those of an exact network are as [`fit_exact`](super::fit_exact) has them.
+/// springs on contents are the last ones of a cell; those of an exact network are as [`fit_exact`](crate::fit::fit_exact) has them.
 #[derive(Debug, Clone)]
 pub struct CellFunction<'a> {
     pub(super) element: &'a Element,

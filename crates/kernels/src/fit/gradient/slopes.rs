@@ -7,15 +7,15 @@ use crate::stiffness::Geometry;
 
 /// `∂L/∂(·)` of one cell, or of one per lane.
 pub struct Slopes<T> {
-    /// In the gradients of the shape functions, `[points × nodes × dimension]`.
+    /// The slopes in the gradients of the shape functions, `[points × nodes × dimension]`.
     pub gradients: Vec<T>,
-    /// In the volumes of the quadrature points.
+    /// The slopes in the volumes of the quadrature points.
     pub volumes: Vec<T>,
-    /// In the volumes for the term λ (div u)².
+    /// The slopes in the volumes for the term λ (div u)².
     pub volumetric: Vec<T>,
-    /// In λ and μ.
+    /// The slopes in λ and μ.
     pub moduli: [T; 2],
-    /// In the positions of the nodes, `[nodes × dimension]`.
+    /// The slopes in the positions of the nodes, `[nodes × dimension]`.
     pub x: Vec<T>,
 }
 

@@ -87,7 +87,7 @@ impl Scattered {
         Ok(all)
     }
 
-    /// Those of which something was measured.
+    /// The places at which something was measured.
     fn known(self, dimension: usize) -> Scattered {
         let rows = self.places.chunks_exact(dimension).zip(self.displacements.chunks_exact(dimension));
         let mut known = Scattered::default();

@@ -118,6 +118,6 @@ pub struct MeshStep {
     pub cells: usize,
     /// The number of its degrees of freedom.
     pub unknowns: usize,
-    /// By how much each unknown would change from this mesh to the next one, in logarithms of E and in t of Poisson's ratio; empty for the last.
+    /// Each unknown would change by this much from this mesh to the next one, in logarithms of E and in t of Poisson's ratio; empty for the last.
     pub changes: Vec<f64>,
 }

@@ -21,7 +21,7 @@ pub(super) struct Spread<'a> {
 }
 
 impl Spread<'_> {
-    /// By noise, and by the meshes.
+    /// The deviation by noise, and that by the meshes.
     fn of(&self, slopes: &Slopes) -> Option<(f64, Option<f64>)> {
         let mut variance = 0.0;
         for &(p, a) in slopes {

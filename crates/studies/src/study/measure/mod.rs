@@ -69,7 +69,9 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
     let volume = content.value * state.thickness();
     let whole = affine(specimen, volume);
     if !whole.iter().all(|c| c.is_finite()) {
-        return Err(Error::expected("springs", "a stiffness of numbers", "one that is not finite"));
+        return Err(
+            Error::expected("springs", "a stiffness of numbers", "one that is not finite").of_kind(ErrorKind::Limit)
+        );
     }
     let tension = Tension::of(specimen, volume);
     notes.extend(tension_note(tension.as_ref()));

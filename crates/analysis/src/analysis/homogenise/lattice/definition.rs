@@ -82,7 +82,7 @@ impl NamedLattice {
         x
     }
 
-    /// From the beginning to the end of a bond, twelve times.
+    /// The vector from the beginning to the end of a bond, twelve times.
     pub(super) fn along(&self, bond: &Bond) -> [i64; 3] {
         let (from, to) = (self.points[bond.from], self.place(bond.to, bond.shift));
         std::array::from_fn(|k| to[k] - from[k])

@@ -18,7 +18,7 @@ pub struct EngineOutcome {
     pub before: EngineErrors,
     /// The displacements in the engine under the loads of the fit have these errors afterwards.
     pub after: EngineErrors,
-    /// `vibration` has the first natural vibration of the network in the engine; it is null where none is found.
+    /// The network in the engine has this first natural vibration; it is null where none is found.
     pub vibration: Option<EngineVibration>,
     /// The finite elements have this first frequency in Hz, with the masses of the network.
     pub frequency: f64,
