@@ -12,11 +12,16 @@ def read(path):
         return json.load(file)
 
 
+def of_kind(net, kind):
+    """The springs whose measure is of this kind."""
+    return [s for s in net["springs"] if net["measures"][s["measure"]]["kind"] == kind]
+
+
 def simplices(net):
     """Springs on lengths, and on contents of simplices: points, constants, rest measures."""
-    lengths = [s for s in net["springs"] if net["measures"][s["measure"]]["kind"] == "length"]
-    contents = [s for s in net["springs"] if net["measures"][s["measure"]]["kind"] == "content"]
-    assert all(s["law"] is None for s in net["springs"]) and len(lengths) + len(contents) == len(net["springs"])
+    lengths, contents = of_kind(net, "length"), of_kind(net, "content")
+    assert all(s["law"] is None for s in net["springs"])
+    assert len(lengths) + len(contents) + len(of_kind(net, "turn")) + len(of_kind(net, "expression")) == len(net["springs"])
 
     def columns(springs):
         return (np.array([s["points"] for s in springs], int), *(np.array([s[key] for s in springs]) for key in ["constant", "rest"]))
@@ -57,7 +62,52 @@ def forces_and_tangent(net, x):
             force[p] += tension * slopes[a]
             for b, q in enumerate(points):
                 tangent[p, :, q, :] += k * np.outer(slopes[a], slopes[b]) + tension * whole[a, b]
+    for spring in of_kind(net, "expression"):
+        assert spring["kind"] == "area" and len(spring["points"]) == 3 and d == 3
+        add(spring, spring["points"], area, x, force, tangent)
+    for spring in of_kind(net, "turn"):
+        (cell,) = net["measures"][spring["measure"]]["cells"]
+        assert cell["share"] == 1
+        add(spring, [spring["points"][place] for place in cell["nodes"]], turn, x, force, tangent)
     return force, tangent.reshape(n * d, n * d)
+
+
+def area(x):
+    """The area of a triangle in space and its gradient."""
+    a, b, c = x
+    normal = np.cross(b - a, c - a)
+    size = np.linalg.norm(normal)
+    slopes = [np.cross(opposite, normal / size) / 2 for opposite in (b - c, c - a, a - b)]
+    return size / 2, np.array(slopes)
+
+
+def turn(x):
+    """The angle about an edge from the plane of a triangle to a point, and its gradient: both move at right angles to the way to the edge, by one over this
+    way, and the ends of the edge against them."""
+    apex, a, b, last = x
+    length = np.linalg.norm(b - a)
+    t = (b - a) / length
+    away = [p - a - t * ((p - a) @ t) for p in (apex, last)]
+    angle = np.arctan2(np.cross(-away[0], away[1]) @ -t, -away[0] @ away[1])
+    slopes = [np.cross(side, v) / (v @ v) for side, v in zip((t, -t), away)]
+    feet = [(p - a) @ t / length for p in (apex, last)]
+    ends = [-sum((1 - f) * g for f, g in zip(feet, slopes)), -sum(f * g for f, g in zip(feet, slopes))]
+    return angle, np.array([slopes[0], *ends, slopes[1]])
+
+
+def add(spring, points, measured, x, force, tangent):
+    """Adds a spring on what is measured of these points. Its second derivatives are differences."""
+    y = x[points]
+    h, n = 1e-6 * np.ptp(y), y.size
+    value, slope = measured(y)
+    moved = lambda unit: measured(y + h * unit.reshape(y.shape))[1].ravel()
+    bend = np.array([(moved(unit) - moved(-unit)) / (2 * h) for unit in np.eye(n)])
+    k, tension = spring["constant"], spring["constant"] * (value - spring["rest"])
+    block = (k * np.outer(slope, slope) + tension * (bend + bend.T) / 2).reshape(*y.shape, *y.shape)
+    for i, p in enumerate(points):
+        force[p] += tension * slope[i]
+        for j, q in enumerate(points):
+            tangent[p, :, q, :] += block[i, :, j, :]
 
 
 def rest_under_gravity(net, gravity, load=None, steps=1):
@@ -78,11 +128,15 @@ def rest_under_gravity(net, gravity, load=None, steps=1):
 
 def settle(net, x, forces, free):
     """Moves the positions x to where they rest under these forces."""
+    last = np.inf
     for _ in range(30):
         force, tangent = forces_and_tangent(net, x)
         left = (forces - force).ravel()[free]
         step = np.linalg.solve(tangent[np.ix_(free, free)], left)
         x.ravel()[free] += step
-        if np.abs(step).max() < 1e-13 * np.ptp(x):
+        size = np.abs(step).max() / np.ptp(x)
+        # A thin sheet is known less exactly than its stiff membrane lets forces be: steps end at rounding errors.
+        if size < 1e-13 or last < 1e-9 and size >= last / 2:
             return
+        last = size
     raise RuntimeError("no equilibrium was found")

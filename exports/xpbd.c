@@ -8,8 +8,8 @@
        ./run --substeps N --iterations N --step S   in place of the setting in network.json
 
    With -DREAL=float it counts in single precision. The loop is above the line of stars, for an engine of your own; below it, network.json
-   is read. What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area or a volume with the rest
-   measure of the spring. Points are in m, masses in kg, times in s; in the plane z is zero. */
+   is read. What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area, a volume or the angle of a
+   hinge with the rest measure of the spring. Points are in m, masses in kg, times in s; in the plane z is zero. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +22,8 @@
 typedef REAL Vector[3];
 
 typedef struct {
-    int count, points[4];    /* two points have a length, three an area, four a volume */
+    int count, points[4];    /* two points have a length, three an area, four a volume or the angle of a hinge */
+    int spatial;             /* whether an area is that of a triangle in space, and whether four points are a hinge */
     REAL compliance, rest;   /* 1/k, and the measure at which the spring does not pull */
     REAL multiplier;         /* the sum of the corrections in this substep */
 } Constraint;
@@ -38,31 +39,61 @@ typedef struct {
     int iterations, jacobi;  /* sweeps of a substep; whether they correct all constraints at once */
 } Body;
 
+static REAL dot(const Vector a, const Vector b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static void cross(const Vector a, const Vector b, Vector c)
+{
+    for (int k = 0; k < 3; k++) c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* The angle at the edge from e[1] to e[2] between the plane of a triangle and another apex, which is zero if both triangles are flat, and
+   its gradient; e are the places of the points, of which the first is the apex. */
+static REAL turn(Vector *e, Vector *g)
+{
+    Vector t, u, v, n, m; /* along the edge, to both apexes, the normal, and the conormal, which points out of the triangle */
+    for (int k = 0; k < 3; k++) t[k] = e[2][k] - e[1][k], u[k] = e[0][k] - e[1][k], v[k] = e[3][k] - e[1][k];
+    REAL length = (REAL)sqrt(dot(t, t)), feet[2] = {dot(u, t) / (length * length), dot(v, t) / (length * length)};
+    cross(t, u, n);
+    REAL area = (REAL)sqrt(dot(n, n));
+    for (int k = 0; k < 3; k++) t[k] /= length, n[k] /= area;
+    cross(t, n, m);
+    REAL out = dot(v, m), up = dot(v, n), square = out * out + up * up;
+    for (int k = 0; k < 3; k++) {
+        g[0][k] = n[k] * length / area;
+        g[3][k] = (out * n[k] - up * m[k]) / square;
+        g[1][k] = (feet[0] - 1) * g[0][k] + (feet[1] - 1) * g[3][k];
+        g[2][k] = -feet[0] * g[0][k] - feet[1] * g[3][k];
+    }
+    return (REAL)atan2(up, out);
+}
+
 /* The measure of a constraint at the positions x, and its gradient g at each of its points. */
 static REAL measure(const Constraint *c, Vector *x, Vector *g)
 {
-    Vector e[4]; /* edges from the first point to the others */
+    Vector e[4], n = {0, 0, 1}; /* edges from the first point to the others */
+    if (c->spatial && c->count == 4) {
+        for (int i = 0; i < 4; i++) memcpy(e[i], x[c->points[i]], sizeof(Vector));
+        return turn(e, g);
+    }
     for (int i = 1; i < c->count; i++)
         for (int k = 0; k < 3; k++) e[i][k] = x[c->points[i]][k] - x[c->points[0]][k];
-    for (int k = 0; k < 3; k++) {
-        int l = (k + 1) % 3, m = (k + 2) % 3;
-        if (c->count == 2) { /* |e1| */
-            REAL length = (REAL)sqrt(e[1][0] * e[1][0] + e[1][1] * e[1][1] + e[1][2] * e[1][2]);
-            g[1][k] = length > 0 ? e[1][k] / length : 0;
-        } else if (c->count == 3) { /* (e1 x e2)/2 along z */
-            g[1][k] = (k == 0 ? e[2][1] : k == 1 ? -e[2][0] : 0) / 2;
-            g[2][k] = (k == 0 ? -e[1][1] : k == 1 ? e[1][0] : 0) / 2;
-        } else { /* e1 . (e2 x e3)/6 */
-            g[1][k] = (e[2][l] * e[3][m] - e[2][m] * e[3][l]) / 6;
-            g[2][k] = (e[3][l] * e[1][m] - e[3][m] * e[1][l]) / 6;
-            g[3][k] = (e[1][l] * e[2][m] - e[1][m] * e[2][l]) / 6;
-        }
-        /* A motion of all points at once changes nothing. */
-        g[0][k] = 0;
-        for (int i = 1; i < c->count; i++) g[0][k] -= g[i][k];
+    if (c->count == 2) { /* |e1| */
+        REAL length = (REAL)sqrt(dot(e[1], e[1]));
+        for (int k = 0; k < 3; k++) g[1][k] = length > 0 ? e[1][k] / length : 0;
+    } else if (c->count == 3) { /* n . (e1 x e2)/2, where n is along z in the plane */
+        if (c->spatial) cross(e[1], e[2], n);
+        REAL length = (REAL)sqrt(dot(n, n));
+        for (int k = 0; k < 3; k++) n[k] /= 2 * (length > 0 ? length : 1);
+        cross(e[2], n, g[1]), cross(n, e[1], g[2]);
+    } else { /* e1 . (e2 x e3)/6 */
+        cross(e[2], e[3], g[1]), cross(e[3], e[1], g[2]), cross(e[1], e[2], g[3]);
+        for (int i = 1; i < 4; i++)
+            for (int k = 0; k < 3; k++) g[i][k] /= 6;
     }
+    /* A motion of all points at once changes nothing. */
+    for (int k = 0; k < 3; k++) g[0][k] = -g[1][k] - (c->count > 2 ? g[2][k] : 0) - (c->count > 3 ? g[3][k] : 0);
     /* Each measure grows in proportion to e1 in its direction. */
-    return g[1][0] * e[1][0] + g[1][1] * e[1][1] + g[1][2] * e[1][2];
+    return dot(g[1], e[1]);
 }
 
 /* Corrects each constraint once. Gauss-Seidel sees what the constraints before have moved, Jacobi the positions before the sweep. */
@@ -333,11 +364,13 @@ static Body read_body(const Asked *asked)
         Constraint *c = b.constraint + b.constraints;
         memset(c, 0, sizeof *c);
         expect("\"kind\"");
-        int is_content = take("\"content\"");
-        if (!is_content) expect("\"length\"");
+        int is_content = take("\"content\""), is_area = !is_content && take("\"area\""), is_hinge = !is_content && !is_area && take("\"hinge\"");
+        int least = is_content || is_area ? 3 : is_hinge ? 4 : 2, most = is_content ? 4 : least;
+        if (least == 2) expect("\"length\"");
+        c->spatial = is_area || is_hinge;
         expect("\"points\""), expect("[");
-        while (c->count < (is_content ? 4 : 2) && !(c->count == 3 && take("]"))) c->points[c->count++] = whole(0, b.points);
-        if (c->count != 3) expect("]");
+        while (c->count < least || (c->count < most && !take("]"))) c->points[c->count++] = whole(0, b.points);
+        if (c->count == most) expect("]");
         expect("\"compliance\""), c->compliance = (REAL)number();
         if (!(c->compliance > 0)) refuse("compliances above zero");
         expect("\"rest\""), c->rest = (REAL)number(), expect("\"colour\""), number();

@@ -6,8 +6,8 @@
     python run.py --load N   any of these under the load N of the scene as well
     --substeps N, --iterations N, --step S   in place of the setting in network.json; --single counts in single precision
 
-What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area or a volume with the rest measure of
-the spring. Constraints that follow each other and share no point are corrected at once, which changes nothing.
+What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area, a volume or the angle of a hinge with
+the rest measure of the spring. Constraints that follow each other and share no point are corrected at once, which changes nothing.
 """
 import argparse
 import json
@@ -17,18 +17,43 @@ from pathlib import Path
 import numpy as np
 
 
-def gradients(x):
-    """The gradients of the measures of constraints at each of their points, from the places of these, [constraints, points, 3]."""
+def dot(a, b):
+    return np.sum(a * b, axis=-1, keepdims=True)
+
+
+def turns(x):
+    """The angles at the edges from x[:, 1] to x[:, 2] between the planes of triangles with the apexes x[:, 0] and other apexes x[:, 3], and their
+    gradients; they are zero where both triangles are flat."""
+    t, u, v = x[:, 2] - x[:, 1], x[:, 0] - x[:, 1], x[:, 3] - x[:, 1]
+    length = np.sqrt(dot(t, t))
+    feet = [dot(u, t) / length**2, dot(v, t) / length**2]
+    n = np.cross(t, u)
+    area = np.sqrt(dot(n, n))
+    n, t = n / area, t / length
+    m = np.cross(t, n)  # points out of the triangle
+    out, up = dot(v, m), dot(v, n)
+    first, last = n * length / area, (out * n - up * m) / (out**2 + up**2)
+    start, end = (feet[0] - 1) * first + (feet[1] - 1) * last, -feet[0] * first - feet[1] * last
+    return np.arctan2(up, out)[:, 0], np.stack([first, start, end, last], axis=1)
+
+
+def measures(kind, x):
+    """The measures of constraints of one kind, and the gradients at each of their points, [constraints, points, 3], from the places of these."""
+    if kind == "hinge":
+        return turns(x)
     e = (x[:, 1:] - x[:, :1]).swapaxes(0, 1)  # edges from the first point
     if len(e) == 1:  # a length
         length = np.linalg.norm(e[0], axis=1, keepdims=True)
         g = [np.divide(e[0], length, out=np.zeros_like(e[0]), where=length > 0)]
-    elif len(e) == 2:  # an area in the plane
-        zero = np.zeros(len(x), x.dtype)
-        g = [np.stack([e[1][:, 1], -e[1][:, 0], zero], axis=1) / 2, np.stack([-e[0][:, 1], e[0][:, 0], zero], axis=1) / 2]
+    elif len(e) == 2:  # an area, of which n is half the normal; in the plane along z
+        n = np.cross(e[0], e[1]) if kind == "area" else np.broadcast_to(np.array([0, 0, 1], x.dtype), e[0].shape)
+        length = np.linalg.norm(n, axis=1, keepdims=True)
+        n = n / np.where(length > 0, 2 * length, 1)
+        g = [np.cross(e[1], n), np.cross(n, e[0])]
     else:  # a volume
         g = [np.cross(e[1], e[2]) / 6, np.cross(e[2], e[0]) / 6, np.cross(e[0], e[1]) / 6]
-    return np.stack([-sum(g), *g], axis=1)
+    # Each measure grows in proportion to the first edge in its direction.
+    return np.sum(g[0] * e[0], axis=1), np.stack([-sum(g), *g], axis=1)
 
 
 class Body:
@@ -49,7 +74,7 @@ class Body:
         old = self.x.copy()
         self.v += self.h * self.pull
         self.x += self.h * self.v
-        multipliers = [np.zeros_like(rest) for _, _, rest in self.batches]
+        multipliers = [np.zeros_like(rest) for *_, rest in self.batches]
         for _ in range(self.iterations):
             self.sweep(multipliers)
         self.v = (self.x - old) / self.h
@@ -57,11 +82,10 @@ class Body:
     def sweep(self, multipliers):
         """Corrects each constraint once. Gauss-Seidel sees what the constraints before have moved, Jacobi the positions before the sweep."""
         x = self.x.copy() if self.is_jacobi else self.x
-        for (points, compliance, rest), multiplier in zip(self.batches, multipliers):
-            places, w = x[points], self.w[points]
-            g = gradients(places)
-            # Each measure grows in proportion to the first edge in its direction.
-            violation = np.sum(g[:, 1] * (places[:, 1] - places[:, 0]), axis=1) - rest
+        for (kind, points, compliance, rest), multiplier in zip(self.batches, multipliers):
+            w = self.w[points]
+            measure, g = measures(kind, x[points])
+            violation = measure - rest
             softness = compliance / self.h**2
             stiffness = np.sum(w * g * g, axis=(1, 2))
             # The step of Newton's method for violation + softness * multiplier = 0.
@@ -94,11 +118,12 @@ class Body:
 
 
 def batches(constraints, real):
-    """Points, compliances and rest measures of constraints that follow each other, have as many points each, and share none."""
+    """Kind, points, compliances and rest measures of constraints that follow each other, are of one kind, and share no point."""
     batch, used = [], set()
+    form = lambda own: (own["kind"], len(own["points"]))
     for own in [*constraints, None]:
-        if batch and (own is None or len(own["points"]) != len(batch[0]["points"]) or not used.isdisjoint(own["points"])):
-            yield [np.array([c["points"] for c in batch]), *(np.array([c[key] for c in batch], real) for key in ["compliance", "rest"])]
+        if batch and (own is None or form(own) != form(batch[0]) or not used.isdisjoint(own["points"])):
+            yield [batch[0]["kind"], np.array([c["points"] for c in batch]), *(np.array([c[key] for c in batch], real) for key in ["compliance", "rest"])]
             batch, used = [], set()
         if own:
             batch.append(own)

@@ -58,7 +58,8 @@ fn measured(springs: &Springs, s: usize) -> i32 {
             | SpringKind::PointArea
             | SpringKind::Patch
             | SpringKind::Fibre
-            | SpringKind::Bend => {
+            | SpringKind::Bend
+            | SpringKind::Hinge => {
                 unreachable!("no fit has them")
             }
         },

@@ -683,7 +683,7 @@ fn networks_of_voxels_reach_an_engine() {
         let (code, said) = export(to, fit);
         assert_eq!(code, Some(2), "{to}: {said}");
         assert!(
-            said.contains("expected linear springs on lengths and on the contents of triangles or tetrahedra"),
+            said.contains("expected linear springs on lengths, on the contents of triangles or tetrahedra, and on the angles of hinges"),
             "{said}"
         );
     }
@@ -698,4 +698,74 @@ fn folded_hexahedra_are_not_divided() {
     network.points[corner] = far.iter().map(|x| x - 0.9).collect();
     let error = Division::of(&network).unwrap_err().to_string();
     assert!(error.contains("springs[") && error.contains("a cell that is folded at"), "{error}");
+}
+
+const SHEET: &str = "
+[mesh]
+box = { element = \"tri3\", size = [0.2, 0.06], cells = [4, 2] }
+space = 3
+[material]
+young = 1e8
+poisson = 0.3
+thickness = 5e-3
+density = 1000
+bending = \"plate\"
+[[fit]]
+name = \"directors\"
+objective = \"offdiag\"
+nonnegative = true
+[[fit]]
+name = \"hinges\"
+objective = \"offdiag\"
+nonnegative = true
+bending = \"hinges\"
+[[fit]]
+name = \"areas\"
+objective = \"exact\"
+bending = \"hinges\"
+[[fix]]
+where = \"x < 0.06\"
+";
+
+/// Hinges on directors leave the program as hinges between triangles, to programs that hold them; the others name the reason.
+#[test]
+fn sheets_go_where_hinges_are_held() {
+    let networks = networks(SHEET);
+    let inner = 3 * 4 * 2 - 4 - 2;
+    for target in &TARGETS {
+        let (hinged, sentences) = target.prepared(networks["hinges"].clone(), None).unwrap();
+        assert_eq!(hinged.points.len(), 5 * 3);
+        let hinges = Parts::of(&hinged).unwrap().hinges;
+        assert_eq!(hinges.len(), inner);
+        assert!(hinges.iter().all(|hinge| hinge.rest.abs() < 1e-9 && hinge.constant > 0.0));
+        assert!(sentences[0].contains("directors"), "{sentences:?}");
+        assert!(hinged.largest_step.is_some_and(|step| step > 0.0));
+        let holds = ["mujoco", "lammps", "xpbd", "npz", "vtu"].contains(&target.name);
+        let found = target.files(&hinged, None);
+        assert_eq!(found.is_ok(), holds, "{}: {:?}", target.name, found.err());
+        if let Err(error) = target.files(&hinged, None) {
+            assert!(error.to_string().contains("lammps, xpbd and npz hold hinges"), "{error}");
+        }
+        let (areas, _) = target.prepared(networks["areas"].clone(), None).unwrap();
+        let holds = ["mujoco", "npz", "vtu"].contains(&target.name);
+        assert_eq!(target.files(&areas, None).is_ok(), holds, "{}", target.name);
+        // Directors as a plate are held by no program.
+        let (plate, _) = target.prepared(networks["directors"].clone(), None).unwrap();
+        if target.name != "vtu" {
+            let error = target.files(&plate, None).err().unwrap();
+            assert!(error.to_string().contains("bending = \"hinges\""), "{error}");
+        }
+    }
+}
+
+/// A clamped edge keeps its directors, which MuJoCo has no place for.
+#[test]
+fn clamped_edges_keep_their_directors() {
+    let clamped = SHEET.replace("where = \"x < 0.06\"", "where = \"x < 0.001\"\nclamp = true");
+    let networks = networks(&clamped);
+    let (hinged, _) = target_named("lammps").unwrap().prepared(networks["hinges"].clone(), None).unwrap();
+    assert_eq!(hinged.points.len(), 5 * 3 + 2);
+    assert!(target_named("lammps").unwrap().files(&hinged, None).is_ok());
+    let error = target_named("mujoco").unwrap().files(&hinged, None).err().unwrap();
+    assert!(error.to_string().contains("hold two rows of points"), "{error}");
 }

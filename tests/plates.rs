@@ -6,10 +6,12 @@ use springfit::element::Element;
 use springfit::material::{CellMap, Energy, Hooke, Material, Plane};
 use springfit::mesh::{CellBlock, Mesh};
 use springfit::model::{
-    Body, Elastic, Network, Support, displaced, exact_network, finite_elements, lumped_masses, plate_springs,
+    BendingSprings, Body, Elastic, Network, Support, displaced, exact_network, finite_elements, hinge_flexure,
+    lumped_masses, plate_springs,
 };
+use springfit::report::{HeldRecord, NetworkFile, Parts};
 use springfit::solve::{Ending, Newton, System, lowest_modes};
-use springfit::springs::{Bend, Measure};
+use springfit::springs::{Measure, Turns};
 use std::sync::Arc;
 
 /// Ways to divide squares into triangles.
@@ -145,31 +147,42 @@ fn bends_have_their_derivatives() {
     let mut random = Random(1);
     for _ in 0..40 {
         let x = random_bend(&mut random);
-        let measure = Measure::Bend(Box::new(Bend { weights: [random.next(), random.next(), random.next()] }));
-        let jet = measure.jet(&x, 3);
-        let (h, n) = (1e-5, x.len());
-        for i in 0..n {
-            let moved = |by: f64| {
-                let mut x = x.clone();
-                x[i] += by;
-                x
-            };
-            let slope = (measure.value(&moved(h), 3) - measure.value(&moved(-h), 3)) / (2.0 * h);
-            assert!((jet.gradient[i] - slope).abs() < 1e-8, "{} {slope}", jet.gradient[i]);
-            assert_eq!(jet.gradient[i], measure.gradient(&x, 3)[i]);
-            let [above, below] = [h, -h].map(|by| measure.gradient(&moved(by), 3));
-            for j in 0..n {
-                let bend = (above[j] - below[j]) / (2.0 * h);
-                assert!((jet.hessian[i * n + j] - bend).abs() < 1e-7, "{} {bend}", jet.hessian[i * n + j]);
-            }
+        let weights = [random.next(), random.next(), random.next()];
+        for (measure, points) in [(Turns::of_triangle(weights), 6), (Turns::of_hinge(), 4)] {
+            has_its_derivatives(&Measure::Turns(Box::new(measure)), &of_points(&x, points), &mut random);
         }
-        let turn = nalgebra::Rotation3::from_euler_angles(random.next(), random.next(), random.next());
-        let turned: Vec<f64> = x
-            .chunks_exact(3)
-            .flat_map(|p| (turn * Vector3::from_column_slice(p)).iter().copied().collect::<Vec<_>>())
-            .collect();
-        assert!((measure.value(&turned, 3) - measure.value(&x, 3)).abs() < 1e-13);
     }
+}
+
+/// The first coordinates of a triangle with its directors, or those of a hinge on the first director.
+fn of_points(x: &[f64], points: usize) -> Vec<f64> {
+    if points == 6 { x.to_vec() } else { x[..9].iter().chain(&x[9..12]).copied().collect() }
+}
+
+fn has_its_derivatives(measure: &Measure, x: &[f64], random: &mut Random) {
+    let jet = measure.jet(x, 3);
+    let (h, n) = (1e-5, x.len());
+    for i in 0..n {
+        let moved = |by: f64| {
+            let mut x = x.to_vec();
+            x[i] += by;
+            x
+        };
+        let slope = (measure.value(&moved(h), 3) - measure.value(&moved(-h), 3)) / (2.0 * h);
+        assert!((jet.gradient[i] - slope).abs() < 1e-8, "{} {slope}", jet.gradient[i]);
+        assert_eq!(jet.gradient[i], measure.gradient(x, 3)[i]);
+        let [above, below] = [h, -h].map(|by| measure.gradient(&moved(by), 3));
+        for j in 0..n {
+            let bend = (above[j] - below[j]) / (2.0 * h);
+            assert!((jet.hessian[i * n + j] - bend).abs() < 1e-7, "{} {bend}", jet.hessian[i * n + j]);
+        }
+    }
+    let turn = nalgebra::Rotation3::from_euler_angles(random.next(), random.next(), random.next());
+    let turned: Vec<f64> = x
+        .chunks_exact(3)
+        .flat_map(|p| (turn * Vector3::from_column_slice(p)).iter().copied().collect::<Vec<_>>())
+        .collect();
+    assert!((measure.value(&turned, 3) - measure.value(x, 3)).abs() < 1e-13);
 }
 
 /// For any deflections and slopes the energy of the springs is that of Morley's plate, which is written here by its quadratic polynomials.
@@ -233,9 +246,27 @@ fn constant_curvatures_pass_the_patch_test() {
 fn middle(kind: Kind, n: usize, poisson: f64, is_clamped: bool) -> f64 {
     let mesh = sheet(kind, [1.0, 1.0], [n, n], 0.01);
     let entries = finite_elements(&mesh, of_unit_stiffness(poisson, 0.01).moduli());
+    middle_of(&mesh, &entries, is_clamped)
+}
+
+/// The same, of springs on the turns from each director alone, which are hinges between triangles.
+fn hinged_middle(kind: Kind, n: usize, poisson: f64, is_clamped: bool) -> f64 {
+    let mesh = sheet(kind, [1.0, 1.0], [n, n], 0.01);
+    middle_of(&mesh, &hinged(&mesh, poisson).stiffness(&mesh.points), is_clamped)
+}
+
+/// A membrane with hinges.
+fn hinged(mesh: &Mesh, poisson: f64) -> Network {
+    let material = of_unit_stiffness(poisson, 0.01);
+    let fit = springfit::fit::ExactFit::default();
+    let membrane = exact_network(mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
+    membrane.joined(BendingSprings::Hinges.of(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli()))))
+}
+
+fn middle_of(mesh: &Mesh, entries: &springfit::model::Entries, is_clamped: bool) -> f64 {
     let on_rim = |p: usize| mesh.point(p)[..2].iter().any(|x| *x < 1e-9 || *x > 1.0 - 1e-9);
     let held: Vec<usize> = (0..mesh.node_count()).filter(|&p| on_rim(p)).collect();
-    let mut support = Support::free(&mesh);
+    let mut support = Support::free(mesh);
     support.fix(&held, &[0, 1, 2], 3);
     if is_clamped {
         // A clamped edge lies on the rim, and has both its ends there.
@@ -245,11 +276,11 @@ fn middle(kind: Kind, n: usize, poisson: f64, is_clamped: bool) -> f64 {
     }
     let mut load = vec![0.0; mesh.points.len()];
     for nodes in mesh.blocks[0].cells() {
-        let [a, b, c] = [0, 1, 2].map(|i| at(&mesh, nodes[i]));
+        let [a, b, c] = [0, 1, 2].map(|i| at(mesh, nodes[i]));
         let share = (b - a).cross(&(c - a)).norm() / 6.0;
         nodes.iter().for_each(|p| load[3 * p + 2] += share);
     }
-    let system = System::new(&entries, &support).unwrap();
+    let system = System::new(entries, &support).unwrap();
     let factor = system.cholesky().unwrap().unwrap();
     let (u, _) = system.solve(&factor, &load);
     let middle = |p: &usize| (mesh.point(*p)[0] - 0.5).hypot(mesh.point(*p)[1] - 0.5);
@@ -448,4 +479,113 @@ fn the_roof_of_scordelis_and_lo_converges() {
     let missing = [8, 16, 32].map(|n| 0.994 - deflection(n));
     assert!((0.0..0.01).contains(&missing[2]), "{missing:?}");
     assert!(missing.windows(2).all(|pair| (3.0..4.7).contains(&(pair[0] / pair[1]))), "{missing:?}");
+}
+
+/// Hinges err by what another program computes at n = 16, and more where cells are halved.
+#[test]
+fn hinges_err_however_fine_the_mesh_is() {
+    for (kind, is_clamped, expected) in [
+        (Kind::Right, false, -44.0),
+        (Kind::Right, true, -23.0),
+        (Kind::Union, false, -25.0),
+        (Kind::Union, true, -4.0),
+    ] {
+        let exact = if is_clamped { 0.00126532 } else { 0.00406235 };
+        let [coarse, fine] = [16, 32].map(|n| 100.0 * (hinged_middle(kind, n, 0.3, is_clamped) / exact - 1.0));
+        assert!((coarse - expected).abs() < 0.5, "{kind:?} {is_clamped}: {coarse} {expected}");
+        assert!(fine < coarse, "{kind:?} {is_clamped}: {fine} {coarse}");
+    }
+}
+
+/// A lattice of equilateral triangles with hinges of the constant k has `D = √3/2 k` in both directions and Poisson's ratio −1/3 (Seung and Nelson 1988).
+#[test]
+fn hinges_have_a_poissons_ratio_of_their_own() {
+    let (n, h) = (6, 1.0);
+    let rise = 3f64.sqrt() / 2.0;
+    let flat = sheet(Kind::Right, [n as f64 * h, n as f64 * h], [n, n], 0.01);
+    // The squares with parallel diagonals, sheared to equilateral triangles.
+    let points = (0..flat.node_count()).flat_map(|p| {
+        let [x, y] = [flat.point(p)[0], flat.point(p)[1]];
+        [x - y / 2.0, rise * y, 0.0]
+    });
+    let mesh = surface(points.collect(), flat.blocks[0].connectivity.clone(), 0.01);
+    for poisson in [-0.4, 0.0, 0.3, 0.49] {
+        let network = hinged(&mesh, poisson);
+        let d = hinge_flexure(&mesh, &network).unwrap();
+        let expected = Matrix3::new(1.0, -1.0 / 3.0, 0.0, -1.0 / 3.0, 1.0, 0.0, 0.0, 0.0, 2.0 / 3.0);
+        assert!((d - expected).amax() < 1e-12, "{poisson}: {d}");
+        let record = NetworkFile::bare(&mesh, &network).record().without_directors().unwrap();
+        let hinges = Parts::of(&record).unwrap().hinges;
+        assert!(hinges.iter().all(|hinge| (hinge.constant * rise - 1.0).abs() < 1e-12 && hinge.rest.abs() < 1e-12));
+        assert_eq!(hinges.len(), 3 * n * n - 2 * n);
+        assert_eq!(record.points.len(), mesh.node_count());
+    }
+}
+
+/// Three leaves that meet at one edge, of irregular triangles, and one end of each leaf held.
+fn leaves() -> (Mesh, Vec<usize>) {
+    let mut random = Random(5);
+    let (n, mut points, mut triangles) = (4, Vec::new(), Vec::new());
+    (0..=n).for_each(|j| points.extend([0.0, 0.0, j as f64 * 0.1]));
+    let mut ends = Vec::new();
+    for leaf in 0..3 {
+        let angle = std::f64::consts::TAU * leaf as f64 / 3.0 + 0.2;
+        let first = points.len() / 3;
+        let place = |i: usize, j: usize| if i == 0 { j } else { first + (i - 1) * (n + 1) + j };
+        for (i, j) in (1..=n).flat_map(|i| (0..=n).map(move |j| (i, j))) {
+            let reach = 0.1 * (i as f64 + if i < n { 0.3 * random.next() } else { 0.0 });
+            let along = 0.1 * (j as f64 + if j > 0 && j < n { 0.3 * random.next() } else { 0.0 });
+            points.extend([reach * angle.cos(), reach * angle.sin(), along]);
+            if i == n {
+                ends.push(place(i, j));
+            }
+        }
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+            // One leaf runs the other way round.
+            triangles.extend(if leaf == 1 { [a, c, b, a, d, c] } else { [a, b, c, a, c, d] });
+        }
+    }
+    (surface(points, triangles, 0.01), ends)
+}
+
+/// Hinges between pairs of triangles move a sheet as those on its directors do: at joints of three leaves, at clamped edges, and where the sheet is bent far.
+#[test]
+fn hinges_need_no_directors() {
+    let (mesh, ends) = leaves();
+    let network = hinged(&mesh, 0.3);
+    let clamped: Vec<usize> = ends[..5].to_vec();
+    let mut support = Support::free(&mesh);
+    support.fix(&mesh.with_directors_of(&clamped), &[0, 1, 2], 3);
+    let mut whole = NetworkFile::bare(&mesh, &network).record();
+    whole.held = (0..mesh.point_count())
+        .filter(|&p| support.is_fixed(3 * p))
+        .map(|point| HeldRecord { point, displacement: vec![Some(0.0); 3] })
+        .collect();
+    let record = whole.without_directors().unwrap();
+    // The directors of four clamped edges stay.
+    assert_eq!(record.points.len(), mesh.node_count() + 4);
+    let own = Parts::of(&record).unwrap().network(3);
+    let points = record.points.concat();
+    let mut fixed = Support { prescribed: vec![None; points.len()] };
+    let held: Vec<usize> = record.held.iter().map(|held| held.point).collect();
+    fixed.fix(&held, &[0, 1, 2], 3);
+    for size in [1e-4, 20.0] {
+        let force = |count: usize| {
+            let mut force = vec![0.0; count];
+            ends[5..].iter().for_each(|p| force[3 * p + 1] = size);
+            force
+        };
+        let newton = Newton { steps: 60, ..Newton::default() };
+        let [one, other] = [(&network, &mesh.points, &support), (&own, &points, &fixed)].map(|(net, x, support)| {
+            let found = newton.solve(net, x, support, &force(x.len())[..]).unwrap();
+            assert_eq!(found.ending, Ending::Converged);
+            found.displacement
+        });
+        let nodes = 3 * mesh.node_count();
+        let largest = one[..nodes].iter().fold(0.0, |a: f64, u| a.max(u.abs()));
+        assert!(size < 1.0 || largest > 0.1, "{largest}");
+        let apart = one[..nodes].iter().zip(&other).fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
+        assert!(apart < 1e-6 * largest, "{size}: {apart} of {largest}");
+    }
 }

@@ -8,7 +8,7 @@ use springfit::element::{Element, SpringKind, coordinate_names};
 use springfit::error::Error;
 use springfit::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use springfit::report::{MeasureKind, MeasureRecord, Measuring, ShareRecord, TermRecord, cell_terms, simplex_term};
-use springfit::springs::{BEND_POINTS, Law, Measure, distance};
+use springfit::springs::{BEND_POINTS, HINGE_POINTS, Law, Measure, distance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -188,10 +188,19 @@ impl MeasureRecords {
             let expected = "a shipped element, or one of the cells of the mesh";
             return Err(invalid(py, &format!("{key}.element"), expected, format!("\"{name}\"")));
         }
-        if let (SpringKind::Bend, Some(cells)) = (kind, &group.cells) {
+        if let (SpringKind::Hinge, None) = (kind, &group.cells) {
+            if n != HINGE_POINTS {
+                let expected = format!("an array of shape (springs, {HINGE_POINTS})");
+                return Err(invalid(py, &format!("{key}.points"), &expected, n));
+            }
+            found.base = MeasureRecord { cells: whole, ..plain(MeasureKind::Turn) };
+            return Ok(found);
+        }
+        if let (SpringKind::Bend | SpringKind::Hinge, Some(cells)) = (kind, &group.cells) {
             let is_turn = |(nodes, _): &(Vec<usize>, f64)| nodes.iter().all(|&a| a < n);
-            if cells.len() != count || n != BEND_POINTS || !cells.iter().flatten().all(is_turn) {
-                let expected = format!("turns for each of {count} springs of {BEND_POINTS} points");
+            let size = if kind == SpringKind::Bend { BEND_POINTS } else { HINGE_POINTS };
+            if cells.len() != count || n != size || !cells.iter().flatten().all(is_turn) {
+                let expected = format!("turns for each of {count} springs of {size} points");
                 return Err(invalid(py, &format!("{key}.cells"), &expected, cells.len()));
             }
             found.base = plain(MeasureKind::Turn);

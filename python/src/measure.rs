@@ -121,7 +121,7 @@ impl GivenNetwork<'_> {
                 rest: rest[s],
             };
             let contents = nodes.chunks_exact(d + 1).enumerate().map(part).collect();
-            network.others = Parts { lengths: Vec::new(), contents }.network(d).others;
+            network.others = Parts { contents, ..Parts::default() }.network(d).others;
         }
         let mut specimen = Specimen::new(network, points);
         if let Some(cell) = &self.cell {

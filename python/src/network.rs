@@ -301,13 +301,14 @@ impl Network {
         let body = self.body.clone();
         let (files, left_out) = alone(py, move || {
             body.network().check_formulas()?;
-            let network = body.file().record();
             let of_gravity = |e: Error| match e.key() {
                 Some("--gravity") => e.at_key("gravity"),
                 _ => e,
             };
+            let prepared = target.prepared(body.file().record(), gravity.as_deref());
+            let (network, mut warnings) = prepared.map_err(of_gravity)?;
             let files = target.files(&network, gravity.as_deref()).map_err(of_gravity)?;
-            let warnings = target.at_rest(&network, gravity.as_deref()).map_err(of_gravity)?;
+            warnings.extend(target.at_rest(&network, gravity.as_deref()).map_err(of_gravity)?);
             let files = with_warnings(files, &warnings);
             Ok((files, [warnings, target.left_out(&network)].concat()))
         })?;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use springfit::element::{SpringKind, Tabulation, coordinate_names};
 use springfit::model::{MeasureSpring, Network};
-use springfit::springs::{Measure, turn_points};
+use springfit::springs::Measure;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ fn element_of(measure: &Measure) -> Option<&str> {
     match measure {
         Measure::Content(element) | Measure::PointContent(element, _) => Some(&element.name),
         Measure::Patch(patch) => Some(&patch.element.name),
-        Measure::Length | Measure::Span(_) | Measure::Function(_) | Measure::Bend(_) => None,
+        Measure::Length | Measure::Span(_) | Measure::Function(_) | Measure::Turns(_) => None,
     }
 }
 
@@ -83,10 +83,7 @@ pub fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyR
     }
     let cells_of = |spring: &MeasureSpring| match &spring.measure {
         Measure::Patch(patch) => Some(patch.cells.clone()),
-        Measure::Bend(bend) => {
-            let turn = |(corner, weight): (usize, &f64)| (turn_points(corner).to_vec(), *weight);
-            Some(bend.weights.iter().enumerate().map(turn).collect())
-        }
+        Measure::Turns(turns) => Some(turns.iter().map(|(places, weight)| (places.to_vec(), weight)).collect()),
         _ => None,
     };
     if cells_of(springs[0]).is_some() {

@@ -55,13 +55,8 @@ impl Export {
         if let Some(asked) = &gravity {
             target.check_gravity(&network, asked).map_err(of_network)?;
         }
-        let divided = target.divided(&network, gravity.as_deref()).map_err(of_network)?;
-        let (network, changed) = match divided {
-            Some((divided, changed)) => (divided, Some(changed)),
-            None => (network, None),
-        };
+        let (network, mut warnings) = target.prepared(network, gravity.as_deref()).map_err(of_network)?;
         let files = target.files(&network, gravity.as_deref()).map_err(of_network)?;
-        let mut warnings: Vec<String> = changed.into_iter().collect();
         warnings.extend(target.at_rest(&network, gravity.as_deref()).map_err(of_network)?);
         let files = with_warnings(files, &warnings);
         let written = write_files(&files, &folder, &inputs)?;

@@ -1,6 +1,6 @@
 //! Blender: meshes with the springs as edges and their numbers as attributes, and the motion as shape keys.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Hinges, Holds, Job, Tension};
 use super::npz::arrays;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
 use crate::error::Result;
@@ -10,6 +10,8 @@ use crate::report::NetworkRecord;
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
+    membranes: false,
+    hinges: Hinges::None,
     negative: true,
     tension: Tension::Any,
     partial: true,

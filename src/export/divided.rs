@@ -3,9 +3,9 @@
 //! Page of the book: *Networks in other programs*.
 
 use super::job::spatial;
+use super::prepared::longest_step;
 use super::rest::{affordable, cases, support};
 use super::target::Target;
-use crate::dynamics::largest_square;
 use crate::element::SpringKind;
 use crate::error::Result;
 use crate::model::{MeasureSpring, Network, Support};
@@ -18,7 +18,11 @@ impl Target {
     ///
     /// # Errors
     /// A hexahedron is folded; or the equations of the network do not fit into memory.
-    pub fn divided(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Option<(NetworkRecord, String)>> {
+    pub(super) fn divided(
+        &self,
+        network: &NetworkRecord,
+        gravity: Option<&[f64]>,
+    ) -> Result<Option<(NetworkRecord, String)>> {
         if !self.divides {
             return Ok(None);
         }
@@ -30,7 +34,7 @@ impl Target {
         let own = parts.network(3);
         let points: Vec<f64> = network.points.concat();
         let support = support(network);
-        divided.largest_step = largest_step(&own, &points, network, &support);
+        divided.largest_step = longest_step(&divided, &parts);
         let changed = changes(network, gravity, [&whole, &own], &points, &support, &parts)?;
         let count = hexahedra.len();
         let cells = if count == 1 { "1 hexahedron".to_string() } else { format!("{count} hexahedra") };
@@ -64,15 +68,6 @@ fn undivided(network: &NetworkRecord, division: &Division) -> Option<Network> {
         })
     }));
     Some(whole)
-}
-
-/// `2/ω` of the fastest motion at rest, s; `None` without masses.
-fn largest_step(own: &Network, points: &[f64], network: &NetworkRecord, support: &Support) -> Option<f64> {
-    let masses: Vec<f64> = network.masses.as_ref()?.iter().flat_map(|m| [*m; 3]).collect();
-    let held: Vec<bool> = (0..points.len()).map(|dof| support.is_fixed(dof)).collect();
-    let entries = own.stiffness(points);
-    let square = largest_square(entries.iter().map(|e| (e.row, e.col, e.val)), &masses, &held);
-    Some(2.0 / square.sqrt()).filter(|step| step.is_finite())
 }
 
 /// By how much the displacements of two networks differ under gravity and each load beside it, in words; none where one of them is not solved.

@@ -3,8 +3,9 @@
 use super::extent::check_parts;
 use crate::engine::{Order, Sequence};
 use crate::error::{Error, ErrorKind, Result};
-use crate::report::{NetworkRecord, Parts};
-use std::collections::HashSet;
+use crate::report::{ContentPart, HingePart, NetworkRecord, Parts};
+use crate::springs::{cross, dot, norm};
+use std::collections::{HashMap, HashSet};
 
 /// What a program holds besides springs between two points with masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,10 @@ pub struct Holds {
     pub volumes: bool,
     /// Springs on the areas of triangles in the plane.
     pub areas: bool,
+    /// Springs on the areas of triangles in space.
+    pub membranes: bool,
+    /// Springs on the angle between two triangles.
+    pub hinges: Hinges,
     /// Constants below zero.
     pub negative: bool,
     /// Springs that pull at rest.
@@ -23,6 +28,17 @@ pub struct Holds {
     pub plane: bool,
     /// Springs elsewhere than along the edges of tetrahedra.
     pub off_edges: bool,
+}
+
+/// Springs on the angle between two triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hinges {
+    /// Any.
+    Any,
+    /// Those that are flat at rest.
+    Flat,
+    /// None.
+    None,
 }
 
 /// Springs that pull at rest.
@@ -55,6 +71,9 @@ pub struct Job<'a> {
     pub step: f64,
 }
 
+/// The largest angle of a sheet that is flat at rest, rad: coordinates in files have six digits or more.
+const FLAT: f64 = 1e-5;
+
 /// A sum of tensions at rest below this share of what they would be if the springs had no rest measures is a rounding error.
 const BALANCED: f64 = 1e-9;
 
@@ -86,11 +105,31 @@ impl<'a> Job<'a> {
         let step = network.largest_step.ok_or_else(|| Error::expected("largest_step", "a step in s", "none"))?;
         let parts = Parts::of(network)?;
         check_parts(&parts)?;
-        let holds_contents = if d == 3 { holds.volumes } else { holds.areas };
-        if let (Some(part), false) = (parts.contents.first(), holds_contents) {
+        let holds_content = |part: &&ContentPart| match (d, part.points.len()) {
+            (2, _) => holds.areas,
+            (_, 3) => holds.membranes,
+            _ => holds.volumes,
+        };
+        if let Some(part) = parts.contents.iter().find(|part| !holds_content(part)) {
             let found = format!("a spring on the content of {}", named(network, &part.points));
             let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
             return unsupported("springs".into(), "springs between two points", found, advice);
+        }
+        let is_node =
+            |point: &usize| network.cells.iter().any(|block| block.points.iter().any(|cell| cell.contains(point)));
+        let bent =
+            |part: &&HingePart| holds.hinges == Hinges::None || part.rest.abs() > FLAT && is_node(&part.points[3]);
+        if let Some(part) = parts.hinges.iter().find(bent).filter(|_| holds.hinges != Hinges::Any) {
+            let (expected, found, advice) = match holds.hinges {
+                Hinges::None => ("springs between two points", "a hinge at", "lammps, xpbd and npz hold hinges"),
+                _ => ("sheets that are flat at rest", "a bent hinge at", "lammps, xpbd and npz hold bent hinges"),
+            };
+            return unsupported(
+                "springs".into(),
+                expected,
+                format!("{found} {}", named(network, &part.points)),
+                advice,
+            );
         }
         let negative = parts.lengths.iter().filter(|spring| spring.constant < 0.0).count();
         if negative > 0 && !holds.negative {
@@ -100,7 +139,7 @@ impl<'a> Job<'a> {
         }
         if let Some(part) = parts.contents.iter().find(|part| part.constant <= 0.0 || part.rest <= 0.0) {
             let (what, [of_constant, of_rest]) =
-                if d == 3 { ("volume", ["N/m⁵", "m³"]) } else { ("area", ["N/m³", "m²"]) };
+                if part.points.len() == 4 { ("volume", ["N/m⁵", "m³"]) } else { ("area", ["N/m³", "m²"]) };
             let at = named(network, &part.points);
             let found = format!("{:e} {of_constant} and {:e} {of_rest} at {at}", part.constant, part.rest);
             return unsupported(
@@ -136,10 +175,11 @@ impl<'a> Job<'a> {
         Ok(job)
     }
 
-    /// The tetrahedra of the mesh.
-    pub fn tetrahedra(&self) -> impl Iterator<Item = &'a [usize]> {
-        let blocks = self.network.cells.iter();
-        blocks.flat_map(|block| &block.points).filter(|points| points.len() == 4).map(Vec::as_slice)
+    /// The tetrahedra of the mesh; of a surface its triangles.
+    pub fn simplices(&self) -> impl Iterator<Item = &'a [usize]> {
+        let cells = || self.network.cells.iter().flat_map(|block| &block.points).map(Vec::as_slice);
+        let corners = if cells().any(|points| points.len() == 4) { 4 } else { 3 };
+        cells().filter(move |points| points.len() == corners)
     }
 
     /// Points that are held along each axis.
@@ -166,11 +206,13 @@ impl<'a> Job<'a> {
 
     fn check_edges(&self, program: &str) -> Result<()> {
         let mut edges = HashSet::new();
-        let corners: HashSet<Vec<usize>> = self.tetrahedra().map(sorted).collect();
-        for points in self.tetrahedra() {
-            edges.extend((0..4).flat_map(|a| (0..a).map(move |b| ordered(points[a], points[b]))));
+        let corners: HashSet<Vec<usize>> = self.simplices().map(sorted).collect();
+        for points in self.simplices() {
+            edges.extend((0..points.len()).flat_map(|a| (0..a).map(move |b| ordered(points[a], points[b]))));
         }
-        let expected = format!("springs along the edges of tetrahedra and on their volumes, which {program} holds");
+        let cells = if corners.iter().any(|points| points.len() == 3) { "triangles" } else { "tetrahedra" };
+        let content = if cells == "triangles" { "areas" } else { "volumes" };
+        let expected = format!("springs along the edges of {cells} and on their {content}, which {program} holds");
         let advice = "; take a mesh of linear tetrahedra, and for springs between cells leave `across` out";
         let error = |points: &[usize]| {
             let found = format!("one of {}", named(self.network, points));
@@ -179,18 +221,39 @@ impl<'a> Job<'a> {
         if let Some(spring) = self.parts.lengths.iter().find(|s| !edges.contains(&ordered(s.points[0], s.points[1]))) {
             return Err(error(&spring.points));
         }
-        match self.parts.contents.iter().find(|part| !corners.contains(&sorted(&part.points))) {
-            Some(part) => Err(error(&part.points)),
-            None => Ok(()),
+        if let Some(part) = self.parts.contents.iter().find(|part| !corners.contains(&sorted(&part.points))) {
+            return Err(error(&part.points));
         }
+        self.check_hinges(program, &corners)
     }
 
-    /// The area of a triangle in the plane, or the volume of a tetrahedron.
+    /// That each hinge is between the only two triangles at its edge.
+    fn check_hinges(&self, program: &str, triangles: &HashSet<Vec<usize>>) -> Result<()> {
+        let mut edges: HashMap<[usize; 2], usize> = HashMap::new();
+        self.parts
+            .hinges
+            .iter()
+            .for_each(|part| *edges.entry(ordered(part.points[1], part.points[2])).or_default() += 1);
+        let is_held = |part: &&HingePart| {
+            let [apex, a, b, other] = part.points;
+            let are_cells = [apex, other].iter().all(|&corner| triangles.contains(&sorted(&[a, b, corner])));
+            are_cells && edges[&ordered(a, b)] == 1
+        };
+        let Some(part) = self.parts.hinges.iter().find(|part| !is_held(part)) else { return Ok(()) };
+        let expected = format!("hinges between two triangles, which {program} holds");
+        let found = format!("another at the edge of {}", named(self.network, &part.points[1..3]));
+        let advice = "; at a clamped edge hold two rows of points and leave clamp out; joints of three leaves go to lammps, xpbd and npz";
+        Err(Error::expected("springs", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
+    }
+
+    /// The area of a triangle, which has a sign in the plane, or the volume of a tetrahedron.
     fn content(&self, points: &[usize]) -> f64 {
         match *points {
             [a, b, c] => {
                 let [a, b, c] = [a, b, c].map(|p| self.place(p));
-                ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
+                let edge = |end: [f64; 3]| [0, 1, 2].map(|k| end[k] - a[k]);
+                let twice = cross(edge(b), edge(c));
+                if self.network.dimension == 2 { twice[2] / 2.0 } else { norm(&twice) / 2.0 }
             }
             _ => volume_by_edges(std::array::from_fn(|i| self.place(points[i]))).0,
         }
@@ -216,7 +279,7 @@ impl<'a> Job<'a> {
     /// The derivative of the energy by the squared length of each edge at rest, `T/(2 ℓ)` of a spring and
     /// `K (V − V₀) ∂V/∂(ℓ²)` of a volume, has to vanish.
     fn check_balance(&self, program: &str) -> Result<()> {
-        let mut sums: std::collections::HashMap<[usize; 2], [f64; 2]> = std::collections::HashMap::new();
+        let mut sums: HashMap<[usize; 2], [f64; 2]> = HashMap::new();
         let mut add = |edge: [usize; 2], slope: f64, size: f64| {
             let sum = sums.entry(edge).or_default();
             sum[0] += slope;
@@ -228,10 +291,14 @@ impl<'a> Job<'a> {
             add(ordered(a, b), spring.constant * (length - spring.rest) / (2.0 * length), spring.constant / 2.0);
         }
         for part in &self.parts.contents {
-            let (volume, slopes) = volume_by_edges(std::array::from_fn(|i| self.place(part.points[i])));
+            let place = |corner: usize| self.place(part.points[corner]);
+            let (content, slopes) = match part.points.len() {
+                3 => area_by_edges(std::array::from_fn(place)),
+                _ => volume_by_edges(std::array::from_fn(place)),
+            };
             for ([a, b], slope) in slopes {
-                let size = part.constant * volume * slope;
-                add(ordered(part.points[a], part.points[b]), size * (1.0 - part.rest / volume), size);
+                let size = part.constant * content * slope;
+                add(ordered(part.points[a], part.points[b]), size * (1.0 - part.rest / content), size);
             }
         }
         let largest = sums.values().map(|sum| sum[1]).fold(0.0, f64::max);
@@ -284,16 +351,26 @@ fn sorted(points: &[usize]) -> Vec<usize> {
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    crate::springs::distance(&a, &b)
+}
+
+/// The area A of a triangle in space, and `∂A/∂(ℓ²) = (ℓ_b² + ℓ_c² − ℓ²)/(16 A)` of its edges, from `16 A² = 4 ℓ_b² ℓ_c² − (ℓ_b² + ℓ_c² − ℓ²)²`.
+fn area_by_edges(x: [[f64; 3]; 3]) -> (f64, Vec<([usize; 2], f64)>) {
+    let edges = [[0, 1], [1, 2], [0, 2]];
+    let squares = edges.map(|[a, b]| distance(x[a], x[b]).powi(2));
+    let sum: f64 = squares.iter().sum();
+    let area = {
+        let edge = |a: usize| [0, 1, 2].map(|k| x[a][k] - x[0][k]);
+        norm(&cross(edge(1), edge(2))) / 2.0
+    };
+    (area, edges.into_iter().zip(squares).map(|(edge, square)| (edge, (sum - 2.0 * square) / (16.0 * area))).collect())
 }
 
 /// The volume V of a tetrahedron, and `∂V/∂(ℓ²)` of its edges: `∇V` at node a is `Σ_b 2 ∂V/∂(ℓ_ab²) (x_a − x_b)`, so that with the
 /// gradients G of its shape functions the derivative is `−V G_a·G_b/2`.
 fn volume_by_edges(x: [[f64; 3]; 4]) -> (f64, Vec<([usize; 2], f64)>) {
     let edge = |a: usize| [0, 1, 2].map(|k| x[a][k] - x[0][k]);
-    let cross =
-        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
-    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let dot = |a: [f64; 3], b: [f64; 3]| dot(&a, &b);
     let [u, v, w] = [edge(1), edge(2), edge(3)];
     let six = dot(u, cross(v, w));
     let ahead = [cross(v, w), cross(w, u), cross(u, v)].map(|g| g.map(|g| g / six));

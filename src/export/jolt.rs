@@ -1,6 +1,6 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
-use super::job::{Holds, Job, Tension, has_compliance};
+use super::job::{Hinges, Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting};
@@ -13,6 +13,8 @@ use serde::Serialize;
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
+    membranes: false,
+    hinges: Hinges::None,
     negative: false,
     tension: Tension::None,
     partial: false,

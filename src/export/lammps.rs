@@ -1,6 +1,6 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Hinges, Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -9,6 +9,8 @@ use std::fmt::Write;
 const HOLDS: Holds = Holds {
     volumes: false,
     areas: false,
+    membranes: false,
+    hinges: Hinges::Any,
     negative: true,
     tension: Tension::Any,
     partial: true,
@@ -19,7 +21,7 @@ const HOLDS: Holds = Holds {
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "lammps",
-    title: "a data file and an input script for LAMMPS: harmonic bonds",
+    title: "a data file and an input script for LAMMPS: harmonic bonds, hinges as quadratic dihedrals",
     command: "lmp -in in.network",
     leaves_out: dampers,
     has_loads: false,
@@ -37,7 +39,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     ])
 }
 
-/// Atoms and bonds count from 1. Atoms of equal mass share a type.
+/// Atoms, bonds and dihedrals count from 1. Atoms of equal mass share a type.
 fn data(job: &Job) -> String {
     let mut masses = job.masses.to_vec();
     masses.sort_by(f64::total_cmp);
@@ -46,7 +48,12 @@ fn data(job: &Job) -> String {
     let (atoms, bonds) = (job.masses.len(), job.parts.lengths.len());
     let mut text = String::from("springfit network: K of a bond is half of the spring constant, units si\n\n");
     let mut line = |words: std::fmt::Arguments| writeln!(text, "{words}").expect("a String grows");
-    line(format_args!("{atoms} atoms\n{bonds} bonds\n{} atom types\n{bonds} bond types\n", masses.len()));
+    let dihedrals = job.parts.hinges.len();
+    line(format_args!("{atoms} atoms\n{bonds} bonds\n{} atom types\n{bonds} bond types", masses.len()));
+    if dihedrals > 0 {
+        line(format_args!("{dihedrals} dihedrals\n{dihedrals} dihedral types"));
+    }
+    line(format_args!(""));
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let along = || (0..atoms).map(|p| job.place(p)[k]);
         let (low, high) = (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
@@ -59,14 +66,32 @@ fn data(job: &Job) -> String {
     line(format_args!("\nBond Coeffs # harmonic\n"));
     let springs = || job.parts.lengths.iter().enumerate().map(|(i, spring)| (i + 1, spring));
     springs().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, s.rest)));
-    line(format_args!("\nAtoms # bond\n"));
+    let hinges = || job.parts.hinges.iter().enumerate().map(|(i, hinge)| (i + 1, hinge));
+    if dihedrals > 0 {
+        line(format_args!("\nDihedral Coeffs # quadratic\n"));
+        // The dihedral of a flat sheet is 180°.
+        hinges().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, 180.0 - s.rest.to_degrees())));
+    }
+    line(format_args!("\nAtoms # {}\n", style(job)));
     for p in 0..atoms {
         let [x, y, z] = job.place(p);
         line(format_args!("{} 1 {} {x:e} {y:e} {z:e}", p + 1, kind(job.masses[p])));
     }
     line(format_args!("\nBonds\n"));
     springs().for_each(|(i, s)| line(format_args!("{i} {i} {} {}", s.points[0] + 1, s.points[1] + 1)));
+    if dihedrals > 0 {
+        line(format_args!("\nDihedrals\n"));
+        hinges().for_each(|(i, s)| {
+            let [apex, a, b, other] = s.points.map(|p| p + 1);
+            line(format_args!("{i} {i} {apex} {a} {b} {other}"));
+        });
+    }
     text
+}
+
+/// The style of atoms.
+fn style(job: &Job) -> &'static str {
+    if job.parts.hinges.is_empty() { "bond" } else { "molecular" }
 }
 
 fn input(job: &Job) -> String {
@@ -94,6 +119,11 @@ fn input(job: &Job) -> String {
     // A ten-thousandth of a millionth of the weight.
     let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();
     let (reach, dmax, least) = (2.1 * longest, 0.1 * longest, 1e-10 * weight);
+    let style = style(job);
+    let (dihedrals, hinges) = match job.parts.hinges.is_empty() {
+        true => ("", ""),
+        false => ("dihedral_style quadratic\n", "hinges are quadratic dihedrals with K = k/2, one type each; "),
+    };
     let damping = job.network.damping.mass;
     let drag = match damping > 0.0 {
         false => String::new(),
@@ -112,7 +142,7 @@ fn input(job: &Job) -> String {
 #
 # Both write the positions to positions.txt, by id; point p of the network is atom p + 1.
 #
-# What was converted: springs are harmonic bonds with K = k/2, one type each; supports are forces set to zero; gravity is a force on
+# What was converted: springs are harmonic bonds with K = k/2, one type each; {hinges}supports are forces set to zero; gravity is a force on
 # each atom. The step is 0.2 of the longest stable one at rest, {longest_step:e} s.
 
 variable mode index move
@@ -120,10 +150,10 @@ variable seconds index 0.5
 units si
 dimension {d}
 boundary {boundary}
-atom_style bond
+atom_style {style}
 atom_modify map array sort 0 0
 bond_style harmonic
-comm_modify cutoff {reach:e}
+{dihedrals}comm_modify cutoff {reach:e}
 neighbor {reach:e} bin
 special_bonds lj/coul 1 1 1
 read_data network.data

@@ -15,13 +15,14 @@ mod mujoco;
 mod newton;
 mod npz;
 mod phystwin;
+mod prepared;
 mod rest;
 mod sofa;
 mod target;
 mod vtu;
 mod xpbd;
 
-pub use job::{Holds, Job, Tension};
+pub use job::{Hinges, Holds, Job, Tension};
 pub use target::{Content, NamedFile, Target, with_warnings, write_files};
 
 use crate::error::Result;

@@ -1,6 +1,6 @@
-//! MuJoCo: a flex of tetrahedra whose stiffness is that of the springs.
+//! MuJoCo: a flex of tetrahedra, or of triangles that bend, whose stiffness is that of the springs.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Hinges, Holds, Job, Tension};
 use super::npz::arrays;
 use super::target::{Content, NamedFile, Stands, Target, dampers, script};
 use crate::error::Result;
@@ -10,6 +10,8 @@ use crate::report::NetworkRecord;
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
+    membranes: true,
+    hinges: Hinges::Flat,
     negative: true,
     tension: Tension::Balanced,
     partial: false,
@@ -20,7 +22,7 @@ const HOLDS: Holds = Holds {
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "mujoco",
-    title: "a Python script for MuJoCo: a flex of tetrahedra with the stiffness of the springs",
+    title: "a Python script for MuJoCo: a flex of tetrahedra, or of triangles with hinges, with the stiffness of the springs",
     command: "python run.py",
     leaves_out: dampers,
     has_loads: true,

@@ -1,6 +1,6 @@
 //! Newton, on Warp: particles, springs, and tetrahedra without shear modulus as volume springs.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Hinges, Holds, Job, Tension};
 use super::npz::arrays_with;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, dampers, mass_damping, script};
 use crate::engine::{Engine, Setting, point_colours};
@@ -11,6 +11,8 @@ use std::io::{self, Seek, Write};
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
+    membranes: false,
+    hinges: Hinges::None,
     negative: true,
     tension: Tension::Any,
     partial: false,

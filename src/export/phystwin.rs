@@ -1,6 +1,6 @@
 //! PhysTwin: the arrays of its simulator `SpringMassSystemWarp`.
 
-use super::job::{Holds, Job, Tension, named};
+use super::job::{Hinges, Holds, Job, Tension, named};
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
@@ -10,6 +10,8 @@ use std::io::{self, Cursor};
 const HOLDS: Holds = Holds {
     volumes: false,
     areas: false,
+    membranes: false,
+    hinges: Hinges::None,
     negative: false,
     tension: Tension::Any,
     partial: false,

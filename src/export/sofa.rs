@@ -1,6 +1,6 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
-use super::job::{Holds, Job, Tension};
+use super::job::{Hinges, Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -10,6 +10,8 @@ use std::fmt::Write;
 const HOLDS: Holds = Holds {
     volumes: false,
     areas: false,
+    membranes: false,
+    hinges: Hinges::None,
     negative: true,
     tension: Tension::Any,
     partial: false,

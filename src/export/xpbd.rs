@@ -1,6 +1,6 @@
 //! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
 
-use super::job::{Holds, Job, Tension, has_compliance};
+use super::job::{Hinges, Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting, colours};
@@ -12,6 +12,8 @@ use serde::Serialize;
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: true,
+    membranes: true,
+    hinges: Hinges::Any,
     negative: false,
     tension: Tension::None,
     partial: true,
@@ -80,7 +82,12 @@ fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
         lengths.map(|part| Constraint::new("length", &part.points, part.constant, part.rest)).collect();
     let count = all.len();
     let contents = job.parts.contents.iter().filter(|part| has_compliance(part.constant));
-    all.extend(contents.map(|part| Constraint::new("content", &part.points, part.constant, part.rest)));
+    all.extend(contents.map(|part| {
+        let kind = if part.points.len() > job.network.dimension { "content" } else { "area" };
+        Constraint::new(kind, &part.points, part.constant, part.rest)
+    }));
+    let hinges = job.parts.hinges.iter().filter(|part| has_compliance(part.constant));
+    all.extend(hinges.map(|part| Constraint::new("hinge", &part.points, part.constant, part.rest)));
     let sets: Vec<&[usize]> = all.iter().map(|constraint| &constraint.points[..]).collect();
     let (order, colours) = (job.order(&sets, count, setting.order), colours(&sets, job.masses.len()));
     all.iter_mut().zip(colours).for_each(|(constraint, colour)| constraint.colour = colour);

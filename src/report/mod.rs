@@ -40,6 +40,7 @@ mod region_record;
 mod run_tables;
 mod sampled;
 mod series;
+mod sheets;
 mod stability;
 mod stretches;
 mod study_lines;

@@ -6,6 +6,7 @@ use super::linear_theory::{bending_note, distrust, linear_notes};
 use super::materials::material_note;
 use super::motion::motion_notes;
 use super::quality::quality_lines;
+use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
@@ -55,6 +56,7 @@ pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
         .chain(lumping(outcome))
         .chain(finite)
         .chain(bending_note(outcome))
+        .chain(sheet_notes(outcome))
         .chain(linear_notes(outcome))
         .chain(silent)
         .chain(measured)

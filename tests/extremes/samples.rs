@@ -233,6 +233,27 @@ group = "zmax"
 traction = [0, 0, 100.0]
 "#;
 
+/// A sheet that bends.
+pub const SHEET: &str = r#"
+[mesh]
+box = { element = "tri3", size = [1.0, 1.0], cells = [2, 2] }
+space = 3
+[material]
+young = 10e3
+poisson = 0.3
+thickness = 0.02
+bending = "plate"
+flexural = 0.01
+[[fit]]
+objective = "exact"
+bending = "hinges"
+[[fix]]
+where = "x < 0.6"
+[[load]]
+where = "x > 0.9"
+force = [0, 0, 1e-4]
+"#;
+
 /// A plane frame whose middle is filled.
 pub const CAVITY: &str = r#"
 [mesh]
@@ -481,7 +502,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 16] = [
+pub const ALL: [(&str, &str); 17] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -492,6 +513,7 @@ pub const ALL: [(&str, &str); 16] = [
     ("large", LARGE),
     ("fibres", FIBRES),
     ("cavity", CAVITY),
+    ("sheet", SHEET),
     ("whole", WHOLE),
     ("coarse", COARSE),
     ("stretched", STRETCHED),

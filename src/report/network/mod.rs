@@ -6,8 +6,8 @@ mod json;
 mod points;
 
 pub use crate::network::{
-    ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LengthPart,
-    LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Measuring, Merged, NETWORK_VERSION,
+    ArrayFile, CellBlockRecord, ContentPart, Division, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, HingePart,
+    LengthPart, LoadErrorsRecord, MaterialDataRecord, MeasureKind, MeasureRecord, Measuring, Merged, NETWORK_VERSION,
     NetworkDampingRecord, NetworkRecord, NetworkShard, NodalForceRecord, NodalLoadRecord, OriginRecord, Parts,
     PointTable, ProvenanceRecord, Shard, ShardRun, ShareRecord, SpecimenFile, SpecimenOptions, SpringRecord,
     TermRecord, TimedForceRecord, TimedPullRecord, cell_terms, merge_shards, network_csv, network_npz,

@@ -3,7 +3,7 @@
 //! Theory: page *Dynamics* of the book.
 
 use super::integration::each_cell_points;
-use super::lumping::turning_masses;
+use super::lumping::{TurningMass, turning_masses};
 use crate::element::Integrand;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
@@ -58,8 +58,8 @@ impl ConsistentMasses {
             },
         );
         let of = |cell: CellIndex| density.at(cell.block, cell.cell) * thickness.at(cell.block, cell.cell);
-        for (point, mass) in turning_masses(mesh, &of) {
-            all.points.push(point);
+        for TurningMass { director, mass, .. } in turning_masses(mesh, &of) {
+            all.points.push(director);
             all.values.push(mass.max(0.0).sqrt());
             all.starts.push(all.points.len());
         }

@@ -63,21 +63,37 @@ pub fn lumped_masses(
         ),
     }
     let turning = turning_masses(mesh, &of);
-    turning.into_iter().for_each(|(point, mass)| masses[point] += mass);
+    for TurningMass { director, ends, mass } in turning {
+        masses[director] += mass;
+        // So the body has its mass.
+        ends.iter().for_each(|&end| masses[end] -= mass / 2.0);
+    }
     masses
 }
 
-/// The masses of the directors of a sheet, by points, kg. A plate of thickness t has the rotary inertia `ρ t³/12` per area; a director at the distance r from an edge
+/// The share of a triangle in the mass of a director.
+pub(super) struct TurningMass {
+    /// The director.
+    pub director: usize,
+    /// The ends of its edge.
+    pub ends: [usize; 2],
+    /// kg.
+    pub mass: f64,
+}
+
+/// The masses of the directors of a sheet. A plate of thickness t has the rotary inertia `ρ t³/12` per area; a director at the distance r from an edge
 /// has `m r²` of it for a third of the triangles there. `of` is the mass per area of a cell, kg/m².
-pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec<(usize, f64)> {
+pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec<TurningMass> {
     let Some(directors) = &mesh.directors else { return Vec::new() };
     let first = mesh.node_count();
     let mut masses = Vec::new();
     for (index, (points, gyration)) in mesh.cell_indices().zip(directors.of_cells.iter().zip(&directors.gyration)) {
         let area = norm(&mesh.area_vector(mesh.cell_nodes(index)));
         for &point in points {
-            let [a, b] = directors.edges[point - first].map(|end| mesh.point(end));
-            masses.push((point, of(index) * area / 3.0 * gyration / distance(a, b).powi(2)));
+            let ends = directors.edges[point - first];
+            let reach = distance(mesh.point(point), &mesh.mean_place(&ends));
+            let mass = of(index) * area / 3.0 * gyration / reach.powi(2);
+            masses.push(TurningMass { director: point, ends, mass });
         }
     }
     masses

@@ -9,30 +9,58 @@ use super::network::{LengthSpring, MeasureSpring, Network};
 use crate::element::SpringKind;
 use crate::material::{CellMap, EnergyMap, Hooke, Material};
 use crate::mesh::{Directors, Mesh};
-use crate::springs::{BEND_POINTS, Bend, Measure, cross, distance, dot, norm};
+use crate::springs::{BEND_POINTS, Measure, Turns, cross, distance, dot, norm, turn_points};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use smallvec::SmallVec;
 
-/// The springs of the directors of a sheet, or none. `moduli` are those of the membrane, N/m: a plate of thickness t has `D = C t²/12` of them, N·m.
-///
-/// A triangle of area A has the curvature `κ = (1/A) Σ_i l_i a_i n_i n_iᵀ`, with l_i the lengths of its edges, n_i their conormals and a_i its turns from their
-/// directors, and the energy `A/2 κ·D·κ`. With the eigenvectors d_m of D and their eigenvalues λ_m this is the energy of three springs
-/// `½ (λ_m/A) c_m²` with `c_m = Σ_i l_i (d_m·v_i) a_i` and `v_i = (n_x², n_y², 2 n_x n_y)` of the conormal in the axes of the triangle.
-pub fn plate_springs(mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
-    let mut network = Network { dimension: mesh.dimension, ..Network::default() };
-    let Some(directors) = &mesh.directors else { return network };
-    let mut holds = vec![0.0; directors.edges.len()];
-    let first = mesh.node_count();
-    for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
-        let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
-        for director in directors.of_cells[cell] {
-            holds[director - first] += membrane[(0, 0)];
+/// Which springs resist the bending of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BendingSprings {
+    /// Three springs of each triangle on its turns from all its directors: the plate, at any Poisson's ratio.
+    #[default]
+    Directors,
+    /// One spring of each triangle on its turn from each director. Between two triangles they are a spring on the angle between both, which other programs
+    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is.
+    Hinges,
+}
+
+crate::named!(BendingSprings {
+    "directors" => Directors,
+    "hinges" => Hinges,
+});
+
+impl BendingSprings {
+    /// The springs of the directors of a sheet, or none. `moduli` are those of the membrane, N/m: a plate of thickness t has `D = C t²/12` of them, N·m.
+    pub fn of(self, mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
+        let mut network = Network { dimension: mesh.dimension, ..Network::default() };
+        let Some(directors) = &mesh.directors else { return network };
+        let mut holds = vec![0.0; directors.edges.len()];
+        let first = mesh.node_count();
+        for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
+            let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
+            for director in directors.of_cells[cell] {
+                let middle = mesh.mean_place(&directors.edges[director - first]);
+                // As stiff for the mass of the director as the membrane is for that of its points, so that no explicit step is shorter.
+                let share = directors.gyration[cell] / distance(&middle, mesh.point(director)).powi(2);
+                holds[director - first] += share * membrane[(0, 0)];
+            }
+            let points: SmallVec<[usize; BEND_POINTS]> =
+                nodes.iter().copied().chain(directors.of_cells[cell]).collect();
+            let triangle = Triangle::of(mesh, &points);
+            let stiffness = membrane * directors.gyration[cell];
+            match self {
+                BendingSprings::Directors => network.others.extend(triangle.bends(&stiffness)),
+                BendingSprings::Hinges => network.others.extend(triangle.hinges(&stiffness)),
+            }
         }
-        let points: SmallVec<[usize; 4]> = nodes.iter().copied().chain(directors.of_cells[cell]).collect();
-        network.others.extend(bends(mesh, &points, &(membrane * directors.gyration[cell])));
+        network.lengths = levers(mesh, directors, &holds);
+        network
     }
-    network.lengths = levers(mesh, directors, &holds);
-    network
+}
+
+/// The springs of the directors of a sheet as a plate, which are its finite elements too.
+pub fn plate_springs(mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
+    BendingSprings::Directors.of(mesh, moduli)
 }
 
 /// The springs of the directors of a sheet with laws of large deformation, of which a plate has the moduli at rest.
@@ -50,36 +78,74 @@ pub(super) fn plate_at_large_deformation(mesh: &Mesh, laws: &EnergyMap) -> Netwo
     }
 }
 
-/// The three springs of a triangle with the flexural stiffness D, N·m, in the order xx, yy, xy with shear strains 2 ε.
-fn bends(mesh: &Mesh, points: &SmallVec<[usize; 4]>, d: &Matrix3<f64>) -> Vec<MeasureSpring> {
-    let at = |place: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(points[place])[k]) };
-    let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| a[k] - b[k]) };
-    let vector = mesh.area_vector(&points[..3]);
-    let area = norm(&vector);
-    let normal = vector.map(|a| a / area);
-    let edge = |corner: usize| minus(at((corner + 2) % 3), at((corner + 1) % 3));
-    // The axes of the triangle: along its first edge, as those of its membrane are, and across it.
-    let along = minus(at(1), at(0));
-    let axis = along.map(|x| x / norm(&along));
-    let other = cross(normal, axis);
-    let of_edge = |corner: usize| {
-        let edge = edge(corner);
-        let length = norm(&edge);
-        let conormal = cross(edge.map(|x| x / length), normal);
-        let [x, y] = [dot(&conormal, &axis), dot(&conormal, &other)];
-        length * Vector3::new(x * x, y * y, 2.0 * x * y)
-    };
-    let of_edges: [Vector3<f64>; 3] = std::array::from_fn(of_edge);
-    let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(*d);
-    let positions: Vec<f64> = (0..BEND_POINTS).flat_map(at).collect();
-    let spring = |m: usize| {
-        let weights = of_edges.map(|v| v.dot(&eigenvectors.column(m)));
-        let measure = Measure::Bend(Box::new(Bend { weights }));
-        let rest = measure.value(&positions, 3);
-        let constant = eigenvalues[m] / area;
-        MeasureSpring { kind: SpringKind::Bend, points: points.clone(), constant, rest, measure, law: None }
-    };
-    (0..3).map(spring).collect()
+/// A triangle of a sheet, with the directors of its edges.
+struct Triangle<'a> {
+    points: &'a [usize],
+    positions: Vec<f64>,
+    area: f64,
+    /// Of each edge, in the order of the opposite corners: its length l, m, and `v = (n_x², n_y², 2 n_x n_y)` of its conormal in the axes of the
+    /// triangle, in which its membrane has its moduli.
+    edges: [(f64, Vector3<f64>); 3],
+}
+
+impl<'a> Triangle<'a> {
+    fn of(mesh: &Mesh, points: &'a [usize]) -> Triangle<'a> {
+        let at = |place: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(points[place])[k]) };
+        let minus = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| a[k] - b[k]) };
+        let vector = mesh.area_vector(&points[..3]);
+        let area = norm(&vector);
+        let normal = vector.map(|a| a / area);
+        // The axes of the triangle: along its first edge, as those of its membrane are, and across it.
+        let along = minus(at(1), at(0));
+        let axis = along.map(|x| x / norm(&along));
+        let other = cross(normal, axis);
+        let of_edge = |corner: usize| {
+            let edge = minus(at((corner + 2) % 3), at((corner + 1) % 3));
+            let length = norm(&edge);
+            let conormal = cross(edge.map(|x| x / length), normal);
+            let [x, y] = [dot(&conormal, &axis), dot(&conormal, &other)];
+            (length, Vector3::new(x * x, y * y, 2.0 * x * y))
+        };
+        let positions = (0..BEND_POINTS).flat_map(at).collect();
+        Triangle { points, positions, area, edges: std::array::from_fn(of_edge) }
+    }
+
+    /// The springs of a plate with the flexural stiffness D, N·m, in the order xx, yy, xy with shear strains 2 ε.
+    ///
+    /// A triangle of area A has the curvature `κ = (1/A) Σ_i l_i a_i n_i n_iᵀ`, with l_i the lengths of its edges, n_i their conormals and a_i its turns from
+    /// their directors, and the energy `A/2 κ·D·κ`. With the eigenvectors d_m of D and their eigenvalues λ_m this is the energy of three springs
+    /// `½ (λ_m/A) c_m²` with `c_m = Σ_i l_i (d_m·v_i) a_i`.
+    fn bends(&self, d: &Matrix3<f64>) -> [MeasureSpring; 3] {
+        let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(*d);
+        std::array::from_fn(|m| {
+            let weights = self.edges.map(|(length, v)| length * v.dot(&eigenvectors.column(m)));
+            self.spring(SpringKind::Bend, 0..BEND_POINTS, Turns::of_triangle(weights), eigenvalues[m] / self.area)
+        })
+    }
+
+    /// A spring on each turn alone, of the constant `D_n l²/A` with `D_n = v·D·v` that of curvature across the edge. The springs of two triangles on one
+    /// director are, where nothing holds it, a spring of the constant `D_n l²/(A₁ + A₂)` on the angle between both.
+    fn hinges(&self, d: &Matrix3<f64>) -> [MeasureSpring; 3] {
+        std::array::from_fn(|corner| {
+            let (length, v) = self.edges[corner];
+            let constant = v.dot(&(d * v)) * length * length / self.area;
+            self.spring(SpringKind::Hinge, turn_points(corner), Turns::of_hinge(), constant)
+        })
+    }
+
+    fn spring(
+        &self,
+        kind: SpringKind,
+        places: impl IntoIterator<Item = usize>,
+        turns: Turns,
+        constant: f64,
+    ) -> MeasureSpring {
+        let places: SmallVec<[usize; BEND_POINTS]> = places.into_iter().collect();
+        let x: Vec<f64> = places.iter().flat_map(|p| &self.positions[3 * p..3 * p + 3]).copied().collect();
+        let measure = Measure::Turns(Box::new(turns));
+        let points = places.iter().map(|&place| self.points[place]).collect();
+        MeasureSpring { kind, points, constant, rest: measure.value(&x, 3), measure, law: None }
+    }
 }
 
 /// The springs from the ends of each edge to its director. They hold it in the plane of the edge and of itself, in which nothing pulls at it.

@@ -41,6 +41,9 @@ pub enum SpringKind {
     /// A weighted sum of the turns of a triangle from the directors of its edges, in m. For sheets that bend only.
     #[serde(skip)]
     Bend,
+    /// The turn of a triangle about one of its edges, from its plane to a director or to the apex of another triangle, in rad. For sheets that bend only.
+    #[serde(skip)]
+    Hinge,
 }
 
 crate::named!(SpringKind {
@@ -55,6 +58,7 @@ crate::named!(SpringKind {
     "patch" => Patch,
     "fibre" => Fibre,
     "bend" => Bend,
+    "hinge" => Hinge,
 });
 
 /// The longest list of nodes of a spring, that of the polygon of an area.
@@ -157,6 +161,15 @@ impl SpringKind {
                 symmetry: Symmetry::Ordered,
                 in_element_files: false,
                 unit: "N/m",
+                formula: None,
+            },
+            SpringKind::Hinge => Kind {
+                nodes: 4..=4,
+                least_dimension: 3,
+                content: None,
+                symmetry: Symmetry::Ordered,
+                in_element_files: false,
+                unit: "N*m",
                 formula: None,
             },
             SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => Kind {

@@ -1,8 +1,8 @@
 //! What a spring measures, c(x), with its first and second derivatives, from which its force and tangent follow.
 
-use super::bend::Bend;
 use super::content::Content;
 use super::patch::Patch;
+use super::turns::Turns;
 use crate::element::{Element, Formula, SpringKind, Tabulation, dot};
 use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Jet};
@@ -22,8 +22,8 @@ pub enum Measure {
     Span(Arc<Tabulation>),
     /// A weighted sum of the contents of the cells of a patch.
     Patch(Arc<Patch>),
-    /// A weighted sum of the turns of a triangle from the directors of its edges; behind a pointer, so that a measure is of two words.
-    Bend(Box<Bend>),
+    /// A weighted sum of turns of triangles about their edges; behind a pointer, so that a measure is of two words.
+    Turns(Box<Turns>),
     /// A function of the coordinates of the points, in the order x₀, y₀, (z₀,) x₁, …
     Function(Arc<Expr>),
 }
@@ -92,7 +92,7 @@ impl Measure {
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).jet(),
             Measure::Span(table) => Content::of_point(table, 0, x).jet(),
             Measure::Patch(patch) => patch.jet(x, dimension),
-            Measure::Bend(bend) => bend.jet(x),
+            Measure::Turns(turns) => turns.jet(x),
             Measure::Function(function) => Jet::evaluate(function, x),
         }
     }
@@ -105,7 +105,7 @@ impl Measure {
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).value(),
             Measure::Span(table) => Content::of_point(table, 0, x).value(),
             Measure::Patch(patch) => patch.value(x, dimension),
-            Measure::Bend(bend) => bend.value(x),
+            Measure::Turns(turns) => turns.value(x),
             Measure::Function(function) => function.evaluate(x),
         }
     }
@@ -119,7 +119,7 @@ impl Measure {
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).gradient(),
             Measure::Span(table) => Content::of_point(table, 0, x).gradient(),
             Measure::Patch(patch) => patch.gradient(x, dimension),
-            Measure::Bend(bend) => bend.gradient(x),
+            Measure::Turns(turns) => turns.gradient(x),
         }
     }
 

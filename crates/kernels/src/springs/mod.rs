@@ -5,19 +5,19 @@
 //!
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
-mod bend;
 mod content;
 mod law;
 mod measure;
 mod patch;
+mod turns;
 mod vector;
 
-pub use bend::{BEND_POINTS, Bend, turn_points};
 pub use content::Content;
 pub(crate) use law::AskedResponse;
 pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
+pub use turns::{BEND_POINTS, HINGE_POINTS, Turns, turn_points};
 pub use vector::{cross, distance, dot, norm, unit};
 
 use crate::element::{Element, SpringKind, Tabulation};

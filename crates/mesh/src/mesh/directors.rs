@@ -19,7 +19,7 @@ impl Mesh {
     }
 
     /// A sheet with a director for each edge. It stands on the middle of the edge, along the mean normal of the triangles, and is as far from it as the edge is
-    /// long. `gyration` is `t²/12` of each triangle, m².
+    /// long, or as the sheet is thick if that is more. `gyration` is `t²/12` of each triangle, m².
     ///
     /// # Errors
     /// The mesh is no surface of triangles of three nodes in space, or is folded onto itself at an edge; the kind is `Unsupported`.
@@ -55,15 +55,16 @@ impl Mesh {
                 first + place
             }));
         }
+        let thickest = gyration.iter().fold(0.0, |most: f64, own| most.max((12.0 * own).sqrt()));
         for ([a, b], normal, count) in &normals {
             let size = norm(normal);
             if size < FOLDED * count {
                 let middle = self.mean_place(&[*a, *b]);
                 return unsupported(format!("one that is folded onto itself at {middle:?} m"));
             }
-            let length = distance(self.point(*a), self.point(*b));
+            let reach = distance(self.point(*a), self.point(*b)).max(thickest);
             let middle = self.mean_place(&[*a, *b]);
-            self.points.extend(middle.iter().zip(normal).map(|(x, n)| x + length * n / size));
+            self.points.extend(middle.iter().zip(normal).map(|(x, n)| x + reach * n / size));
         }
         if let Some(numbering) = &mut self.numbering {
             let next = 1 + numbering.nodes.iter().copied().max().unwrap_or(0);

@@ -231,7 +231,7 @@ impl Mesh {
     }
 
     /// The mean of some points, `[dimension]`, m.
-    pub(super) fn mean_place(&self, points: &[usize]) -> Vec<f64> {
+    pub fn mean_place(&self, points: &[usize]) -> Vec<f64> {
         let along = |k: usize| points.iter().map(|&p| self.point(p)[k]).sum::<f64>() / points.len() as f64;
         (0..self.dimension).map(along).collect()
     }

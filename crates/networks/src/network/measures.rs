@@ -3,7 +3,7 @@
 use super::record::{MeasureKind, MeasureRecord, ShareRecord, TermRecord};
 use crate::element::{Tabulation, coordinate_names};
 use crate::model::Network;
-use crate::springs::{Measure, turn_points};
+use crate::springs::{Measure, Turns};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -21,6 +21,7 @@ enum Identity {
     Cell(usize),
     Point(usize, u32),
     Shared(usize),
+    Hinge,
 }
 
 impl Measures {
@@ -56,7 +57,8 @@ impl Measures {
 
 fn identity(measure: &Measure) -> Option<Identity> {
     match measure {
-        Measure::Length | Measure::Patch(_) | Measure::Bend(_) => None,
+        Measure::Turns(turns) if **turns == Turns::of_hinge() => Some(Identity::Hinge),
+        Measure::Length | Measure::Patch(_) | Measure::Turns(_) => None,
         Measure::Content(element) => Some(Identity::Cell(Arc::as_ptr(element) as usize)),
         Measure::PointContent(element, q) => Some(Identity::Point(Arc::as_ptr(element) as usize, *q)),
         Measure::Span(table) => Some(Identity::Shared(Arc::as_ptr(table) as usize)),
@@ -64,7 +66,7 @@ fn identity(measure: &Measure) -> Option<Identity> {
     }
 }
 
-fn plain(kind: MeasureKind) -> MeasureRecord {
+pub(super) fn plain(kind: MeasureKind) -> MeasureRecord {
     MeasureRecord { kind, element: None, terms: Vec::new(), cells: Vec::new(), expression: None }
 }
 
@@ -87,10 +89,9 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
             let element = &patch.element;
             content(Some(&element.name), cell_terms(&element.tabulation), patch.cells.iter().map(share).collect())
         }
-        Measure::Bend(bend) => {
-            let turn =
-                |(corner, share): (usize, &f64)| ShareRecord { nodes: turn_points(corner).to_vec(), share: *share };
-            MeasureRecord { cells: bend.weights.iter().enumerate().map(turn).collect(), ..plain(MeasureKind::Turn) }
+        Measure::Turns(turns) => {
+            let turn = |(places, share): ([usize; 4], f64)| ShareRecord { nodes: places.to_vec(), share };
+            MeasureRecord { cells: turns.iter().map(turn).collect(), ..plain(MeasureKind::Turn) }
         }
         Measure::Function(function) => {
             let names = coordinate_names(points, dimension);

@@ -3,6 +3,7 @@
 mod balance;
 mod csv;
 mod division;
+mod hinges;
 mod json;
 mod lines;
 mod lists;
@@ -27,7 +28,7 @@ pub use measures::cell_terms;
 pub use model::Measuring;
 pub use npz::{ArrayFile, network_npz, network_npz_with, write_npz};
 pub use part::Shard;
-pub use parts::{ContentPart, LengthPart, Parts, simplex_term};
+pub use parts::{ContentPart, HingePart, LengthPart, Parts, simplex_term};
 pub use reader::read_network;
 pub use record::{
     CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LoadErrorsRecord, MaterialDataRecord,

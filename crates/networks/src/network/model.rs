@@ -1,12 +1,12 @@
 //! The springs of a record as a model, which has energy, forces and stiffness.
 
 use super::measures::cell_terms;
-use super::record::{MeasureKind, MeasureRecord, NetworkRecord, ShareRecord, SpringRecord, TermRecord};
+use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord, TermRecord};
 use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{CellBlock, Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
-use crate::springs::{Bend, Law, Measure, Patch, turn_points};
+use crate::springs::{Law, Measure, Patch, Turns};
 use crate::symbolic::Scope;
 use smallvec::SmallVec;
 use std::collections::{BTreeMap, HashMap};
@@ -75,7 +75,7 @@ impl Measuring {
                 Ok(Measure::Function(Arc::new(expression)))
             }
             MeasureKind::Content => self.content(record, kind, points),
-            MeasureKind::Turn => bend(record),
+            MeasureKind::Turn => turns(record, points),
         }
     }
 
@@ -132,18 +132,14 @@ impl Measuring {
     }
 }
 
-/// The turns of a triangle about its edges.
-fn bend(record: &MeasureRecord) -> Result<Measure> {
-    let is_turn = |(corner, cell): (usize, &ShareRecord)| cell.nodes == turn_points(corner);
-    match &record.cells[..] {
-        [a, b, c] if record.cells.iter().enumerate().all(is_turn) => {
-            Ok(Measure::Bend(Box::new(Bend { weights: [a.share, b.share, c.share] })))
-        }
-        _ => {
-            let expected = "the turns of a triangle about its three edges";
-            Err(Error::expected("cells", expected, "others").of_kind(ErrorKind::Unsupported))
-        }
-    }
+/// A weighted sum of turns of triangles about their edges.
+fn turns(record: &MeasureRecord, points: usize) -> Result<Measure> {
+    let listed = record.cells.iter().map(|cell| (&cell.nodes[..], cell.share));
+    let turns = Turns::new(listed, points).ok_or_else(|| {
+        let expected = format!("turns, each with four different places below {points}");
+        Error::expected("cells", expected, "others")
+    })?;
+    Ok(Measure::Turns(Box::new(turns)))
 }
 
 fn are_same(own: &[TermRecord], given: &[TermRecord]) -> bool {

@@ -1,19 +1,20 @@
 //! Networks as arrays of NumPy: a ZIP file of `.npy` files.
 
 use super::lists::ListedRecord;
-use super::parts::Parts;
+use super::parts::{ContentPart, Parts};
 use super::record::{HeldRecord, NetworkRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
 use crate::mesh::Mesh;
 use crate::model::Network;
+use crate::springs::HINGE_POINTS;
 use std::collections::HashMap;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::Path;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-/// Arrays of a network of springs on lengths and on the contents of simplices, with n points, m springs, c contents and t triangles:
+/// Arrays of a network of springs on lengths, on the contents of simplices and on turns, with n points, m springs, c contents, a areas, h hinges and t triangles:
 ///
 /// | array | shape and type | what |
 /// |---|---|---|
@@ -21,13 +22,15 @@ use zip::write::SimpleFileOptions;
 /// | `masses` | n, f64 | kg; empty without a density |
 /// | `springs`, `k`, `rest`, `damper` | m × 2, i32; m, f64; m, f64; m, f64 | ends; N/m; m; kg/s |
 /// | `volumes`, `k_volume`, `rest_volume` | c × 4, i32; c, f64; c, f64 | corners; N/m⁵; m³. In the plane triangles, N/m³ and m² |
+/// | `areas`, `k_area`, `rest_area` | a × 3, i32; a, f64; a, f64 | corners; N/m³; m². Triangles in space; absent without them |
+/// | `hinges`, `k_hinge`, `rest_hinge` | h × 4, i32; h, f64; h, f64 | the apex of a triangle, the ends of its edge, and the apex beyond it; N·m; rad. Absent without them |
 /// | `tets` | i32 | the corners of the cells that are simplices |
 /// | `surface` | t × 3, i32 | triangles |
 /// | `fixed` | i32 | points that are held in all directions |
 /// | `held` | n × 3, f64 | prescribed displacements, m; NaN where a point is free |
 /// | `load_names` | l, text | the loads of the scene |
 /// | `load_of`, `load_points`, `load_forces` | f, i32; f, i32; f × 3, f64 | each a force on a point: the place of the load, the point, N |
-/// | `moved_of`, `moved_points`, `moved` | h, i32; h, i32; h × 3, f64 | each a point that is held under a load in another way than in `held`: the place of the load, the point, m; NaN where it is free |
+/// | `moved_of`, `moved_points`, `moved` | p, i32; p, i32; p × 3, f64 | each a point that is held under a load in another way than in `held`: the place of the load, the point, m; NaN where it is free |
 /// | `gravity` | 3, f64 | m/s²; zero where there is none |
 /// | `damping` | f64 | Rayleigh's α, 1/s |
 /// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
@@ -81,6 +84,7 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
     let fixed = network.held.iter().filter(|given| given.displacement.iter().all(Option::is_some));
     let simplices = || cells().filter(|points| points.len() == d + 1);
     let corners = d + 1;
+    let of_surfaces = || parts.contents.iter().filter(|s| s.points.len() != corners);
     let mut file = ArrayFile::new(to);
     file.real("points", &[network.points.len(), 3], network.points.iter().flat_map(|x| spatial(x)))?;
     let masses = network.masses.iter().flatten();
@@ -90,10 +94,22 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
     file.real("k", &[springs.len()], springs.iter().map(|s| s.constant))?;
     file.real("rest", &[springs.len()], springs.iter().map(|s| s.rest))?;
     file.real("damper", &[springs.len()], springs.iter().map(|s| s.damper))?;
-    let contents = &parts.contents;
+    let contents: Vec<&ContentPart> = parts.contents.iter().filter(|s| s.points.len() == corners).collect();
     file.whole("volumes", &[contents.len(), corners], contents.iter().flat_map(|s| s.points.iter().copied()))?;
     file.real("k_volume", &[contents.len()], contents.iter().map(|s| s.constant))?;
     file.real("rest_volume", &[contents.len()], contents.iter().map(|s| s.rest))?;
+    if of_surfaces().next().is_some() {
+        let count = of_surfaces().count();
+        file.whole("areas", &[count, 3], of_surfaces().flat_map(|s| s.points.iter().copied()))?;
+        file.real("k_area", &[count], of_surfaces().map(|s| s.constant))?;
+        file.real("rest_area", &[count], of_surfaces().map(|s| s.rest))?;
+    }
+    if !parts.hinges.is_empty() {
+        let hinges = &parts.hinges;
+        file.whole("hinges", &[hinges.len(), HINGE_POINTS], hinges.iter().flat_map(|s| s.points))?;
+        file.real("k_hinge", &[hinges.len()], hinges.iter().map(|s| s.constant))?;
+        file.real("rest_hinge", &[hinges.len()], hinges.iter().map(|s| s.rest))?;
+    }
     file.whole("tets", &[simplices().count(), corners], simplices().flatten().copied())?;
     file.whole("surface", &[network.surface.len(), 3], network.surface.iter().flatten().copied())?;
     file.whole("fixed", &[fixed.clone().count()], fixed.map(|given| given.point))?;

@@ -8,7 +8,6 @@ use crate::error::{Error, Result};
 use crate::fit::{CellFits, SpreadSum, each_element_errors};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
-use crate::model::plate_springs;
 use std::sync::OnceLock;
 
 /// Fits one recipe on every cell, assembles the network, and computes the errors of the matrices; `reference` is required by sampled and
@@ -44,7 +43,7 @@ pub fn fit_without_errors(
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let mut fitted = named.recipe.kind().fit(&task, progress)?;
     if mesh.directors.is_some() {
-        let sheet = plate_springs(mesh, &material.moduli());
+        let sheet = named.bending.unwrap_or_default().of(mesh, &material.moduli());
         fitted.network = std::mem::take(&mut fitted.network).joined(sheet);
     }
     let missing = || Error::at("engine", "belongs to a scene with supports");

@@ -11,8 +11,8 @@ use std::sync::OnceLock;
 const POINTS: usize = 16;
 /// A change of the measure by this share of its value at rest is integrated without subdivision.
 const SMOOTH: f64 = 0.1;
-/// The relative agreement of a quadrature with that of its two halves at which it is accepted; about 50 rounding
-/// errors.
+/// The agreement of a quadrature with that of its two halves at which it is accepted, relative to the energy; about 50
+/// rounding errors.
 const KNOWN: f64 = 1e-14;
 /// The largest number of halvings of the interval.
 const HALVINGS: usize = 10;
@@ -74,19 +74,30 @@ impl Law {
         if (c - rest).abs() <= SMOOTH * rest.abs() {
             whole
         } else {
-            self.refined([rest, c], whole, rest, parameters, HALVINGS)
+            self.refined([rest, c], whole, 0.0, rest, parameters, HALVINGS)
         }
     }
 
-    fn refined(&self, [from, to]: [f64; 2], whole: f64, rest: f64, parameters: &[f64], halvings: usize) -> f64 {
+    /// The work on a part of the way, of which one rule knows `whole`. `known` is the size of the work on the ways that this one is a half of: what is small beside
+    /// that is not refined, however far the measure is from rest.
+    fn refined(
+        &self,
+        [from, to]: [f64; 2],
+        whole: f64,
+        known: f64,
+        rest: f64,
+        parameters: &[f64],
+        halvings: usize,
+    ) -> f64 {
         let middle = from + (to - from) / 2.0;
         let halves = [[from, middle], [middle, to]];
         let works = halves.map(|half| self.work(half, rest, parameters));
         let sum = works[0] + works[1];
-        if halvings == 0 || !sum.is_finite() || (sum - whole).abs() <= KNOWN * (works[0].abs() + works[1].abs()) {
+        let known = known.max(works[0].abs() + works[1].abs());
+        if halvings == 0 || !sum.is_finite() || (sum - whole).abs() <= KNOWN * known {
             return sum;
         }
-        (0..2).map(|i| self.refined(halves[i], works[i], rest, parameters, halvings - 1)).sum()
+        (0..2).map(|i| self.refined(halves[i], works[i], known, rest, parameters, halvings - 1)).sum()
     }
 
     /// `∫ T dc` by one rule without refinement.

@@ -6,9 +6,8 @@ use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, Specimen, Support};
-use crate::network::parts::{ContentPart, LengthPart, Parts};
-use crate::springs::distance;
-use smallvec::SmallVec;
+use crate::network::parts::{ContentPart, HingePart, LengthPart, Parts};
+use crate::springs::{HINGE_POINTS, distance};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -40,7 +39,7 @@ pub fn read(bytes: &[u8], _: &SpecimenOptions) -> Result<SpecimenFile> {
     };
     let lengths = lengths(&points, d, &ends, &constants, rest.as_deref())?;
     let mut network = Network { dimension: d, lengths, others: Vec::new() };
-    network.others = contents(&arrays, d, points.len() / d)?;
+    network.others = others(&arrays, d, points.len() / d)?;
     let count = points.len() / d;
     let specimen = Specimen {
         masses: masses(&arrays, "masses", count)?,
@@ -90,19 +89,46 @@ fn lengths(
     ends.as_chunks::<2>().0.iter().enumerate().map(spring).collect()
 }
 
-/// Springs on the contents of simplices.
-fn contents(arrays: &Arrays, d: usize, count: usize) -> Result<Vec<MeasureSpring>> {
-    let Some((nodes, width)) = arrays.places("volumes", &[d + 1])? else { return Ok(Vec::new()) };
-    let size = nodes.len() / width;
-    let constants = arrays.list("k_volume", size)?.ok_or_else(|| Error::expected("k_volume", "an array", "none"))?;
-    let rest = arrays.list("rest_volume", size)?.ok_or_else(|| Error::expected("rest_volume", "an array", "none"))?;
+/// Springs on the contents of simplices and on turns.
+fn others(arrays: &Arrays, d: usize, count: usize) -> Result<Vec<MeasureSpring>> {
     let mut parts = Parts::default();
-    for (s, nodes) in nodes.chunks_exact(width).enumerate() {
-        let key = format!("volumes[{s}]");
-        let points = nodes.iter().map(|&p| place(&key, p, 0, count)).collect::<Result<SmallVec<_>>>()?;
-        parts.contents.push(ContentPart { points, constant: constants[s], rest: rest[s] });
+    let content = |points: Vec<usize>, constant, rest| ContentPart { points: points.into(), constant, rest };
+    listed(arrays, ["volumes", "k_volume", "rest_volume"], d + 1, count, |points, constant, rest| {
+        parts.contents.push(content(points, constant, rest));
+    })?;
+    if d == 3 {
+        listed(arrays, ["areas", "k_area", "rest_area"], 3, count, |points, constant, rest| {
+            parts.contents.push(content(points, constant, rest));
+        })?;
+        listed(arrays, ["hinges", "k_hinge", "rest_hinge"], HINGE_POINTS, count, |points, constant, rest| {
+            let points = std::array::from_fn(|place| points[place]);
+            parts.hinges.push(HingePart { points, constant, rest });
+        })?;
     }
     Ok(parts.network(d).others)
+}
+
+/// Takes the springs of three arrays: points, of which each spring has `width`, constants and rest measures. Without the first there are none.
+fn listed(
+    arrays: &Arrays,
+    [places, constants, rest]: [&str; 3],
+    width: usize,
+    count: usize,
+    mut take: impl FnMut(Vec<usize>, f64, f64),
+) -> Result<()> {
+    let Some((nodes, width)) = arrays.places(places, &[width])? else { return Ok(()) };
+    let size = nodes.len() / width;
+    let of_springs = |name: &str| arrays.list(name, size)?.ok_or_else(|| Error::expected(name, "an array", "none"));
+    let (constants, rest) = (of_springs(constants)?, of_springs(rest)?);
+    for (s, nodes) in nodes.chunks_exact(width).enumerate() {
+        let key = format!("{places}[{s}]");
+        let points = nodes.iter().map(|&p| place(&key, p, 0, count)).collect::<Result<Vec<_>>>()?;
+        if let Some(twice) = (0..width).find(|&i| points[..i].contains(&points[i])) {
+            return Err(Error::expected(key, "different points", format!("point {} twice", points[twice])));
+        }
+        take(points, constants[s], rest[s]);
+    }
+    Ok(())
 }
 
 fn masses(arrays: &Arrays, name: &str, count: usize) -> Result<Option<Vec<f64>>> {

@@ -56,7 +56,7 @@ pub(super) fn check_residual(residual: f64, largest: f64, case: &Case) -> Result
 /// Makes the error of finite elements whose stiffness is not positive definite.
 pub(super) fn not_definite(mesh: &Mesh) -> Error {
     let why = "the finite element stiffness is not positive definite: some motion has no stiffness";
-    let bending = "; surfaces and curves resist no bending, so hold their points across them";
+    let bending = "; surfaces and curves resist no bending, so hold their points across them, or give triangles bending = \"plate\" in [material]";
     let mixed = "; the membranes and rods of the body resist no bending, so their points that no solid cell has are held across them";
     let hint = match (mesh.cell_dimension() < mesh.dimension, mesh.is_mixed()) {
         (true, _) => bending,

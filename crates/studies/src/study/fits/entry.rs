@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::file;
 use crate::fit::Objective;
 use crate::fit::published::Method;
+use crate::model::BendingSprings;
 use crate::named::{suggestion, unknown};
 use crate::study::keys::keys;
 use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
@@ -31,11 +32,13 @@ pub struct FitEntry {
     pub springs: Option<Vec<String>>,
     /// The settings of the engine that the constants are for.
     pub engine: Option<EngineEntry>,
+    /// Which springs resist the bending of a sheet; those of directors if absent.
+    pub bending: Option<BendingSprings>,
     keys: Table,
 }
 
 /// The keys that all fits have.
-pub(super) const COMMON: [&str; 4] = ["name", "objective", "springs", "engine"];
+pub(super) const COMMON: [&str; 5] = ["name", "objective", "springs", "engine", "bending"];
 
 fn json_text(value: &Value) -> String {
     serde_json::to_string(value).expect("keys are text")
@@ -104,14 +107,16 @@ impl Kind {
 impl FitEntry {
     /// An entry with this objective and no other keys.
     pub fn new(objective: impl Into<String>) -> FitEntry {
-        let (name, springs, engine, keys) = Default::default();
-        FitEntry { name, objective: objective.into(), springs, engine, keys }
+        let (name, springs, engine, bending, keys) = Default::default();
+        FitEntry { name, objective: objective.into(), springs, engine, bending, keys }
     }
 
     /// What is set, as `key = value` with values in JSON, sorted by the keys: what tells one fit from another on disk.
     pub fn identity(&self) -> Vec<String> {
         let springs = self.springs.as_ref().map(|names| Value::from(names.clone()));
-        let common = [("objective", Some(Value::from(self.objective.clone()))), ("springs", springs)];
+        let bending = self.bending.map(|springs| Value::from(springs.name()));
+        let common =
+            [("objective", Some(Value::from(self.objective.clone()))), ("springs", springs), ("bending", bending)];
         let common = common.into_iter().filter_map(|(key, value)| Some((key.to_string(), value?)));
         let engine = self.engine.as_ref().map(EngineEntry::identity);
         let mut set: Vec<String> =
@@ -213,8 +218,9 @@ impl FitEntry {
     }
 
     fn fit(&self, name: Option<String>, recipe: Recipe) -> NamedFit {
-        let name = name.unwrap_or_else(|| recipe.name(self.springs.as_deref()));
-        NamedFit::named(name, recipe, self.springs.clone())
+        let of_hinges = if self.bending == Some(BendingSprings::Hinges) { " hinges" } else { "" };
+        let name = name.unwrap_or_else(|| recipe.name(self.springs.as_deref()) + of_hinges);
+        NamedFit::named(name, recipe, self.springs.clone()).bending_by(self.bending)
     }
 
     /// The keys of the entry as a `T`.
@@ -302,6 +308,10 @@ impl<'de> Visitor<'de> for EntryVisitor {
                 "objective" => objective = Some(map.next_value()?),
                 "springs" => entry.springs = Some(map.next_value::<Groups>()?.0),
                 "engine" => entry.engine = Some(map.next_value()?),
+                "bending" => {
+                    let name: String = map.next_value()?;
+                    entry.bending = Some(BendingSprings::named(&name).map_err(|e| A::Error::custom(e.problem()))?);
+                }
                 _ => {
                     let value = map.next_value()?;
                     entry.keys.insert(key, value);

@@ -3,6 +3,7 @@
 use super::recipe::Recipe;
 use crate::engine::Setting;
 use crate::fit::Fit;
+use crate::model::BendingSprings;
 
 /// A fit, its name in reports, and its spring groups.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +16,8 @@ pub struct NamedFit {
     pub springs: Option<Vec<String>>,
     /// The settings of the engine that the constants are for; `None` where equations are solved to the end.
     pub engine: Option<Setting>,
+    /// Which springs resist the bending of a sheet; those of directors if absent.
+    pub bending: Option<BendingSprings>,
     /// The number of its `[[fit]]` in the scene file.
     entry: Option<usize>,
 }
@@ -32,7 +35,7 @@ impl NamedFit {
 
     /// A fit by this recipe, under the given name.
     pub fn named(name: impl Into<String>, recipe: Recipe, springs: Option<Vec<String>>) -> NamedFit {
-        NamedFit { name: name.into(), recipe, springs, engine: None, entry: None }
+        NamedFit { name: name.into(), recipe, springs, engine: None, bending: None, entry: None }
     }
 
     /// The fit for the settings of an engine.
@@ -42,6 +45,12 @@ impl NamedFit {
             recipe.engine = engine;
         }
         NamedFit { engine, ..self }
+    }
+
+    /// The fit with these springs that resist bending.
+    #[must_use]
+    pub fn bending_by(self, bending: Option<BendingSprings>) -> NamedFit {
+        NamedFit { bending, ..self }
     }
 
     /// Marks the fit as that of the `[[fit]]` with this number, from 0.

@@ -8,6 +8,7 @@ use super::sampled::SampledEntry;
 use super::stiffness::StiffnessEntry;
 use super::whole::WholeEntry;
 use crate::element::GROUP_CHOICES;
+use crate::model::BendingSprings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
@@ -56,7 +57,7 @@ fn alternative(kind: Kind, generator: &mut SchemaGenerator) -> Value {
 
 /// The keys that all fits have.
 fn common(kind: Kind, generator: &mut SchemaGenerator) -> [(String, Value); COMMON.len()] {
-    let [name, objective, springs, engine] = COMMON.map(String::from);
+    let [name, objective, springs, engine, bending] = COMMON.map(String::from);
     let names = json!({
         "type": "string",
         "description": "Tables and files call the fit by this name. No two fits have the same name, and no fit is called `finite elements`.",
@@ -80,7 +81,16 @@ fn common(kind: Kind, generator: &mut SchemaGenerator) -> [(String, Value); COMM
                                body. A whole-object fit finds its constants so; others are multiplied by one factor for springs on lengths \
                                and one for those on contents. It needs a density."
         .into();
-    [(name, names), (objective, objectives), (springs, groups), (engine, settings)]
+    let sheets = json!({
+        "type": "string",
+        "enum": BendingSprings::NAMES,
+        "description": "A sheet, whose material has bending = \"plate\", resists bending by these springs. `directors` are the plate at any Poisson's ratio. `hinges` \
+                        are springs on the angles between triangles, which other programs hold; Poisson's ratio of their bending is near −1/3 whatever that of \
+                        the material is.",
+        "x-type": "`\"directors\"`, `\"hinges\"`",
+        "x-default": "`\"directors\"` of a sheet",
+    });
+    [(name, names), (objective, objectives), (springs, groups), (engine, settings), (bending, sheets)]
 }
 
 /// The properties of the keys that a kind has.

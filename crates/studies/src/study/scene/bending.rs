@@ -1,8 +1,9 @@
 //! Whether a surface bends.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
+use crate::range::positive;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -18,18 +19,32 @@ pub enum Bending {
 }
 
 impl Bending {
-    /// The mesh with what resists bending, if anything does; `material_of` has the thicknesses.
+    /// The mesh with what resists bending, if anything does; `material_of` has the thicknesses. `flexural` is the flexural stiffness D, N·m, if it is not that of the
+    /// thickness: then `D/C_xx` of the stiffness C of the membrane has the place of `t²/12`, in the rotary inertia too.
     ///
     /// # Errors
-    /// Those of the material; or the mesh is no surface of triangles in space.
-    pub fn of(self, mesh: Mesh, material_of: impl Fn(&Mesh) -> Result<MaterialMap>) -> Result<Mesh> {
-        match self {
-            Bending::None => Ok(mesh),
-            Bending::Plate => {
-                let gyration = material_of(&mesh)?.thicknesses().map(|t| t * t / 12.0);
-                let of_cells = mesh.cell_indices().map(|cell| *gyration.at(cell.block, cell.cell)).collect();
-                mesh.with_directors(of_cells)
+    /// Those of the material; the mesh is no surface of triangles in space; or the flexural stiffness is not above zero, or belongs to no plate.
+    pub fn of(
+        self,
+        mesh: Mesh,
+        flexural: Option<f64>,
+        material_of: impl Fn(&Mesh) -> Result<MaterialMap>,
+    ) -> Result<Mesh> {
+        if let Some(flexural) = flexural {
+            positive("flexural", flexural, "N·m")?;
+            if self == Bending::None {
+                return Err(Error::expected("flexural", "bending = \"plate\" beside it", "none"));
             }
         }
+        if self == Bending::None {
+            return Ok(mesh);
+        }
+        let material = material_of(&mesh)?;
+        let gyration = match flexural {
+            None => material.thicknesses().map(|t| t * t / 12.0),
+            Some(flexural) => material.moduli().map(|hooke| flexural / hooke.entries(2).0[0]),
+        };
+        let of_cells = mesh.cell_indices().map(|cell| *gyration.at(cell.block, cell.cell)).collect();
+        mesh.with_directors(of_cells)
     }
 }

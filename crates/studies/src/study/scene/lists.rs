@@ -46,6 +46,10 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
             let expected = "fits to cells, without an engine, of a sheet with bending = \"plate\"";
             return Err(Error::expected(place, expected, "another").of_kind(ErrorKind::Unsupported));
         }
+        if fit.bending.is_some() && material.first().bending != Bending::Plate {
+            let expected = "a sheet with bending = \"plate\" in its material";
+            return Err(Error::expected(format!("{place}.bending"), expected, "a body that does not bend as one"));
+        }
         fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
     }
     Ok(())

@@ -89,6 +89,10 @@ pub struct MaterialEntry {
     /// A surface in space of triangles resists bending as this says. It is the same in every entry of `[[material]]`.
     #[serde(default)]
     pub bending: Bending,
+    /// A sheet that bends has this flexural stiffness D in N·m, above 0, in place of that of its thickness, as cloth, laminates and lipid layers have. It is the same in
+    /// every entry of `[[material]]`.
+    #[schemars(extend("x-default" = "`E t³/(12 (1 − ν²))`"))]
+    pub flexural: Option<f64>,
     /// Rods have this cross-section in m², above 0.
     #[serde(default, deserialize_with = "value::optional_area")]
     #[schemars(schema_with = "value::area_schema", extend("x-default" = "1 m²"))]
@@ -376,6 +380,7 @@ impl MaterialEntries {
             };
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
             same("bending", entry.bending == first.bending)?;
+            same("flexural", entry.flexural == first.flexural)?;
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));

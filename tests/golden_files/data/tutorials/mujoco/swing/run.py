@@ -6,11 +6,12 @@
     python run.py --load N   any of these under the load N of the scene as well
     python run.py --rest F 1e4 0.3   the same with the program's own finite elements, E = 1e4 Pa and nu = 0.3, to compare
 
-What was converted: the springs are the stiffness of a flex of tetrahedra. MuJoCo's energy of a tetrahedron is
-1/4 sum_ab M_ab e_a e_b over its six edges, with e = l^2 - L^2, l the length of an edge and L that at rest. A spring of constant k
-and rest length L is M_aa = k/(2 L^2) in one tetrahedron that has the edge; a spring of constant K on the volume V is
+What was converted: the springs are the stiffness of a flex of tetrahedra, or of the triangles of a sheet. MuJoCo's energy of a cell is
+1/4 sum_ab M_ab e_a e_b over its edges, with e = l^2 - L^2, l the length of an edge and L that at rest. A spring of constant k
+and rest length L is M_aa = k/(2 L^2) in one cell that has the edge; a spring of constant K on the volume or area V is
 M = 2 K c c^T + 2 T C at rest, with c and C the first and second derivatives of V by e and T = K (V - rest). The energy is equal up
-to second order in e, so that small deformations are those of the network and large ones are not.
+to second order in e, so that small deformations are those of the network and large ones are not. A hinge of constant k between two
+triangles has the energy k/2 |sum_a w_a x_a|^2, whose weights w give the angle of both where they are nearly flat; sheets are flat at rest.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -79,8 +80,20 @@ def judge(net, x):
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
 points, masses, springs, k, rest = (net[name] for name in ["points", "masses", "springs", "k", "rest"])
-tets, volumes, k_volume, rest_volume = (net[name] for name in ["tets", "volumes", "k_volume", "rest_volume"])
+is_sheet = not len(net["tets"])
+cells = net["surface" if is_sheet else "tets"]
+contents, k_content, rest_content = (net.get(name, np.empty(0)) for name in (["areas", "k_area", "rest_area"] if is_sheet else ["volumes", "k_volume", "rest_volume"]))
 step = 0.002  # s; the integrator "discrete" is implicit in the stiffness
+
+
+def area_by_edges(x):
+    """A, dA/de and d2A/de2 of a triangle, from 16 A^2, a quadratic polynomial of the squared edge lengths."""
+    pairs = [(a, b) for a in range(3) for b in range(a)]
+    s = np.array([np.sum((x[a] - x[b]) ** 2) for a, b in pairs])
+    q = np.ones((3, 3)) - 2 * np.eye(3)  # 16 A^2 = s.q.s
+    area = np.sqrt(s @ q @ s) / 4
+    slope = q @ s / (16 * area)
+    return area, slope, (q / 16 - np.outer(slope, slope)) / area, {frozenset(pair): a for a, pair in enumerate(pairs)}
 
 
 def volume_by_edges(x):
@@ -114,8 +127,10 @@ def volume_by_edges(x):
 
 
 def model(material=None):
-    """The model, with the stiffness of the springs; or MuJoCo's own finite elements of the same tetrahedra, of material (E, nu)."""
-    young, poisson = material or (1.0, 0.0)
+    """The model, with the stiffness of the springs; or MuJoCo's own finite elements of the same cells, of material (E, nu) or for a
+    sheet (E, nu, thickness)."""
+    young, poisson, *thickness = material or (1.0, 0.0, *[1.0] * is_sheet)
+    of_sheet = f'thickness="{thickness[0]!r}" elastic2d="both"' if is_sheet else ""
     text = lambda values: " ".join(map(repr, np.asarray(values).ravel().tolist()))
     gravity = text(net["gravity"])
     pins = f'<pin id="{text(net["fixed"])}"/>' if len(net["fixed"]) else ""
@@ -126,10 +141,10 @@ def model(material=None):
       <visual><map znear="0.001"/></visual>
       <worldbody>
         <light pos="0 0 3"/>
-        <flexcomp name="network" type="direct" dim="3" radius="1e-5" mass="{float(masses.sum())!r}" rgba=".8 .4 .3 1"
-            point="{text(points)}" element="{text(tets)}">
+        <flexcomp name="network" type="direct" dim="{2 if is_sheet else 3}" radius="1e-5" mass="{float(masses.sum())!r}" rgba=".8 .4 .3 1"
+            point="{text(points)}" element="{text(cells)}">
           <contact contype="0" conaffinity="0" selfcollide="none"/>
-          <elasticity young="{young!r}" poisson="{poisson!r}" damping="1e-9"/>
+          <elasticity young="{young!r}" poisson="{poisson!r}" damping="1e-9" {of_sheet}/>
           {pins}
         </flexcomp>
       </worldbody>
@@ -143,30 +158,54 @@ def model(material=None):
     m.dof_damping[:] = float(net["damping"]) * m.body_mass[m.dof_bodyid]
     if material:
         return m
-    elements = m.flex_elem.reshape(-1, 4)
-    ends = m.flex_edge[m.flex_elemedge.reshape(-1, 6)]
+    elements = m.flex_elem.reshape(-1, cells.shape[1])
+    edges_of_cell = 3 if is_sheet else 6
+    ends = m.flex_edge[m.flex_elemedge.reshape(-1, edges_of_cell)]
     place = {}
     for t, edges in enumerate(ends):
         for a, edge in enumerate(edges):
             place.setdefault(frozenset(edge.tolist()), (t, a))
-    stiffness = np.zeros((len(elements), 6, 6))
+    stiffness = np.zeros((len(elements), edges_of_cell, edges_of_cell))
     for (i, j), constant, length in zip(springs.tolist(), k, rest):
         if length > 0:  # springs of rest length zero are linear in e: they balance the volume springs
             t, a = place[frozenset((i, j))]
             stiffness[t, a, a] += constant / (2 * length**2)
     of_corners = {frozenset(corners.tolist()): t for t, corners in enumerate(elements)}
-    for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
+    by_edges = area_by_edges if is_sheet else volume_by_edges
+    for corners, constant, at_rest in zip(contents, k_content, rest_content):
         t = of_corners[frozenset(corners.tolist())]
-        volume, slope, bend, names = volume_by_edges(points[corners])
+        content, slope, bend, names = by_edges(points[corners])
         order = [names[frozenset(np.flatnonzero(corners == p)[0] for p in edge)] for edge in ends[t]]
-        matrix = 2 * constant * (np.outer(slope, slope) + (volume - at_rest) * bend)
+        matrix = 2 * constant * (np.outer(slope, slope) + (content - at_rest) * bend)
         stiffness[t] += matrix[np.ix_(order, order)]
-    rows, columns = np.triu_indices(6)
+    rows, columns = np.triu_indices(edges_of_cell)
     stored = np.zeros((len(elements), m.flex_stiffness.size // len(elements)))
-    stored[:, :21] = stiffness[:, rows, columns]
-    stored[stored[:, 0] == 0, 0] = 1e-30  # MuJoCo leaves out tetrahedra whose first number is zero
+    stored[:, : len(rows)] = stiffness[:, rows, columns]
+    stored[stored[:, 0] == 0, 0] = 1e-30  # MuJoCo leaves out cells whose first number is zero
     m.flex_stiffness[:] = stored.reshape(m.flex_stiffness.shape)
+    if is_sheet:
+        m.flex_bending[:] = bending(m).reshape(m.flex_bending.shape)
     return m
+
+
+def bending(m):
+    """MuJoCo has for each edge the matrix B of k/2 sum_ab B_ab x_a.x_b over its ends and both apexes, and a number that is zero of flat sheets."""
+    stored = np.zeros((len(m.flex_edge), 17))
+    own = {frozenset(edge.tolist()): e for e, edge in enumerate(m.flex_edge)}
+    for (apex, a, b, other), constant in zip(net.get("hinges", np.empty((0, 4), int)).tolist(), net.get("k_hinge", [])):
+        e = own[frozenset((a, b))]
+        if {apex, other} != set(m.flex_edgeflap[e].tolist()):
+            sys.exit(f"the hinge at points {a} and {b} is at an edge of more than two triangles, which MuJoCo does not hold")
+        along = points[b] - points[a]
+        weights = dict.fromkeys((apex, a, b, other), 0.0)
+        for corner in (apex, other):
+            foot = (points[corner] - points[a]) @ along / (along @ along)
+            height = np.linalg.norm(points[corner] - points[a] - foot * along)
+            for point, weight in ((corner, 1), (a, foot - 1), (b, -foot)):
+                weights[point] += weight / height
+        w = np.array([weights[point] for point in [*m.flex_edge[e], *m.flex_edgeflap[e]]])
+        stored[e, :16] = constant * np.outer(w, w).ravel()
+    return stored
 
 
 def start(m, forces=None):

@@ -1,15 +1,18 @@
-//! How far a triangle has turned from the directors of its edges.
+//! How far triangles have turned about their edges.
 //!
 //! Theory: page *Sheets that bend* of the book.
 
 use crate::scalar::{Dual, Real};
 use crate::symbolic::Jet;
+use smallvec::SmallVec;
 
 /// A vector in space.
 type Vector<T> = [T; 3];
 
-/// The points of a bend: the corners of a triangle, and the director of the edge opposite to each of them.
+/// The points by which a triangle measures how it bends: its corners, and the director of the edge opposite to each of them.
 pub const BEND_POINTS: usize = 6;
+/// The points of a hinge: the corner of a triangle opposite to an edge, the ends of this edge as the triangle runs through it, and a point beyond the edge.
+pub const HINGE_POINTS: usize = 4;
 
 /// The corners and the director of the turn at the edge opposite to a corner, as places in the points of a bend: the corner itself, the edge as
 /// the triangle runs through it, and the director.
@@ -17,24 +20,59 @@ pub fn turn_points(corner: usize) -> [usize; 4] {
     [corner, (corner + 1) % 3, (corner + 2) % 3, corner + 3]
 }
 
-/// `c = Σ_i w_i a_i`, in m: a weighted sum of the turns of a triangle about its edges. The turn a_i is the angle from the conormal of the triangle, which
-/// points out of it at the edge opposite to corner i, to the direction from this edge to its director. It is positive towards the normal.
+/// `c = Σ_i w_i a_i`: a weighted sum of turns of triangles about their edges, in m or rad. The turn a_i is the angle from the conormal of the triangle, which
+/// points out of it at the edge, to the direction from this edge to a point. It is positive towards the normal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Turns(SmallVec<[Turn; 3]>);
+
+/// One of the turns, and its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bend {
-    /// The weights w_i, m.
-    pub weights: [f64; 3],
+struct Turn {
+    /// The corner of the triangle opposite to the edge, the ends of this edge as the triangle runs through it, and the point, as places in the points of
+    /// the spring.
+    places: [u8; 4],
+    weight: f64,
 }
 
-impl Bend {
+impl Turns {
+    /// The turns of a triangle from the directors of its edges, with these weights, in the order of [`turn_points`].
+    pub fn of_triangle(weights: [f64; 3]) -> Turns {
+        let turn = |(corner, weight)| Turn { places: turn_points(corner).map(|place| place as u8), weight };
+        Turns(weights.into_iter().enumerate().map(turn).collect())
+    }
+
+    /// The one turn of [`HINGE_POINTS`] points: from the plane of the triangle to the last point, rad.
+    pub fn of_hinge() -> Turns {
+        Turns(SmallVec::from_slice(&[Turn { places: [0, 1, 2, 3], weight: 1.0 }]))
+    }
+
+    /// Turns of these places and weights on `points` points; none if a place is not below their number, two places of a turn are equal, or there are no
+    /// turns.
+    pub fn new<'a>(turns: impl IntoIterator<Item = (&'a [usize], f64)>, points: usize) -> Option<Turns> {
+        let turn = |(places, weight): (&[usize], f64)| {
+            let places = <[usize; 4]>::try_from(places).ok()?;
+            let is_apart = (0..4).all(|i| !places[..i].contains(&places[i]));
+            let is_in = places.iter().all(|&place| place < points.min(256));
+            (is_in && is_apart && weight.is_finite()).then(|| Turn { places: places.map(|place| place as u8), weight })
+        };
+        let turns: Option<SmallVec<[Turn; 3]>> = turns.into_iter().map(turn).collect();
+        turns.filter(|turns| !turns.is_empty()).map(Turns)
+    }
+
+    /// The places and the weight of each turn.
+    pub fn iter(&self) -> impl Iterator<Item = ([usize; 4], f64)> + '_ {
+        self.0.iter().map(|turn| (turn.places.map(usize::from), turn.weight))
+    }
+
     pub(super) fn value(&self, x: &[f64]) -> f64 {
-        (0..3).map(|i| self.weights[i] * turn(&points(x, i))).sum()
+        self.iter().map(|(places, weight)| weight * turn(&points(x, places))).sum()
     }
 
     pub(super) fn gradient(&self, x: &[f64]) -> Vec<f64> {
-        let mut gradient = vec![0.0; 3 * BEND_POINTS];
-        for (i, weight) in self.weights.iter().enumerate() {
-            let slopes = slopes(&points(x, i));
-            for (k, &dof) in dofs(i).iter().enumerate() {
+        let mut gradient = vec![0.0; x.len()];
+        for (places, weight) in self.iter() {
+            let slopes = slopes(&points(x, places));
+            for (k, dof) in dofs(places).into_iter().enumerate() {
                 gradient[dof] += weight * slopes[k / 3][k % 3];
             }
         }
@@ -42,13 +80,13 @@ impl Bend {
     }
 
     pub(super) fn jet(&self, x: &[f64]) -> Jet {
-        let n = 3 * BEND_POINTS;
+        let n = x.len();
         let mut jet = Jet { value: self.value(x), gradient: vec![0.0; n], hessian: vec![0.0; n * n] };
-        for (i, weight) in self.weights.iter().enumerate() {
-            let mut variables = points(x, i).map(|point| point.map(Dual::<12>::steady));
+        for (places, weight) in self.iter() {
+            let mut variables = points(x, places).map(|point| point.map(Dual::<12>::steady));
             variables.as_flattened_mut().iter_mut().enumerate().for_each(|(k, dual)| dual.slopes[k] = 1.0);
             let slopes = slopes(&variables);
-            let dofs = dofs(i);
+            let dofs = dofs(places);
             for (k, slope) in slopes.as_flattened().iter().enumerate() {
                 jet.gradient[dofs[k]] += weight * slope.value;
                 for (l, bend) in slope.slopes.iter().enumerate() {
@@ -60,14 +98,13 @@ impl Bend {
     }
 }
 
-/// The positions of the points of the turn at the edge opposite to a corner.
-fn points(x: &[f64], corner: usize) -> [Vector<f64>; 4] {
-    turn_points(corner).map(|place| std::array::from_fn(|k| x[3 * place + k]))
+/// The positions of the points of a turn.
+fn points(x: &[f64], places: [usize; 4]) -> [Vector<f64>; 4] {
+    places.map(|place| std::array::from_fn(|k| x[3 * place + k]))
 }
 
-/// Their coordinates, as places in those of the points of the bend.
-fn dofs(corner: usize) -> [usize; 12] {
-    let places = turn_points(corner);
+/// Their coordinates, as places in those of all points of the spring.
+fn dofs(places: [usize; 4]) -> [usize; 12] {
     std::array::from_fn(|k| 3 * places[k / 3] + k % 3)
 }
 
