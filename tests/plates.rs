@@ -570,7 +570,7 @@ fn hinges_need_no_directors() {
     let mut fixed = Support { prescribed: vec![None; points.len()] };
     let held: Vec<usize> = record.held.iter().map(|held| held.point).collect();
     fixed.fix(&held, &[0, 1, 2], 3);
-    for size in [1e-4, 1.0] {
+    for size in [1e-4, 0.2] {
         let force = |count: usize| {
             let mut force = vec![0.0; count];
             ends[5..].iter().for_each(|p| force[3 * p + 1] = size);
@@ -579,12 +579,12 @@ fn hinges_need_no_directors() {
         let newton = Newton { steps: 20, ..Newton::default() };
         let [one, other] = [(&network, &mesh.points, &support), (&own, &points, &fixed)].map(|(net, x, support)| {
             let found = newton.solve(net, x, support, &force(x.len())[..]).unwrap();
-            assert_eq!(found.ending, Ending::Converged);
+            assert_eq!(found.ending, Ending::Converged, "{} of {size} N, {} points", found.load, x.len() / 3);
             found.displacement
         });
         let nodes = 3 * mesh.node_count();
         let largest = one[..nodes].iter().fold(0.0, |a: f64, u| a.max(u.abs()));
-        assert!(size < 0.5 || largest > 0.1, "{largest}");
+        assert!(size < 0.1 || largest > 0.05, "{largest}");
         let apart = one[..nodes].iter().zip(&other).fold(0.0, |a: f64, (u, v)| a.max((u - v).abs()));
         assert!(apart < 1e-6 * largest, "{size}: {apart} of {largest}");
     }
