@@ -80,6 +80,7 @@ mod plot;
 mod prepared;
 mod pressure;
 mod programs;
+mod prony;
 mod published;
 mod quadrature;
 mod quantities;

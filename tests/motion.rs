@@ -368,7 +368,7 @@ fn wrong_keys_are_told() {
             "linear = true",
             "lineal = true",
             ":17: motion.lineal: unknown field \"lineal\", expected one of \"duration\", \"step\", \"integrator\", \
-             \"iterations\", \"tolerance\", \"linear\", \"account\", \"precision\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
+             \"iterations\", \"tolerance\", \"linear\", \"quasi-static\", \"error\", \"account\", \"precision\", \"solver\", \"remainder\", \"mass\", \"gravity\", \"damping\", \
              \"every\", \"watch\", \"finite_elements\", \"pull\", \"force\"",
         ),
         ("linear = true", "linear = true\niterations = 3", "motion.iterations: … found with linear = true"),

@@ -146,7 +146,7 @@ const LOST: f64 = 0.01;
 /// of its amplitude.
 fn loss(motion: &MotionOutcome) -> Option<String> {
     let integrator = motion.recipe.options.integrator;
-    if !matches!(integrator, Integrator::ImplicitEuler | Integrator::Bdf2) {
+    if motion.recipe.options.quasi_static || !matches!(integrator, Integrator::ImplicitEuler | Integrator::Bdf2) {
         return None;
     }
     let lost = |model: &ModelMotion| Some((-model.records.last()?.account.balance.as_ref()?.drift, model.name.clone()));

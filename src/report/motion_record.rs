@@ -108,7 +108,7 @@ impl From<&MotionOutcome> for MotionOptionsRecord {
             duration: recipe.duration,
             step: options.step,
             steps: recipe.steps,
-            integrator: options.integrator.name().into(),
+            integrator: options.method().into(),
             precision: recipe.precision.name().into(),
             linear: options.linear,
             iterations: is_newton.then_some(options.iterations),

@@ -443,6 +443,30 @@ group = "zmax"
 force = ["1 - t", 0, 0]
 "#;
 
+/// A cube that creeps, without inertia.
+pub const CREEP: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+[material.relaxation]
+terms = [{ shear = 0.4, bulk = 0.2, time = 0.5 }]
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+quasi-static = true
+error = 0.01
+linear = true
+duration = 0.2
+step = 0.1
+[[motion.force]]
+group = "zmax"
+force = [0, 0, 1.0]
+"#;
+
 /// With finite elements that follow a law in motion, explicitly.
 pub const EXPLICIT: &str = r#"
 [mesh]
@@ -520,6 +544,7 @@ pub const ALL: [(&str, &str); 17] = [
     ("motion", MOTION),
     ("damped", DAMPED),
     ("explicit", EXPLICIT),
+    ("creep", CREEP),
 ];
 
 /// Files that the scenes name.

@@ -217,7 +217,7 @@ fn drive(motion: &MotionOutcome) -> DriveRecord {
         step: recipe.options.step,
         every: recipe.every,
         steps: recipe.steps,
-        integrator: recipe.options.integrator.name().into(),
+        integrator: recipe.options.method().into(),
         linear: recipe.options.linear,
         watched: motion.watched.clone(),
         forces: motion

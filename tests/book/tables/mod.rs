@@ -6,6 +6,7 @@
 mod bodies;
 mod cantilevers;
 mod choice;
+mod forgetful;
 mod large;
 mod lattices;
 mod motion;
@@ -46,7 +47,8 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 18] = [
+const MAKERS: [Maker; 19] = [
+    ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
     ("bodies", bodies::table, false, Kept::ToRounding),

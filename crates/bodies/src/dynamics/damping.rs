@@ -19,6 +19,11 @@ pub struct Damping {
 }
 
 impl Damping {
+    /// Whether nothing opposes velocities.
+    pub fn is_none(&self) -> bool {
+        self.mass == 0.0 && self.stiffness == 0.0 && self.dampers.is_none()
+    }
+
     pub(super) fn check(&self, points: usize) -> Result<()> {
         for (key, value) in [("damping.mass", self.mass), ("damping.stiffness", self.stiffness)] {
             if !(value >= 0.0 && value.is_finite()) {

@@ -37,7 +37,7 @@ impl Account {
 pub struct EnergyBalance {
     /// The work of loads, gravity and moved supports, J.
     pub work: f64,
-    /// The energy that damping forces have dissipated, J.
+    /// The energy that damping forces and relaxing stress have dissipated, J.
     pub dissipated: f64,
     /// The energy that the method has gained or lost, `E − E(0) − work + dissipated`, relative to the largest of these
     /// energies so far, each without the kinetic energy of the held degrees of freedom.
@@ -46,7 +46,7 @@ pub struct EnergyBalance {
 
 /// The running sums, over all steps and degrees of freedom. The motion of held ones is prescribed: their kinetic energy, which is large
 /// where a prescribed displacement jumps, is no part of the sums.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Ledger {
     pub work: Sum,
     pub dissipated: Sum,

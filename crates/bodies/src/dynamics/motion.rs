@@ -3,6 +3,7 @@
 use super::damping::Damping;
 use super::drive::Drive;
 use super::integrator::Integrator;
+use super::memory::Memory;
 use super::solver::LinearSolver;
 use crate::error::{Error, Result};
 use crate::model::{Elastic, Support};
@@ -21,6 +22,8 @@ pub struct Motion<'a> {
     pub support: Support,
     /// The damping.
     pub damping: Damping,
+    /// What the model remembers beside its elastic forces: stress that relaxes.
+    pub memory: Option<Memory>,
     /// Forces and prescribed displacements over time.
     pub drive: Drive,
 }
@@ -29,7 +32,7 @@ impl<'a> Motion<'a> {
     /// A free model without damping, loads or supports.
     pub fn free(model: &'a dyn Elastic, points: &'a [f64], masses: &'a [f64]) -> Motion<'a> {
         let support = Support { prescribed: vec![None; points.len()] };
-        Motion { model, points, masses, support, damping: Damping::default(), drive: Drive::default() }
+        Motion { model, points, masses, support, damping: Damping::default(), memory: None, drive: Drive::default() }
     }
 
     pub(super) fn dimension(&self) -> usize {
@@ -43,7 +46,7 @@ impl<'a> Motion<'a> {
         held
     }
 
-    pub(super) fn check(&self) -> Result<()> {
+    pub(super) fn check(&self, options: &Options) -> Result<()> {
         let (dofs, points) = (self.points.len(), self.masses.len());
         let d = self.dimension();
         if !(1..=3).contains(&d) || d * points != dofs {
@@ -59,6 +62,21 @@ impl<'a> Motion<'a> {
         }
         self.drive.check(dofs, d)?;
         self.damping.check(points)?;
+        if let Some(memory) = &self.memory {
+            if memory.dofs() != dofs {
+                return Err(Error::expected("memory", format!("one of {dofs} degrees of freedom"), memory.dofs()));
+            }
+            if memory.is_linear() != options.linear {
+                let of = |linear| if linear { "of a linear model" } else { "at large deformation" };
+                return Err(Error::expected("memory", format!("one {}", of(options.linear)), of(memory.is_linear())));
+            }
+        }
+        if options.quasi_static {
+            return match self.damping.is_none() {
+                true => Ok(()),
+                false => Err(Error::expected("damping", "none in a motion without inertia", "some")),
+            };
+        }
         let held = self.held();
         for (p, &mass) in self.masses.iter().enumerate() {
             let moves = held[p * d..(p + 1) * d].contains(&false);
@@ -95,6 +113,12 @@ pub struct Options {
     /// Whether the model is linear, `F(x) ≈ F₀ + K₀ u`, with springs and dampers as they are at rest. Then all steps
     /// have the same matrix.
     pub linear: bool,
+    /// Whether inertia is left out: every state is in equilibrium, `F(x) = f(t)`, from the first on, which is that of the loads at time zero.
+    /// Masses then count for gravity alone.
+    pub quasi_static: bool,
+    /// Without inertia, the error of a step that is allowed, as a share of the largest displacement; a step is divided until its estimate is
+    /// smaller. `None` for steps that are not divided.
+    pub error: Option<f64>,
     /// The solver of the linear equations of implicit steps.
     pub solver: LinearSolver,
     /// Whether work and dissipation are summed; this costs the forces at the end of a step if they are not computed
@@ -105,11 +129,26 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Options {
         let (integrator, solver) = (Integrator::default(), LinearSolver::default());
-        Options { step: 0.01, integrator, iterations: 20, tolerance: 1e-10, linear: false, solver, account: true }
+        Options {
+            step: 0.01,
+            integrator,
+            iterations: 20,
+            tolerance: 1e-10,
+            linear: false,
+            quasi_static: false,
+            error: None,
+            solver,
+            account: true,
+        }
     }
 }
 
 impl Options {
+    /// The name of the method: that of the integrator, or `quasi-static` without inertia.
+    pub fn method(&self) -> &'static str {
+        if self.quasi_static { "quasi-static" } else { self.integrator.name() }
+    }
+
     pub(super) fn check(&self) -> Result<()> {
         if !(self.step > 0.0 && self.step.is_finite()) {
             return Err(Error::expected("step", "a time above zero in s", self.step));
@@ -119,6 +158,18 @@ impl Options {
         }
         if !(self.tolerance > 0.0) {
             return Err(Error::expected("tolerance", "a number above zero", self.tolerance));
+        }
+        if self.quasi_static && self.integrator != Integrator::ImplicitEuler {
+            let found = format!("\"{}\"", self.integrator.name());
+            return Err(Error::expected("integrator", "none in a motion without inertia", found));
+        }
+        if let Some(error) = self.error {
+            if !self.quasi_static {
+                return Err(Error::at("error", "belongs to motions without inertia"));
+            }
+            if !(error > 0.0 && error < 1.0) {
+                return Err(Error::expected("error", "a share above 0 and below 1", error));
+            }
         }
         self.solver.check()?;
         self.integrator.check()

@@ -2,6 +2,7 @@
 
 use super::damping::Damping;
 use super::equations::Equations;
+use super::memory::Memory;
 use super::motion::Motion;
 use super::pass;
 use super::rest::Rest;
@@ -16,6 +17,9 @@ pub(super) struct Resistance<'a> {
     pub rest: Rest,
     /// Whether the model is replaced by `F₀ + K₀ u`.
     linear: bool,
+    /// Stress that relaxes, and the number of entries of the tangent before those that it adds.
+    memory: Option<Memory>,
+    elastic_entries: usize,
     damping: Damping,
     /// The gradients of the dampers, where they were last computed.
     gradients: Vec<f64>,
@@ -32,10 +36,14 @@ impl<'a> Resistance<'a> {
     /// Prepares the forces, the damping and the masses of a motion; `has_equations` tells whether its method has equations to solve.
     pub fn new(motion: &Motion<'a>, linear: bool, has_equations: bool) -> Result<Resistance<'a>> {
         let d = motion.dimension();
+        let rest = Rest::new(motion.model, motion.points, motion.memory.as_ref(), has_equations)?;
+        let remembered = motion.memory.as_ref().map_or(0, |memory| memory.places().len());
         let mut resistance = Resistance {
             model: motion.model,
             points: motion.points,
-            rest: Rest::new(motion.model, motion.points, has_equations)?,
+            memory: motion.memory.clone(),
+            elastic_entries: rest.values().len() - remembered,
+            rest,
             linear,
             damping: motion.damping.clone(),
             gradients: Vec::new(),
@@ -75,34 +83,93 @@ impl<'a> Resistance<'a> {
         pass::place(&mut self.x, self.points, u);
     }
 
+    /// Forgets everything that was before the displacements u; false if there is no response.
+    pub fn reset(&mut self, u: &[f64]) -> bool {
+        self.memory.as_mut().is_none_or(|memory| memory.reset(u))
+    }
+
+    /// Sets the length of the step at whose end forces are computed, s; zero for the present ones.
+    pub fn prepare(&mut self, step: f64) {
+        if let Some(memory) = &mut self.memory {
+            memory.prepare(step);
+        }
+    }
+
+    /// Ends the step that was prepared at the displacements u.
+    pub fn advance(&mut self, u: &[f64]) {
+        if let Some(memory) = &mut self.memory {
+            memory.advance(u);
+        }
+    }
+
+    /// What is remembered.
+    pub fn memory(&self) -> Option<&Memory> {
+        self.memory.as_ref()
+    }
+
+    /// Remembers what was before.
+    pub fn remember(&mut self, memory: Option<Memory>) {
+        self.memory = memory;
+    }
+
+    /// What relaxing stress has dissipated, J.
+    pub fn relaxed(&self) -> f64 {
+        self.memory.as_ref().map_or(0.0, Memory::dissipated)
+    }
+
+    /// The entries of the tangent of a linear model, for the step that is prepared.
+    pub fn linear_tangent(&self) -> Vec<f64> {
+        let mut values = self.rest.values().to_vec();
+        if let Some(memory) = &self.memory {
+            let still = vec![0.0; self.points.len()];
+            memory.add(&still, &mut vec![0.0; still.len()], Some(&mut values[self.elastic_entries..]));
+        }
+        values
+    }
+
     /// The gradient of the energy at the displacements u, N; false if there is none.
     pub fn forces(&mut self, u: &[f64], force: &mut [f64]) -> bool {
-        if self.linear {
-            return self.rest.refill(u, force).is_finite();
-        }
-        self.place(u);
-        self.model.forces(&self.x, force) && pass::all(force, f64::is_finite)
+        let is_known = match self.linear {
+            true => self.rest.refill(u, force).is_finite(),
+            false => {
+                self.place(u);
+                self.model.forces(&self.x, force)
+            }
+        };
+        let is_remembered = |force: &mut [f64]| match &self.memory {
+            Some(memory) => memory.add(u, force, None).is_some(),
+            None => true,
+        };
+        is_known && is_remembered(force) && pass::all(force, f64::is_finite)
     }
 
     /// Writes the gradient of the energy at the displacements u, N, and the values of the entries of the tangent, or of a nearby positive
     /// semidefinite one if `definite`. Returns the energy, J.
     pub fn refill(&mut self, u: &[f64], force: &mut [f64], tangent: &mut [f64], definite: bool) -> Option<f64> {
         self.place(u);
-        let energy = match definite {
-            true => self.model.refill_definite(&self.x, force, tangent)?,
-            false => self.model.refill(&self.x, force, tangent)?,
+        let (elastic, remembered) = tangent.split_at_mut(self.elastic_entries);
+        let mut energy = match definite {
+            true => self.model.refill_definite(&self.x, force, elastic)?,
+            false => self.model.refill(&self.x, force, elastic)?,
         };
+        if let Some(memory) = &self.memory {
+            energy += memory.add(u, force, Some(remembered))?;
+        }
         (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)
     }
 
     /// The elastic energy beyond that at rest, J.
     pub fn energy(&mut self, u: &[f64]) -> Option<f64> {
+        let remembered = match &self.memory {
+            Some(memory) => memory.stored(u)?,
+            None => 0.0,
+        };
         if self.linear {
             let mut force = vec![0.0; u.len()];
-            return Some(self.rest.refill(u, &mut force));
+            return Some(self.rest.refill(u, &mut force) + remembered);
         }
         self.place(u);
-        Some(self.model.energy(&self.x)? - self.rest.energy)
+        Some(self.model.energy(&self.x)? + remembered - self.rest.energy)
     }
 
     /// `C v`, N.

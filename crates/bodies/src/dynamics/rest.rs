@@ -1,6 +1,7 @@
 //! A model linearised at rest.
 
 use super::limit::{largest_square, largest_square_of_blocks};
+use super::memory::Memory;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{BlockStiffness, Elastic, Entries};
 use faer::sparse::{SparseColMat, Triplet};
@@ -28,15 +29,15 @@ enum Tangent {
 }
 
 impl Rest {
-    /// Linearises the model at `points`; with its entries if equations are to be solved.
+    /// Linearises the model at `points`, with what its memory adds against a sudden strain; with its entries if equations are to be solved.
     ///
     /// # Errors
     /// The model has no response at rest, or K₀ does not fit into memory.
-    pub fn new(model: &dyn Elastic, points: &[f64], has_equations: bool) -> Result<Rest> {
+    pub fn new(model: &dyn Elastic, points: &[f64], memory: Option<&Memory>, has_equations: bool) -> Result<Rest> {
         let none = || Error::expected("model", "a response at rest", "none").of_kind(ErrorKind::Infeasible);
         let sound = |energy: f64, force: &[f64]| energy.is_finite() && force.iter().all(|f| f.is_finite());
         let energy = model.energy(points).ok_or_else(none)?;
-        if let Some(blocks) = (!has_equations).then(|| model.blocks(points)).flatten() {
+        if let Some(blocks) = (!has_equations && memory.is_none()).then(|| model.blocks(points)).flatten() {
             let mut force = vec![0.0; points.len()];
             if !model.forces(points, &mut force) {
                 return Err(none());
@@ -44,7 +45,16 @@ impl Rest {
             let rest = Rest { energy, force, tangent: Tangent::Blocks(blocks) };
             return if sound(energy, &rest.force) { Ok(rest) } else { Err(none()) };
         }
-        let response = model.respond(points).ok_or_else(none)?;
+        let mut response = model.respond(points).ok_or_else(none)?;
+        let mut energy = energy;
+        if let Some(memory) = memory {
+            let (places, still) = (memory.places(), vec![0.0; points.len()]);
+            let mut values = vec![0.0; places.len()];
+            memory.add(&still, &mut response.force, Some(&mut values)).ok_or_else(none)?;
+            energy += memory.stored(&still).ok_or_else(none)?;
+            let added = places.into_iter().zip(values).map(|((row, column), value)| Triplet::new(row, column, value));
+            response.tangent.extend(added);
+        }
         if !sound(energy, &response.force) {
             return Err(none());
         }

@@ -129,6 +129,10 @@ impl Trial {
             kinetic += parts[3] * off;
             work += parts[0] * target.delta[dof];
         }
+        if c2 == 0.0 {
+            // Without inertia and loads what acts are the forces of held points.
+            acting[1] = self.force.iter().map(|f| f * f).sum();
+        }
         let drag: f64 = target.velocity.iter().zip(&self.viscous).map(|(v, f)| v * f).sum();
         let acting: f64 = acting.iter().map(|square| square.sqrt()).sum();
         self.potential = energy - work + kinetic / 2.0 + drag / (2.0 * c1);

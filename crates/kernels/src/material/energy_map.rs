@@ -1,6 +1,7 @@
 //! The energies of a body at large deformation.
 
 use super::{CellMap, Energy, State};
+use crate::error::Result;
 use std::sync::Arc;
 
 /// The energy and the state of each cell of a body: one for each region, or for each set of numbers in it. Copies share the values.
@@ -18,6 +19,15 @@ impl EnergyMap {
     pub fn new(laws: Vec<(Energy, State)>, of: CellMap<usize>) -> Option<EnergyMap> {
         let count = laws.len();
         (count > 0).then(|| EnergyMap { laws: laws.into(), of: of.map(|law| if *law < count { *law } else { 0 }) })
+    }
+
+    /// The body with another law in place of each.
+    ///
+    /// # Errors
+    /// Those of `of`.
+    pub fn try_map(&self, of: impl Fn(&Energy, State) -> Result<Energy>) -> Result<EnergyMap> {
+        let laws: Result<Vec<_>> = self.laws.iter().map(|(law, state)| Ok((of(law, *state)?, *state))).collect();
+        Ok(EnergyMap { laws: laws?.into(), of: self.of.clone() })
     }
 
     /// The laws, each once.

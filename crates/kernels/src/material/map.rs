@@ -198,6 +198,16 @@ impl MaterialMap {
         }
     }
 
+    /// The body with another material in each cell, in the same state.
+    ///
+    /// # Errors
+    /// Some cell is anisotropic, or those of `of`.
+    pub fn of_isotropic(&self, of: impl Fn(Material) -> Result<Material>) -> Result<MaterialMap> {
+        let materials = self.materials()?.try_map(|material| of(*material))?;
+        let moduli = materials.map(|material| Hooke::Isotropic(material.moduli()));
+        Ok(MaterialMap { materials: Some(materials), moduli, ..self.clone() })
+    }
+
     /// The linear law of each cell, see [`Material::moduli`].
     pub fn moduli(&self) -> CellMap<Hooke> {
         self.moduli.clone()

@@ -11,6 +11,7 @@ mod energy;
 mod energy_map;
 mod hooke;
 mod map;
+mod relaxation;
 mod response;
 mod rest;
 
@@ -20,6 +21,7 @@ pub use energy::{Energy, schema};
 pub use energy_map::EnergyMap;
 pub use hooke::{Hooke, Stiffness, strains, voigt};
 pub use map::{LinearMaterial, MaterialMap};
+pub use relaxation::{Relaxation, RelaxationTerm, expect_strains, with_moduli};
 pub use response::Tangent;
 pub use springfit_shipped::MATERIALS as SHIPPED;
 

@@ -33,9 +33,11 @@ impl Simulation<'_> {
             self.way[*dof] = curve.at(time) - start;
         }
         (self.steps, self.state.time) = (self.steps + 1, time);
+        self.resistance.prepare(h);
         if !self.refresh_changed() {
             return self.step_back();
         }
+        self.resistance.advance(&self.state.displacement);
         self.book();
         Step::explicit(StepOutcome::Converged)
     }
@@ -65,6 +67,7 @@ impl Simulation<'_> {
         self.state.time = self.steps as f64 * self.options.step;
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
+        self.resistance.prepare(0.0);
         self.refresh();
         Step::explicit(StepOutcome::NoResponse)
     }

@@ -2,12 +2,15 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+mod account;
+mod equilibrium;
 mod explicit;
+mod pieces;
 
 use super::drive::Curve;
 use super::equations::Equations;
 use super::integrator::{Integrator, Past};
-use super::ledger::{self, Account, EnergyBalance, Forces, Ledger};
+use super::ledger::{Forces, Ledger};
 use super::limit::longest_step;
 use super::motion::{Motion, Options};
 use super::resistance::Resistance;
@@ -27,8 +30,8 @@ pub struct Simulation<'a> {
     resistance: Resistance<'a>,
     /// The equations of implicit methods.
     equations: Option<Box<dyn Equations>>,
-    /// The coefficients with which the matrix of a linear model was assembled.
-    factored: [f64; 2],
+    /// The coefficients and the length of the step with which the matrix of a linear model was assembled.
+    factored: [f64; 3],
     state: MotionState,
     steps: usize,
     /// The accelerations of the free degrees of freedom, m/s², if the method requires them.
@@ -44,6 +47,9 @@ pub struct Simulation<'a> {
     /// 1/m of the degrees of freedom that are not held, zero of the others, 1/kg.
     inverse: Vec<f64>,
     ledger: Option<Ledger>,
+    /// The number of pieces of the next step, and the largest error that was estimated, as a share of the largest displacement.
+    pieces: usize,
+    estimate: f64,
     /// The motion of a prepared network whose state stays in rows, and whether `state` is an earlier one.
     rows: Option<Box<dyn RowMotion + 'a>>,
     is_behind: bool,
@@ -58,7 +64,7 @@ impl<'a> Simulation<'a> {
     /// symplectic Euler, or so long that a linear model that releases energy has no implicit step.
     pub fn new(motion: Motion<'a>, options: Options) -> Result<Simulation<'a>> {
         options.check()?;
-        motion.check()?;
+        motion.check(&options)?;
         let is_implicit = options.integrator != Integrator::SymplecticEuler;
         let resistance = Resistance::new(&motion, options.linear, is_implicit)?;
         let dofs = motion.points.len();
@@ -73,7 +79,7 @@ impl<'a> Simulation<'a> {
             inverse: inverse.collect(),
             resistance,
             equations,
-            factored: [f64::NAN; 2],
+            factored: [f64::NAN; 3],
             state: MotionState { time: 0.0, displacement: zero(), velocity: zero() },
             steps: 0,
             acceleration: zero(),
@@ -84,6 +90,8 @@ impl<'a> Simulation<'a> {
             is_current: false,
             viscous: zero(),
             ledger: None,
+            pieces: 1,
+            estimate: 0.0,
             rows: None,
             is_behind: false,
             motion,
@@ -98,11 +106,15 @@ impl<'a> Simulation<'a> {
                 let expected = format!("at most {longest:.6e} s, beyond which symplectic Euler is unstable");
                 return Err(unstable(expected));
             }
-        } else if options.linear && !simulation.is_definite(options.integrator.coefficients(options.step, true))? {
-            let expected = "a step short enough for a model that releases energy as it moves";
+        } else if options.linear && !simulation.is_definite(options.step)? {
+            let expected = match options.quasi_static {
+                true => "inertia, or supports that hold a model which releases no energy",
+                false => "a step short enough for a model that releases energy as it moves",
+            };
             return Err(unstable(expected.into()));
         }
-        if !is_implicit && !options.account && !options.linear && !simulation.resistance.is_damped() {
+        let is_plain = simulation.motion.memory.is_none() && !simulation.resistance.is_damped();
+        if !is_implicit && !options.account && !options.linear && is_plain {
             simulation.rows = row_motion(&simulation.motion, options.step, &simulation.inverse);
         }
         simulation.start(&zero(), &zero())?;
@@ -124,6 +136,7 @@ impl<'a> Simulation<'a> {
         self.steps = 0;
         self.is_behind = false;
         self.ledger = None;
+        (self.pieces, self.estimate) = (1, 0.0);
         self.state = MotionState { time: 0.0, displacement: displacement.to_vec(), velocity: velocity.to_vec() };
         for (dof, prescribed) in self.motion.support.prescribed.iter().enumerate() {
             if let Some(u) = prescribed {
@@ -136,7 +149,11 @@ impl<'a> Simulation<'a> {
             // One-sided difference: a curve need not be defined before time zero.
             self.state.velocity[*dof] = (4.0 * curve.at(h / 2.0) - 3.0 * curve.at(0.0) - curve.at(h)) / h;
         }
-        let mut has_forces = self.refresh();
+        let remembers = self.resistance.reset(&self.state.displacement);
+        if remembers && self.options.quasi_static {
+            self.equilibrate()?;
+        }
+        let mut has_forces = remembers && self.refresh();
         if let Some(rows) = &mut self.rows {
             rows.load(&self.target.external);
             has_forces &= rows.start(&self.state);
@@ -185,8 +202,10 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// The factor does not fit into memory, or the solver cannot solve the equations of a model that has steps.
-    fn is_definite(&mut self, coefficients: [f64; 2]) -> Result<bool> {
-        let is_prepared = self.factor(coefficients);
+    fn is_definite(&mut self, h: f64) -> Result<bool> {
+        let coefficients = self.coefficients(h, true);
+        self.resistance.prepare(h);
+        let is_prepared = self.factor(coefficients, h);
         let Some(equations) = &mut self.equations else { return Ok(true) };
         let mut random = generator();
         let mut x: Vec<f64> = equations.order().iter().map(|_| random()).collect();
@@ -195,7 +214,7 @@ impl<'a> Simulation<'a> {
         }
         let resistance = &self.resistance;
         let mut proof = resistance.equations(&self.motion, LinearSolver::Factor)?;
-        resistance.assemble(coefficients, resistance.rest.values(), proof.as_mut());
+        resistance.assemble(coefficients, &resistance.linear_tangent(), proof.as_mut());
         match proof.prepare() {
             true if !is_prepared => {
                 let problem = "its equations have no incomplete factor, which conjugate gradients need";
@@ -206,10 +225,11 @@ impl<'a> Simulation<'a> {
     }
 
     /// Prepares the matrix of a linear model, unless it is prepared already.
-    fn factor(&mut self, coefficients: [f64; 2]) -> bool {
-        let Some(equations) = self.equations.as_mut().filter(|_| self.factored != coefficients) else { return true };
-        self.resistance.assemble(coefficients, self.resistance.rest.values(), equations.as_mut());
-        self.factored = coefficients;
+    fn factor(&mut self, coefficients: [f64; 2], h: f64) -> bool {
+        let key = [coefficients[0], coefficients[1], h];
+        let Some(equations) = self.equations.as_mut().filter(|_| self.factored != key) else { return true };
+        self.resistance.assemble(coefficients, &self.resistance.linear_tangent(), equations.as_mut());
+        self.factored = key;
         equations.prepare()
     }
 
@@ -246,22 +266,24 @@ impl<'a> Simulation<'a> {
         }
         let h = self.options.step;
         let time = (self.steps + 1) as f64 * h;
-        self.target.delta.fill(0.0);
-        for (dof, held) in self.resistance.held.iter().enumerate() {
-            if *held {
-                self.target.velocity[dof] = 0.0;
-            }
-        }
+        let step = if self.divides() { self.step_in_pieces(time, h) } else { self.step_to(time, h) };
+        self.steps += usize::from(step.outcome != StepOutcome::NoResponse);
+        step
+    }
+
+    /// Makes an implicit step of the length h that ends at `time`, s.
+    fn step_to(&mut self, time: f64, h: f64) -> Step {
+        self.hold_still();
         for (dof, curve) in &self.motion.drive.displacements {
             self.target.delta[*dof] = curve.at(time) - self.state.displacement[*dof];
             self.target.velocity[*dof] = rate(curve, time, h);
         }
-        let step = self.settle(time);
+        let step = self.settle(time, h, h);
         if step.outcome == StepOutcome::NoResponse {
+            self.resistance.prepare(0.0);
             self.refresh();
             return step;
         }
-        self.steps += 1;
         std::mem::swap(&mut self.before, &mut self.state.velocity);
         std::mem::swap(&mut self.way, &mut self.target.delta);
         self.state.velocity.copy_from_slice(&self.target.velocity);
@@ -271,23 +293,28 @@ impl<'a> Simulation<'a> {
             self.state.displacement[*dof] = curve.at(time);
         }
         self.state.time = time;
+        self.resistance.advance(&self.state.displacement);
         self.book();
         step
     }
 
-    /// Solves for the end of an implicit step.
-    fn settle(&mut self, time: f64) -> Step {
-        let Options { step: h, integrator, iterations, tolerance, linear, .. } = self.options;
+    /// Solves for the end of an implicit step of the length h, s, over which stress relaxes for the time `relaxing`, s.
+    fn settle(&mut self, time: f64, h: f64, relaxing: f64) -> Step {
+        let Options { integrator, iterations, tolerance, linear, quasi_static, .. } = self.options;
         let is_first = self.steps == 0;
-        self.target.coefficients = integrator.coefficients(h, is_first);
+        self.target.coefficients = self.coefficients(h, is_first);
+        self.resistance.prepare(relaxing);
         if linear {
-            // Later steps are stiffer than the first one, which `new` has tried.
-            self.factor(self.target.coefficients);
+            // Later steps are stiffer than the first one, which `new` has tried, and so is a jump.
+            self.factor(self.target.coefficients, relaxing);
         }
         for dof in 0..self.state.velocity.len() {
             let (v, a) = (self.state.velocity[dof], self.acceleration[dof]);
             let past = Past { v, a, way: self.way[dof], before: self.before[dof] };
-            [self.target.z[dof], self.target.y[dof]] = integrator.predict(h, is_first, past);
+            [self.target.z[dof], self.target.y[dof]] = match quasi_static {
+                true => [0.0; 2],
+                false => integrator.predict(h, is_first, past),
+            };
         }
         self.motion.drive.forces_at(time, &self.resistance.mass, &mut self.target.external);
         let equations = self.equations.as_mut().expect("only implicit methods settle").as_mut();
@@ -316,54 +343,6 @@ impl<'a> Simulation<'a> {
             };
         }
         step
-    }
-
-    /// Adds the step to the ledger.
-    fn book(&mut self) {
-        let Some(mut ledger) = self.ledger.take() else { return };
-        if !self.is_current {
-            self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
-        }
-        if self.equations.is_some() {
-            self.resistance.viscous(&self.state.velocity, &mut self.viscous);
-        }
-        let (free, _) = self.kinetic();
-        let is_damped = self.resistance.is_damped();
-        ledger.add(&self.way, &self.forces_now(), &self.resistance.held, is_damped);
-        ledger.largest = ledger.largest.max(free).max(ledger.work.value().abs()).max(ledger.dissipated.value());
-        self.ledger = Some(ledger);
-    }
-
-    /// The kinetic energy of the free degrees of freedom and of the held ones, J.
-    fn kinetic(&self) -> (f64, f64) {
-        let Resistance { mass, held, .. } = &self.resistance;
-        ledger::kinetic(mass, held, &self.state.velocity)
-    }
-
-    /// Energy and momentum of the current state.
-    pub fn account(&mut self) -> Account {
-        self.state();
-        let d = self.motion.dimension();
-        let (free, held) = self.kinetic();
-        let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
-        let x = self.positions();
-        let (mass, v) = (&self.resistance.mass, &self.state.velocity);
-        let sums = |ledger: &mut Ledger| {
-            let energy = free + elastic;
-            let (work, dissipated) = (ledger.work.value(), ledger.dissipated.value());
-            let gained = energy - ledger.start - work + dissipated;
-            ledger.largest = ledger.largest.max(energy.abs());
-            let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
-            EnergyBalance { work: work + held - ledger.held, dissipated, drift }
-        };
-        Account {
-            time: self.state.time,
-            kinetic: free + held,
-            elastic,
-            momentum: ledger::momentum(mass, v, d),
-            angular_momentum: ledger::angular_momentum(mass, &x, v, d),
-            balance: self.ledger.as_mut().map(sums),
-        }
     }
 }
 

@@ -49,7 +49,8 @@ impl<'a> Posed<'a> {
             progress(Event::Note(&words));
         }
         let gauged = scene.gauge().map(|gauge| Gauged::new(scene, gauge, &mesh, &cases)).transpose()?;
-        let plan = TimePlan::of(scene, &mesh, &material, &support)?;
+        let held = held_points(&mesh, &support, &cases);
+        let plan = TimePlan::of(scene, &mesh, (&material, energy.as_ref()), &support, held)?;
         let of_reference = Vec::new();
         Ok(Posed { scene, mesh, material, support, cases, energy, gauged, plan, of_reference })
     }
@@ -61,13 +62,7 @@ impl<'a> Posed<'a> {
 
     /// Whether each point is held in all directions under every load; without loads, by `[[fix]]`.
     pub fn held_points(&self) -> Vec<bool> {
-        let d = self.mesh.dimension;
-        let holds = |support: &Support, point: usize| (point * d..(point + 1) * d).all(|dof| support.is_fixed(dof));
-        let held = |point| match &self.cases[..] {
-            [] => holds(&self.support, point),
-            cases => cases.iter().all(|case| holds(&case.support, point)),
-        };
-        (0..self.mesh.point_count()).map(held).collect()
+        held_points(&self.mesh, &self.support, &self.cases)
     }
 
     /// Makes errors relative to quadratic elements where the cells of the mesh lock and the scene does not say what they are relative to.
@@ -125,6 +120,17 @@ impl<'a> Posed<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether each point is held in all directions under every load; without loads, by `[[fix]]`.
+fn held_points(mesh: &Mesh, support: &Support, cases: &[Case]) -> Vec<bool> {
+    let d = mesh.dimension;
+    let holds = |support: &Support, point: usize| (point * d..(point + 1) * d).all(|dof| support.is_fixed(dof));
+    let held = |point| match cases {
+        [] => holds(support, point),
+        cases => cases.iter().all(|case| holds(&case.support, point)),
+    };
+    (0..mesh.point_count()).map(held).collect()
 }
 
 /// Checked before the work starts, not after it.

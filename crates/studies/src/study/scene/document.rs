@@ -133,8 +133,11 @@ impl Scene {
         }
         let solver = entry.solver.map_or(Ok(StaticSolver::default()), |e| e.check().map_err(|e| e.under("solver")))?;
         let motion = entry.motion.map(|e| e.check().map_err(|e| e.under("motion"))).transpose()?;
-        if motion.is_some() && !entry.material.has_density() {
+        if motion.as_ref().is_some_and(MotionRecipe::needs_masses) && !entry.material.has_density() {
             return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
+        }
+        if let Some(motion) = &motion {
+            motion.check_relaxing(entry.material.first()).map_err(|e| e.under("motion"))?;
         }
         if entry.output.frequencies > 0 && !entry.material.has_density() {
             return Err(Error::expected("output.frequencies", "a density in [material]", "none"));

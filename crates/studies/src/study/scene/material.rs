@@ -8,6 +8,7 @@ use super::bending::Bending;
 use super::constants::{Constant, young_and_poisson};
 use super::distribution::{self, Distribution};
 use super::part::Part;
+use super::relaxation::RelaxationEntry;
 use super::value;
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
@@ -101,6 +102,9 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_density")]
     #[schemars(schema_with = "distribution::density_schema")]
     pub density: Option<Distribution>,
+    /// Stress relaxes in a `[motion]`: the moduli are those against a sudden strain, and `relaxation` says what becomes of them. It is the
+    /// same in every entry of `[[material]]`.
+    pub relaxation: Option<RelaxationEntry>,
     /// Loads are solved at large deformation with this law: the name of a shipped one, or a path relative to the scene that ends in
     /// `.toml`. It is there in every entry of `[[material]]` or in none.
     pub law: Option<String>,
@@ -303,6 +307,7 @@ impl MaterialEntry {
             }
         }
         let dimension = if self.plane.is_some() || self.thickness.is_some() { 2 } else { 3 };
+        self.relaxation.as_ref().map(RelaxationEntry::check).transpose()?;
         // Plane stress admits larger ν than a solid; a solid is checked again when the mesh is known.
         let state = if dimension == 3 { Some(Plane::Stress) } else { self.plane };
         // A value that varies is checked in each cell.
@@ -381,6 +386,7 @@ impl MaterialEntries {
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
             same("bending", entry.bending == first.bending)?;
             same("flexural", entry.flexural == first.flexural)?;
+            same("relaxation", entry.relaxation == first.relaxation)?;
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));

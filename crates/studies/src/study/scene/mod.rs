@@ -25,6 +25,8 @@ mod part;
 mod places;
 mod reference;
 mod regions;
+mod relaxation;
+mod relaxing;
 mod setting;
 mod source;
 pub(in crate::study) mod value;

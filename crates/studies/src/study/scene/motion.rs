@@ -41,6 +41,14 @@ pub struct MotionEntry {
     /// Networks keep their stiffness at rest, as the finite elements do, so that one factor serves all steps.
     #[serde(default)]
     linear: bool,
+    /// Inertia is left out: every state is in equilibrium with the loads of its time, as in creep and relaxation. The key does not go with
+    /// `integrator` and `damping`, and the density then counts for gravity alone.
+    #[serde(default, rename = "quasi-static")]
+    quasi_static: bool,
+    /// With `quasi-static` and a material that relaxes, a step is divided until the error that is estimated of it is this share of the largest
+    /// displacement, above 0 and below 1.
+    #[schemars(extend("x-default" = "steps are not divided"))]
+    error: Option<f64>,
     /// Work, dissipation and drift are reported.
     #[schemars(extend("x-default" = "true; false with `precision = \"single\"`"))]
     account: Option<bool>,
@@ -191,6 +199,19 @@ impl MotionEntry {
             let components = components.map_err(|e| e.under(format!("force[{i}]")))?;
             forces.push(AppliedForce { part, force: components, each: force.each });
         }
+        let beside = [("integrator", self.integrator.is_some()), ("damping", damping.is_some())];
+        if let (true, Some((key, _))) = (self.quasi_static, beside.iter().find(|(_, given)| *given)) {
+            return Err(Error::at(*key, "belongs to motions with inertia, found with quasi-static = true"));
+        }
+        match self.error {
+            Some(_) if !self.quasi_static => {
+                return Err(Error::at("error", "belongs to quasi-static = true"));
+            }
+            Some(error) if !(error > 0.0 && error < 1.0) => {
+                return Err(Error::expected("error", "a share above 0 and below 1", error));
+            }
+            Some(_) | None => {}
+        }
         let method = StepEntry {
             integrator: self.integrator.as_deref(),
             iterations: self.iterations,
@@ -202,7 +223,7 @@ impl MotionEntry {
         let precision =
             choice("precision", self.precision.as_deref(), ForcePrecision::default(), ForcePrecision::named)?;
         let account = self.account.unwrap_or(precision == ForcePrecision::Double);
-        let options = Options { step, account, ..method.check()? };
+        let options = Options { step, account, quasi_static: self.quasi_static, error: self.error, ..method.check()? };
         let foreign = match (options.integrator, options.linear) {
             (Integrator::SymplecticEuler, false) => None,
             (Integrator::SymplecticEuler, true) => Some("linear = true".to_string()),

@@ -2,8 +2,10 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::material::MaterialEntry;
 use super::part::Part;
 use crate::dynamics::Options;
+use crate::error::{Error, ErrorKind, Result};
 use crate::model::Lumping;
 use crate::symbolic::Expr;
 
@@ -90,9 +92,42 @@ pub struct AppliedForce {
 }
 
 impl MotionRecipe {
+    /// Whether masses count: by inertia or by gravity.
+    pub(super) fn needs_masses(&self) -> bool {
+        !self.options.quasi_static || !self.gravity.is_empty()
+    }
+
+    /// Checks that a material that relaxes, or one that does not, can move so.
+    ///
+    /// # Errors
+    /// Steps are divided and nothing relaxes; or springs would turn without a law, or be linear with one, or forces are in single precision.
+    pub(super) fn check_relaxing(&self, material: &MaterialEntry) -> Result<()> {
+        let (relaxes, has_law) = (material.relaxation.is_some(), material.law.is_some());
+        if !relaxes {
+            return match self.options.error {
+                Some(_) => Err(Error::at("error", "belongs to a material with \"relaxation\", found one without")),
+                None => Ok(()),
+            };
+        }
+        if self.options.linear == has_law {
+            let expected = match has_law {
+                true => "false with [material.relaxation] and a law: its springs turn and stretch",
+                false => {
+                    "true with [material.relaxation] and no law: a history of tensions does not turn with the body"
+                }
+            };
+            return Err(Error::expected("linear", expected, self.options.linear).of_kind(ErrorKind::Unsupported));
+        }
+        if self.precision == ForcePrecision::Single {
+            let expected = "\"double\" with [material.relaxation]";
+            return Err(Error::expected("precision", expected, "\"single\"").of_kind(ErrorKind::Unsupported));
+        }
+        Ok(())
+    }
+
     /// The motion in words.
     pub fn title(&self) -> String {
-        let (step, integrator) = (self.options.step, self.options.integrator.name());
+        let (step, integrator) = (self.options.step, self.options.method());
         motion_title(self.duration, self.steps, step, integrator, self.precision.name())
     }
 

@@ -6,6 +6,7 @@ mod frequencies;
 mod motion;
 mod plan;
 mod raised;
+mod relaxing;
 
 pub use plan::TimePlan;
 pub(in crate::study) use raised::{RELEASE, Raised};

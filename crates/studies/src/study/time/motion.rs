@@ -1,7 +1,8 @@
 //! The motion of the finite elements and the networks of a scene.
 
 use super::raised::{RELEASE, Raised};
-use crate::dynamics::{Dampers, Damping, Drive, Integrator, Motion, Options, Simulation, StepOutcome};
+use super::relaxing::Relaxing;
+use crate::dynamics::{Dampers, Damping, Drive, Integrator, Memory, Motion, Options, Simulation, StepOutcome};
 use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
@@ -42,6 +43,8 @@ pub struct Planned {
     pub written: Vec<usize>,
     /// How the networks are shown to be stable before they move.
     pub solver: StaticSolver,
+    /// What becomes of stress, if it relaxes.
+    pub relaxing: Option<Relaxing>,
     /// Whether the states are needed after the motion.
     pub draws: bool,
 }
@@ -58,22 +61,26 @@ pub fn move_models(
 ) -> Result<MotionOutcome> {
     let (mesh, material) = (&outcome.mesh, &outcome.material);
     let run = Run { planned, mesh };
+    let relaxing = planned.relaxing.as_ref();
+    if let Some(note) = relaxing.and_then(|relaxing| planned.long_step(relaxing)) {
+        progress(Event::Note(&note));
+    }
     let mut models = Vec::new();
     let mut reference = Vec::new();
     if planned.recipe.finite_elements {
         let mut options = planned.recipe.options;
-        let damping = planned.damping(None, mesh)?;
+        let resists = (planned.damping(None, mesh)?, relaxing.map(|relaxing| relaxing.of_body(mesh)).transpose()?);
         let (mut made, states) = match energy {
             Some(laws) => {
-                let body = Body::new(mesh, laws);
-                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
+                let body = Body::new(mesh, relaxing.and_then(Relaxing::laws).unwrap_or(laws));
+                run.follow((BODY, None, &planned.masses), &body, resists, options, true, progress)?
             }
             None => {
                 options.linear = true;
                 check_body(mesh)?;
                 let stiffness = finite_elements(mesh, material.moduli());
                 let body = LinearElastic { points: &mesh.points, stiffness };
-                run.follow((BODY, None, &planned.masses), &body, damping, options, true, progress)?
+                run.follow((BODY, None, &planned.masses), &body, resists, options, true, progress)?
             }
         };
         if planned.draws {
@@ -90,19 +97,31 @@ pub fn move_models(
     let largest = reference.iter().flat_map(|u| u.chunks_exact(mesh.dimension)).map(norm).fold(0.0, f64::max);
     for (i, fit) in outcome.fits.iter().enumerate() {
         let masses = fit.masses().unwrap_or(&planned.masses);
-        let growth = growth(&fit.network, masses, mesh, planned)?;
+        let growth = match planned.recipe.options.quasi_static {
+            // A network that releases energy has no equilibrium to follow, and is refused.
+            true => None,
+            false => growth(&fit.network, masses, mesh, planned)?,
+        };
         if growth.is_some() {
             progress(Event::Note(&indefinite(mesh, &fit.fit.name, &fit.network)));
         }
-        let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
+        let (rest, memory) = match relaxing {
+            Some(relaxing) => {
+                let (rest, memory) = relaxing.of_network(mesh, &fit.fit, &fit.network)?;
+                (rest, Some(memory))
+            }
+            None => (None, None),
+        };
+        let network = rest.as_ref().unwrap_or(&fit.network);
+        let resists = (planned.damping(Some((&fit.network, masses)), mesh)?, memory);
         let keeps = planned.draws || !reference.is_empty();
         let options = planned.recipe.options;
         let model: Box<dyn Elastic> = match planned.recipe.precision {
-            ForcePrecision::Double => Box::new(fit.network.prepared()),
-            ForcePrecision::Single => fit.network.prepared_in::<f32>(),
+            ForcePrecision::Double => Box::new(network.prepared()),
+            ForcePrecision::Single => network.prepared_in::<f32>(),
         };
         let (mut made, states) =
-            run.follow((&fit.fit.name, growth, masses), &*model, damping, options, keeps, progress)?;
+            run.follow((&fit.fit.name, growth, masses), &*model, resists, options, keeps, progress)?;
         made.fit = Some(i);
         // None if the finite elements do not move, or an error is not finite.
         let errors = |states: &[Vec<f64>]| -> Vec<Option<f64>> {
@@ -117,7 +136,7 @@ pub fn move_models(
         // The motion of a network that releases energy grows whatever the fit: its error says nothing.
         if turning && growth.is_none() && made.ending == MotionEnding::Complete {
             let linear = Options { linear: true, ..options };
-            let damping = planned.damping(Some((&fit.network, masses)), mesh)?;
+            let damping = (planned.damping(Some((&fit.network, masses)), mesh)?, None);
             let name = format!("{} without turning", fit.fit.name);
             let (linear, states) = run.follow((&name, growth, masses), &*model, damping, linear, true, progress)?;
             let complete = linear.ending == MotionEnding::Complete;
@@ -145,6 +164,18 @@ fn square(u: &[f64]) -> f64 {
 }
 
 impl Planned {
+    /// That a step is longer than the shortest relaxation time, if it is.
+    fn long_step(&self, relaxing: &Relaxing) -> Option<String> {
+        let (step, shortest) = (self.recipe.options.step, relaxing.shortest());
+        (step > shortest).then(|| {
+            format!(
+                "a step of {step:?} s is {:.3} times the shortest relaxation time, {shortest:?} s: what relaxes within a step is known at its end \
+                 alone, and only if the strain changes evenly over it",
+                step / shortest
+            )
+        })
+    }
+
     /// The damping of a network, or of the finite elements.
     fn damping(&self, network: Option<(&Network, &[f64])>, mesh: &Mesh) -> Result<Damping> {
         Ok(match (self.recipe.damping, network) {
@@ -169,7 +200,7 @@ impl Run<'_> {
         &self,
         (name, growth, masses): (&str, Option<f64>, &[f64]),
         model: &dyn Elastic,
-        damping: Damping,
+        (damping, memory): (Damping, Option<Memory>),
         options: Options,
         keeps: bool,
         progress: &mut Progress,
@@ -189,7 +220,7 @@ impl Run<'_> {
             states: Vec::new(),
         };
         let (support, drive) = (planned.support.clone(), planned.drive.clone());
-        let motion = Motion { support, drive, damping, ..Motion::free(model, &self.mesh.points, masses) };
+        let motion = Motion { support, drive, damping, memory, ..Motion::free(model, &self.mesh.points, masses) };
         let mut simulation = match Simulation::new(motion, options) {
             Ok(simulation) => simulation,
             Err(e) if e.key() == Some("step") && options.integrator == Integrator::SymplecticEuler => {
@@ -230,6 +261,14 @@ impl Run<'_> {
             if keeps {
                 states.push(simulation.state().displacement.clone());
             }
+        }
+        if let (Some(estimate), Some(allowed)) = (simulation.estimated_error(), options.error)
+            && estimate > allowed
+        {
+            let note = format!(
+                "{name}: a step is estimated to be off by {estimate:.1e} of the displacement, though it was divided as often as possible"
+            );
+            progress(Event::Note(&note));
         }
         if made.ending == MotionEnding::Complete && made.unsolved > 0 {
             made.ending = MotionEnding::Unsolved;

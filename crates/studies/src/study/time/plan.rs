@@ -2,6 +2,7 @@
 
 use super::frequencies::natural_frequencies;
 use super::motion::{Planned, move_models};
+use super::relaxing::Relaxing;
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
 use crate::material::{CellMap, EnergyMap, MaterialMap};
@@ -29,12 +30,23 @@ impl TimePlan {
     /// Checks the motion and the vibrations of a scene on its mesh.
     ///
     /// # Errors
-    /// A part of the mesh is empty or unknown, a list has the wrong length, a driven degree of freedom is held, or a
-    /// point that moves has no mass.
-    pub fn of(scene: &Scene, mesh: &Mesh, material: &MaterialMap, support: &Support) -> Result<TimePlan> {
+    /// A part of the mesh is empty or unknown, a list has the wrong length, a driven degree of freedom is held, a
+    /// point that moves has no mass, or the material does not relax so. `held` says of each point whether every load holds it.
+    pub fn of(
+        scene: &Scene,
+        mesh: &Mesh,
+        (material, laws): (&MaterialMap, Option<&EnergyMap>),
+        support: &Support,
+        held: Vec<bool>,
+    ) -> Result<TimePlan> {
         let at = |e: Error| e.placed(|e| scene.at("motion", e));
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
-        Ok(TimePlan { support: support.clone(), motion: scene.motion().map(plan).transpose()? })
+        let mut motion = scene.motion().map(plan).transpose()?;
+        if let (Some(motion), Some((key, relaxation))) = (&mut motion, scene.relaxation()) {
+            let relaxing = Relaxing::new(relaxation, material, laws, scene.fits(), held);
+            motion.relaxing = Some(relaxing.map_err(|e| scene.at(&key, e))?);
+        }
+        Ok(TimePlan { support: support.clone(), motion })
     }
 
     /// Moves the finite elements and the networks of `outcome` and computes their frequencies, as far as the scene
@@ -55,7 +67,12 @@ impl TimePlan {
         }
         if let Some(planned) = &self.motion {
             let moved = move_models(planned, energy, outcome, progress);
-            outcome.motion = Some(moved.map_err(|e| e.placed(|e| scene.at("motion", e)))?);
+            let place = |e: Error| match (e.key(), scene.relaxation()) {
+                // A network that does not relax so.
+                (Some("terms"), Some((key, _))) => scene.at(&key, e),
+                _ => scene.at("motion", e),
+            };
+            outcome.motion = Some(moved.map_err(|e| e.placed(place))?);
         }
         Ok(())
     }
@@ -88,6 +105,7 @@ fn planned(
         watched: Vec::new(),
         written,
         solver: scene.solver(),
+        relaxing: None,
         draws: scene.output().has_pictures(),
     };
     let mut prescribed_by: Vec<Option<usize>> = vec![None; mesh.points.len()];
@@ -102,7 +120,8 @@ fn planned(
         planned.watched = points(mesh, part).map_err(|e| e.under("watch"))?;
     }
     let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !planned.support.is_fixed(dof));
-    if let Some(p) = (0..mesh.point_count()).find(|&p| moves(p) && !(planned.masses[p] > 0.0)) {
+    let massless = |p: &usize| moves(*p) && !(planned.masses[*p] > 0.0);
+    if let Some(p) = (0..mesh.point_count()).find(massless).filter(|_| !recipe.options.quasi_static) {
         let expected = "a mass above zero at every point that moves (\"hrz\" gives one)";
         return Err(Error::expected(
             "mass",

@@ -1,0 +1,137 @@
+//! Stress that relaxes: Prony series of the shear modulus and of the bulk modulus.
+//!
+//! Theory: page *Springs that forget* of the book.
+
+use super::{Material, MaterialMap, Moduli, State};
+use crate::error::{Error, ErrorKind, Result};
+use crate::range;
+
+/// One term of a Prony series: shares of the moduli that relax with one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelaxationTerm {
+    /// The share g of the shear modulus, from 0 to 1.
+    pub shear: f64,
+    /// The share k of the bulk modulus, from 0 to 1.
+    pub bulk: f64,
+    /// The relaxation time τ, s.
+    pub time: f64,
+}
+
+/// `μ(t) = μ (1 − Σ g_i (1 − e^(−t/τ_i)))`, `K(t) = K (1 − Σ k_i (1 − e^(−t/τ_i)))`, with the moduli μ and K of the material: those against a
+/// strain that has just been applied.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relaxation {
+    terms: Vec<RelaxationTerm>,
+}
+
+/// Rounding of shares that are written as decimals and add up to one.
+const SLACK: f64 = 1e-12;
+
+impl Relaxation {
+    /// The terms of a series.
+    ///
+    /// # Errors
+    /// There is no term, a share is negative, all shares of a term are zero, the shares of a modulus add up to more than one, or a time is not
+    /// above zero. The key names the term.
+    pub fn new(terms: Vec<RelaxationTerm>) -> Result<Relaxation> {
+        if terms.is_empty() {
+            return Err(Error::expected("terms", "at least one { shear, bulk, time }", "none"));
+        }
+        for (i, term) in terms.iter().enumerate() {
+            let under = |e: Error| e.under(format!("terms[{i}]"));
+            for (key, share) in [("shear", term.shear), ("bulk", term.bulk)] {
+                if !(0.0..=1.0).contains(&share) {
+                    return Err(under(Error::expected(key, "a share of the modulus from 0 to 1", share)));
+                }
+            }
+            if term.shear == 0.0 && term.bulk == 0.0 {
+                return Err(Error::expected(format!("terms[{i}]"), "a share of shear or bulk above 0", "none"));
+            }
+            range::positive("time", term.time, "s").map_err(under)?;
+        }
+        let relaxation = Relaxation { terms };
+        for (key, sum) in ["shear", "bulk"].into_iter().zip(relaxation.sums()) {
+            if sum > 1.0 + SLACK {
+                return Err(Error::expected("terms", format!("shares of {key} that add up to at most 1"), sum));
+            }
+        }
+        Ok(relaxation)
+    }
+
+    /// The terms.
+    pub fn terms(&self) -> &[RelaxationTerm] {
+        &self.terms
+    }
+
+    /// The sums of the shares of shear and of bulk.
+    pub fn sums(&self) -> [f64; 2] {
+        [self.terms.iter().map(|term| term.shear).sum(), self.terms.iter().map(|term| term.bulk).sum()]
+    }
+
+    /// Whether shear and bulk relax alike, so that every force does.
+    pub fn is_alike(&self) -> bool {
+        self.terms.iter().all(|term| term.shear == term.bulk)
+    }
+
+    /// The shortest relaxation time, s.
+    pub fn shortest(&self) -> f64 {
+        self.terms.iter().fold(f64::INFINITY, |least, term| least.min(term.time))
+    }
+
+    /// The shares of the moduli μ and K that are left at the time t, s, after a strain was applied.
+    pub fn left(&self, t: f64) -> [f64; 2] {
+        self.terms.iter().fold([1.0; 2], |[shear, bulk], term| {
+            let gone = -(-t / term.time).exp_m1();
+            [shear - term.shear * gone, bulk - term.bulk * gone]
+        })
+    }
+
+    /// The material in which all that relaxes has relaxed: `μ (1 − Σ g_i)` beside the whole bulk modulus.
+    ///
+    /// # Errors
+    /// Bulk relaxes too, all of the shear modulus relaxes, the state is one without stress in some direction, or some cell is anisotropic.
+    pub fn rest_of(&self, material: &MaterialMap) -> Result<MaterialMap> {
+        let [shear, bulk] = self.sums();
+        if bulk > 0.0 {
+            let expected =
+                "0 at large deformation, where the constants of springs relax and the content keeps its stiffness";
+            return Err(Error::expected("bulk", expected, bulk).of_kind(ErrorKind::Unsupported));
+        }
+        if shear > 1.0 - SLACK {
+            let expected =
+                "shares of shear that add up to less than 1 at large deformation: what is left holds the body together";
+            return Err(Error::expected("terms", expected, shear).of_kind(ErrorKind::Unsupported));
+        }
+        expect_strains(material)?;
+        material.of_isotropic(|material| with_moduli(material, 1.0 - shear, 1.0))
+    }
+}
+
+/// Checks that shear and bulk are apart: no direction is without stress, and every cell is isotropic.
+///
+/// # Errors
+/// They are not; the kind is `Unsupported`.
+pub fn expect_strains(material: &MaterialMap) -> Result<()> {
+    for own in material.materials()?.values() {
+        let found = match own.state() {
+            State::Solid | State::PlaneStrain { .. } => continue,
+            State::PlaneStress { .. } => "plane stress, in which shear and bulk act together",
+            State::Rod { .. } => "rods, in which shear and bulk act together",
+        };
+        let expected = "a solid or plane strain, or shares of shear and bulk that are alike";
+        return Err(Error::expected("terms", expected, found).of_kind(ErrorKind::Unsupported));
+    }
+    Ok(())
+}
+
+/// A solid, or a plane in plane strain, with these multiples of the shear modulus and of the bulk modulus.
+///
+/// # Errors
+/// There is no such material.
+pub fn with_moduli(material: Material, shear: f64, bulk: f64) -> Result<Material> {
+    let Moduli { lambda, mu } = material.moduli();
+    let thickness = material.thickness();
+    let (k, mu) = ((lambda + mu * 2.0 / 3.0) / thickness * bulk, mu / thickness * shear);
+    let (young, poisson) = (9.0 * k * mu / (3.0 * k + mu), (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)));
+    Material::new(young, poisson, material.state())
+}

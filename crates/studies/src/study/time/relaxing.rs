@@ -1,0 +1,196 @@
+//! The models of a body whose stress relaxes: what is left of them, and what they remember.
+//!
+//! Theory: page *Springs that forget* of the book.
+
+use crate::dynamics::{BranchForm, LargeMemory, LinearMemory, Memory, RelaxingPart};
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{ExactEnergy, ShearSprings};
+use crate::material::{EnergyMap, Hooke, Material, MaterialMap, Moduli, Relaxation, expect_strains, with_moduli};
+use crate::mesh::Mesh;
+use crate::model::{
+    Elastic, Entries, LinearElastic, MaterialPoints, Network, check_body, exact_network, finite_elements,
+};
+use crate::study::fits::{ExactRecipe, NamedFit, Recipe, Reference};
+use crate::study::fitting::fit_without_errors;
+use faer::sparse::Triplet;
+
+/// The share of the bulk modulus with which a network is made again, to tell its bulk part from its shear part; and one between, that shows
+/// whether it is linear in the moduli.
+const OTHER: f64 = 0.5;
+const BETWEEN: f64 = 0.75;
+/// The difference that rounding may leave in a network that is linear in the moduli, relative to its forces.
+const LINEAR: f64 = 1e-9;
+
+/// A body that relaxes.
+#[derive(Debug, Clone)]
+pub struct Relaxing {
+    relaxation: Relaxation,
+    material: MaterialMap,
+    /// The material and the laws in which all that relaxes has relaxed, at large deformation.
+    rest: Option<(MaterialMap, EnergyMap)>,
+    /// Whether each point is held in all directions under every load.
+    held: Vec<bool>,
+}
+
+impl Relaxing {
+    /// A body of this material, with these laws at large deformation.
+    ///
+    /// # Errors
+    /// The material or a law does not relax so, or a fit does not serve it. Keys are those of `[material.relaxation]`.
+    pub fn new(
+        relaxation: Relaxation,
+        material: &MaterialMap,
+        laws: Option<&EnergyMap>,
+        fits: &[NamedFit],
+        held: Vec<bool>,
+    ) -> Result<Relaxing> {
+        let rest = laws.map(|laws| rest_of(&relaxation, material, laws)).transpose()?;
+        if rest.is_none() && !relaxation.is_alike() {
+            expect_strains(material)?;
+        }
+        for fit in fits {
+            let (serves, expected) = match (&fit.recipe, rest.is_some()) {
+                (Recipe::Exact(recipe), true) => {
+                    let energy = recipe.energy.unwrap_or_default();
+                    let serves = energy == ExactEnergy::StableNeoHookean && recipe.positive.is_none();
+                    (serves, "exact networks of the stable neo-Hookean energy at large deformation")
+                }
+                (_, true) => (false, "exact networks of the stable neo-Hookean energy at large deformation"),
+                (Recipe::Sampled(_) | Recipe::Whole(_), false) => (
+                    relaxation.is_alike(),
+                    "shares of shear and bulk that are alike for fits to shapes or to the whole object",
+                ),
+                (Recipe::Stiffness(_) | Recipe::Published(_) | Recipe::Exact(_), false) => (true, ""),
+            };
+            if !serves || fit.engine.is_some() {
+                let expected = if serves { "fits without an engine" } else { expected };
+                let found = format!("the fit \"{}\"", fit.name);
+                return Err(Error::expected("terms", expected, found).of_kind(ErrorKind::Unsupported));
+            }
+        }
+        Ok(Relaxing { relaxation, material: material.clone(), rest, held })
+    }
+
+    /// The shortest relaxation time, s.
+    pub fn shortest(&self) -> f64 {
+        self.relaxation.shortest()
+    }
+
+    /// The laws of the finite elements in which all that relaxes has relaxed, at large deformation.
+    pub fn laws(&self) -> Option<&EnergyMap> {
+        self.rest.as_ref().map(|(_, laws)| laws)
+    }
+
+    /// What the finite elements remember, beside those of [`Relaxing::laws`] at large deformation.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, or the mesh is a surface or a curve in space.
+    pub fn of_body(&self, mesh: &Mesh) -> Result<Memory> {
+        if self.rest.is_some() {
+            return self.branches(mesh, ShearSprings::Cells, BranchForm::Tensors);
+        }
+        check_body(mesh)?;
+        let moduli = self.material.moduli();
+        if self.relaxation.is_alike() {
+            return self.parts(mesh, vec![(finite_elements(mesh, moduli), true)]);
+        }
+        let split = |hooke: &Hooke, is_shear: bool| {
+            // That every cell is isotropic was checked.
+            let Moduli { lambda, mu } = hooke.moduli().unwrap_or(Moduli { lambda: 0.0, mu: 0.0 });
+            Hooke::Isotropic(match is_shear {
+                true => Moduli { lambda: -2.0 / 3.0 * mu, mu },
+                false => Moduli { lambda: lambda + 2.0 / 3.0 * mu, mu: 0.0 },
+            })
+        };
+        let part = |is_shear| (finite_elements(mesh, moduli.map(|hooke| split(hooke, is_shear))), is_shear);
+        self.parts(mesh, vec![part(true), part(false)])
+    }
+
+    /// What a network remembers, and at large deformation the network of what is left when all that relaxes has relaxed, which takes its place.
+    ///
+    /// # Errors
+    /// Its springs are not linear in the moduli, and shear and bulk do not relax alike; or the equations do not fit into memory.
+    pub fn of_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<(Option<Network>, Memory)> {
+        if let (Some((material, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
+            let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
+            let rest = exact_network(mesh, material, &exact, &self.held)?;
+            return Ok((Some(rest), self.branches(mesh, exact.shear, BranchForm::Edges)?));
+        }
+        let own = network.stiffness(&mesh.points);
+        if self.relaxation.is_alike() {
+            return Ok((None, self.parts(mesh, vec![(own, true)])?));
+        }
+        let with_bulk = |share: f64| -> Result<Entries> {
+            let material = self.material.of_isotropic(|material: Material| with_moduli(material, 1.0, share))?;
+            let reference = Reference { held: &self.held, ..Reference::default() };
+            let (made, _) = fit_without_errors(mesh, &material, &reference, fit, &mut |_| {})?;
+            Ok(made.network.stiffness(&mesh.points))
+        };
+        let (other, between) = (with_bulk(OTHER)?, with_bulk(BETWEEN)?);
+        // K(s) = K_shear + s K_bulk for the share s of the bulk modulus.
+        let weight = (BETWEEN - OTHER) / (1.0 - OTHER);
+        let curved = combined(&[(1.0, &between), (-weight, &own), (weight - 1.0, &other)]);
+        let [off, size] = [&curved, &own].map(|entries| size(mesh, entries));
+        if !(off <= LINEAR * size) {
+            let expected = format!(
+                "shares of shear and bulk that are alike for \"{}\", whose springs are not linear in the moduli",
+                fit.name
+            );
+            return Err(Error::expected("terms", expected, "others").of_kind(ErrorKind::Unsupported));
+        }
+        let slope = 1.0 / (1.0 - OTHER);
+        let bulk = combined(&[(slope, &own), (-slope, &other)]);
+        let shear = combined(&[(1.0 - slope, &own), (slope, &other)]);
+        Ok((None, self.parts(mesh, vec![(shear, true), (bulk, false)])?))
+    }
+
+    fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
+        let points = MaterialPoints::of(mesh, &self.material, shear)?;
+        Ok(Memory::Large(LargeMemory::new(points, form, &mesh.points, &self.relaxation)?))
+    }
+
+    /// The memory of parts of a stiffness, each of shear or not.
+    fn parts(&self, mesh: &Mesh, parts: Vec<(Entries, bool)>) -> Result<Memory> {
+        let terms = self.relaxation.terms();
+        let part = |(entries, is_shear): (Entries, bool)| {
+            let shares = terms.iter().map(|term| if is_shear { term.shear } else { term.bulk }).collect();
+            RelaxingPart::new(&entries, mesh.points.len(), shares)
+        };
+        let parts: Result<Vec<RelaxingPart>> = parts.into_iter().map(part).collect();
+        let times = terms.iter().map(|term| term.time).collect();
+        Ok(Memory::Linear(LinearMemory::new(times, parts?, mesh.points.len())?))
+    }
+}
+
+/// The material and the laws in which all that relaxes has relaxed.
+fn rest_of(relaxation: &Relaxation, material: &MaterialMap, laws: &EnergyMap) -> Result<(MaterialMap, EnergyMap)> {
+    let rest = relaxation.rest_of(material)?;
+    let left = 1.0 - relaxation.sums()[0];
+    let laws = laws.try_map(|law, state| {
+        if law.has_fibres() || ExactEnergy::of_law(law) != Some(ExactEnergy::StableNeoHookean) {
+            let expected = "the law \"stable-neo-hookean\" in a material that relaxes";
+            return Err(
+                Error::expected("terms", expected, format!("\"{}\"", law.name())).of_kind(ErrorKind::Unsupported)
+            );
+        }
+        law.of(with_moduli(Material::new(law.young(), law.poisson(), state)?, left, 1.0)?, &[], None)
+    })?;
+    Ok((rest, laws))
+}
+
+/// A sum of multiples of matrices.
+fn combined(parts: &[(f64, &Entries)]) -> Entries {
+    let scaled = |(factor, entries): &(f64, &Entries)| -> Entries {
+        entries.iter().map(|e| Triplet::new(e.row, e.col, factor * e.val)).collect()
+    };
+    parts.iter().flat_map(scaled).collect()
+}
+
+/// The size of the forces at displacements that are as large at each point, in no direction that a body prefers.
+fn size(mesh: &Mesh, stiffness: &Entries) -> f64 {
+    let still = vec![0.0; mesh.points.len()];
+    let shape: Vec<f64> = (0..still.len()).map(|dof| (1.0 + 7.0 * (dof as f64).sqrt()).sin()).collect();
+    let mut force = vec![0.0; still.len()];
+    LinearElastic { points: &still, stiffness: stiffness.clone() }.forces(&shape, &mut force);
+    force.iter().map(|f| f * f).sum::<f64>().sqrt()
+}
