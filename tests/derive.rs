@@ -65,6 +65,60 @@ fn formulas_agree_with_the_numerical_fits() {
     assert!(seen > 25, "{seen}");
 }
 
+/// Springs on angles, on areas in space and on expressions with one root have no roots in `g gᵀ`: at random lengths, under every weight, the
+/// formulas are the numbers of the fits, to 1e-11 of the largest.
+#[test]
+fn formulas_of_springs_on_functions_agree_with_the_numerical_fits() {
+    let lengths = [ratio(7, 5), ratio(9, 4), ratio(4, 7), ratio(1, 3)];
+    let shipped =
+        |name: &str| std::fs::read_to_string(format!("{}/elements/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let angles = |nodes: &str| format!("\n[[springs]]\ngroup = \"angle\"\nkind = \"angle\"\nnodes = {nodes}\n");
+    let faces = "\n[[springs]]\ngroup = \"face\"\nkind = \"area\"\nnodes = [[0, 1, 2], [0, 1, 3]]\n";
+    let height = "\n[[springs]]\ngroup = \"height\"\nkind = \"measure\"\nmeasure = \"3*sqrt(2*(x1 - x0)^2 + 2*(y1 - y0)^2)\"\n\
+                  nodes = [[0, 2]]\n";
+    let ring = angles("[[3, 0, 1], [0, 1, 2], [1, 2, 3], [2, 3, 0]]");
+    let texts = [
+        ("quad4", ring.clone(), 4),
+        ("tri3", angles("[[0, 1, 2]]"), 4),
+        ("tet4", angles("[[1, 0, 2]]") + faces, 5),
+        ("wedge6", angles("[[0, 1, 2], [0, 3, 5], [0, 4, 1]]"), 5),
+        ("quad4", ring + height, 5),
+    ];
+    let moduli = Moduli { lambda: 0.7, mu: 1.3 };
+    let mut compared = 0;
+    for (name, more, least) in texts {
+        let element = Element::parse(&(shipped(name) + &more)).unwrap();
+        let springs = Springs::select(&element, None).unwrap();
+        let form = ClosedForm::new(&element, &springs, true).unwrap();
+        assert!(form.classes.len() >= least, "{name}: {}", form.classes.len());
+        let at = [&lengths[..element.dimension()], &lengths[3..]].concat();
+        let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+        let x: Vec<f64> = form.positions.iter().map(number).collect();
+        for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::new(0.5).unwrap())] {
+            let Ok(fit) = form.fit(weight) else { continue };
+            let numbers = fit_element(&element, &springs, &x, moduli, &Fit::new(Objective::Frobenius(weight))).unwrap();
+            let size = numbers.iter().fold(0.0f64, |size, k| size.max(k.abs()));
+            for (class, constants) in form.classes.iter().zip(&fit.constants) {
+                let k = moduli.lambda * number(&constants[0]) + moduli.mu * number(&constants[1]);
+                for &place in &class.places {
+                    assert!((k - numbers[place]).abs() < 1e-11 * size, "{name} {weight:?} {}: {k}", class.group);
+                }
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared >= 12, "{compared}");
+    // On the square the corners share what the shear has over that of the diagonals.
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/elements/quad4_angles.toml");
+    let (code, text, _) = derive(&[path]);
+    assert_eq!(code, Some(0));
+    for line in
+        ["  angle 3-0-1 and 3 more like it", "    k = -19/39*lambda + 3/13*mu", "  |R-K|/|R| = 0.094898 at nu = 0.3"]
+    {
+        assert!(text.lines().any(|l| l == line), "{line}\n{text}");
+    }
+}
+
 /// With numbers of any orthotropic material they are its numerical fits, and with those of an isotropic one the isotropic formulas.
 #[test]
 fn orthotropic_formulas_agree_with_numerical_fits_and_isotropic_formulas() {
@@ -283,7 +337,7 @@ fn the_command_prints_formulas_and_refuses_what_has_none() {
     }
     let example = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/elements/");
     for (file, why) in [
-        ("tri3_coupled", "its angles, areas, couplings or measures need roots"),
+        ("tri3_coupled", "what its springs \"corner\" measure needs roots, or has no gradient on this shape"),
         (
             "hex8_selective",
             "closed forms are those of exact integration, and the quadrature of the file is another one; with more points it is exact",

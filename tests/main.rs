@@ -10,6 +10,7 @@ mod check;
 mod coarse;
 mod command_line;
 mod compare;
+mod condense;
 mod converge;
 mod corpora;
 mod costs;

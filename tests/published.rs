@@ -124,7 +124,8 @@ fn applicable() -> Vec<(Method, Element)> {
 fn applies(method: Method, name: &str) -> bool {
     let names: &[&str] = match method {
         Method::VanGelder => &["tri3", "tet4"],
-        Method::VanGelderSimple | Method::DelingetteQuadratic | Method::DelingetteBiquadratic => &["tri3"],
+        Method::VanGelderSimple => &["tri3"],
+        Method::DelingetteQuadratic | Method::DelingetteBiquadratic => &["tri3", "tet4"],
         Method::Lloyd | Method::LloydPreserving => &["tri3", "quad4", "tet4"],
         Method::Baudet | Method::BaudetCorrected => &["quad4", "hex8"],
         Method::MacielUniform => &["tri3", "quad4", "pentagon5", "tet4", "hex8", "wedge6", "pyramid5"],
@@ -304,7 +305,7 @@ fn baudets_corrected_springs_are_the_material() {
     }
 }
 
-/// Triangular quadratic springs are the constant strain triangle, whatever its shape; in plane strain too.
+/// Quadratic springs are the constant strain triangle and tetrahedron, whatever their shape; in plane strain too.
 #[test]
 fn delingettes_springs_are_the_finite_element() {
     let triangle = Element::load("tri3").unwrap();
@@ -315,6 +316,16 @@ fn delingettes_springs_are_the_finite_element() {
             for method in [Method::DelingetteQuadratic, Method::DelingetteBiquadratic] {
                 let found = error(method, "tri3", &x, material);
                 assert!(found < 1e-12, "{method:?}: {found}");
+            }
+        }
+    }
+    let tetrahedron = Element::load("tet4").unwrap();
+    for _ in 0..20 {
+        let x = distorted(&tetrahedron, &mut random);
+        for material in materials(3) {
+            for method in [Method::DelingetteQuadratic, Method::DelingetteBiquadratic] {
+                let found = error(method, "tet4", &x, material);
+                assert!(found < 1e-11, "{method:?}: {found}");
             }
         }
     }
@@ -342,27 +353,31 @@ fn delingettes_springs_are_the_finite_element() {
     close(best, 0.2211, 5e-5);
 }
 
-/// `A (λ/2 (tr E)² + G tr E²)`, `E = ½ (FᵀF − I)`, to rounding of the squared lengths.
+/// `V (λ/2 (tr E)² + G tr E²)`, `E = ½ (FᵀF − I)`, to rounding of the squared lengths.
 #[test]
 fn biquadratic_springs_have_the_energy_of_saint_venant_and_kirchhoff() {
-    let triangle = Element::load("tri3").unwrap();
-    let mut random = Random(3);
-    for round in 0..100 {
-        let x = distorted(&triangle, &mut random);
-        let material = materials(2)[round % 8];
-        let mesh = single(&triangle, &x);
-        let f = DMatrix::from_fn(2, 2, |i, j| f64::from(u8::from(i == j)) + 1.5 * random.next());
-        let at: Vec<f64> =
-            x.chunks_exact(2).flat_map(|x| (&f * DVector::from_column_slice(x)).data.as_vec().clone()).collect();
-        let found = network(Method::DelingetteBiquadratic, &mesh, material).respond(&at).unwrap().energy;
-        let area = ((x[2] - x[0]) * (x[5] - x[1]) - (x[3] - x[1]) * (x[4] - x[0])) / 2.0;
-        let strain = (f.transpose() * &f - DMatrix::identity(2, 2)) / 2.0;
-        let (l, g) = (material.moduli().lambda, material.moduli().mu);
-        let square = (&strain * &strain).trace();
-        let expected = area * (l / 2.0 * strain.trace().powi(2) + g * square);
-        // λ < 0 at negative ratios: relative to the size of the terms, which cancel.
-        let size = area * (l.abs() + g) * (strain.trace().powi(2) + square);
-        assert!((found - expected).abs() < 1e-12 * size, "{found} {expected}");
+    for (name, d, factorial) in [("tri3", 2, 2.0), ("tet4", 3, 6.0)] {
+        let simplex = Element::load(name).unwrap();
+        let all = materials(d);
+        let mut random = Random(3);
+        for round in 0..100 {
+            let x = distorted(&simplex, &mut random);
+            let material = all[round % all.len()];
+            let mesh = single(&simplex, &x);
+            let f = DMatrix::from_fn(d, d, |i, j| f64::from(u8::from(i == j)) + 1.5 * random.next());
+            let at: Vec<f64> =
+                x.chunks_exact(d).flat_map(|x| (&f * DVector::from_column_slice(x)).data.as_vec().clone()).collect();
+            let found = network(Method::DelingetteBiquadratic, &mesh, material).respond(&at).unwrap().energy;
+            let content = DMatrix::from_fn(d, d, |k, a| x[(a + 1) * d + k] - x[k]).determinant() / factorial;
+            let strain = (f.transpose() * &f - DMatrix::identity(d, d)) / 2.0;
+            let (l, g) = (material.moduli().lambda, material.moduli().mu);
+            let square = (&strain * &strain).trace();
+            let expected = content * (l / 2.0 * strain.trace().powi(2) + g * square);
+            // λ < 0 at negative ratios: relative to the size of the terms, which cancel; those of fifteen couplings cancel more.
+            let size = content * (l.abs() + g) * (strain.trace().powi(2) + square);
+            let digits = if d == 2 { 1e-12 } else { 1e-11 };
+            assert!((found - expected).abs() < digits * size, "{name}: {found} {expected}");
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
 use crate::messages::reads;
+use crate::shapes::with_angles;
 use springfit::element::Element;
 use springfit::report;
 use springfit::study::{Family, Scene, StabilityRow, Verdict, stability, stability_of_scene};
@@ -45,6 +46,40 @@ fn every_case_ends_accurate_or_with_its_reason() {
         // Single precision loses what it must: the figure is a measured one.
         let plain = all(Family::Poisson).filter(|row| row.method == "frobenius").filter_map(|row| row.single);
         assert!(plain.clone().count() > 5 && plain.clone().all(|error| error > 1e-9 && error < 1e-4));
+    }
+}
+
+/// Springs on the angles between the edges of every corner: angles near 0 and π, constants of two units, and the weight of blocks, which has
+/// a reference in twice the digits as the others have.
+#[test]
+fn no_case_of_an_element_with_springs_on_angles_is_lost() {
+    for name in ["tri3", "quad4", "pentagon5", "tri6", "tet4", "pyramid5", "wedge6"] {
+        let rows = stability(Some(with_angles(name)), &mut |_| {}).unwrap().rows;
+        let lost: Vec<&StabilityRow> = rows.iter().filter(|row| row.verdict == Verdict::Lost).collect();
+        assert!(lost.is_empty(), "{name}: {lost:?}");
+        assert!(!rows.iter().any(|row| matches!(row.verdict, Verdict::Told(_))), "{name}");
+        let accurate = rows.iter().filter(|row| row.verdict == Verdict::Accurate).count();
+        assert!(accurate > 300, "{name}: {accurate}");
+    }
+}
+
+/// What needs something done is told apart from what is only said, and says what helps.
+#[test]
+fn trouble_names_its_way_out_and_what_is_stable_is_no_trouble() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("square.toml");
+    let text = "[mesh]\nbox = { element = \"quad4\", size = [1, 1], cells = [3, 3] }\n[material]\nyoung = 10e3\npoisson = 0.3\n\
+                [[fit]]\nobjective = \"offdiag\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\ntraction = [10, 0]\n";
+    fs::write(&path, text).unwrap();
+    let outcome = stability_of_scene(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+    let text = report::stability_text(&outcome);
+    assert!(!text.contains("Trouble") && text.contains("Remarks that are no trouble"), "{text}");
+    let swept = stability(Some(Element::load("quad4").unwrap()), &mut |_| {}).unwrap();
+    let text = report::stability_text(&swept);
+    let (trouble, ways) = (text.split("Trouble, and the way out").nth(1).unwrap(), swept.rows.iter());
+    assert!(trouble.contains("-> list the nodes in the opposite order"), "{text}");
+    for row in ways.filter(|row| matches!(row.verdict, Verdict::Refused(_))) {
+        assert!(row.is_trouble() && row.way_out.is_some(), "{row:?}");
     }
 }
 

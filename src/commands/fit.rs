@@ -90,7 +90,7 @@ Published methods, for --objective:
   van-gelder, van-gelder-simple    Van Gelder (1998): triangles, tetrahedra
   lloyd, lloyd-preserving          Lloyd et al. (2007): triangles, quadrilaterals, tetrahedra
   baudet, baudet-corrected         Baudet et al. (2007, 2009): rectangles, bricks
-  delingette-quadratic             Delingette (2008): triangles
+  delingette-quadratic             Delingette (2008): triangles, tetrahedra
   delingette-biquadratic           the same
   maciel-uniform                   Maciel et al. (2003)";
 

@@ -30,15 +30,20 @@ pub fn stability_table(outcome: &StabilityOutcome) -> Table {
     Table::new("stability", &*outcome.title, columns, families(outcome))
 }
 
-/// What came of each family and method, worst first to see, then what is lost and why cases were refused.
+/// What came of each family and method, then what is trouble with its way out, what is only said, and what is lost.
 pub fn stability_text(outcome: &StabilityOutcome) -> String {
     let mut text = stability_table(outcome).titled_text();
-    let reasons = reasons(outcome);
-    if !reasons.is_empty() {
-        text += "\nCases without an answer, and cases with a remark\n";
-    }
-    for (family, words, count) in reasons {
-        writeln!(text, "  {:<16} {count:>4}  {words}", family.name()).expect("a String grows");
+    for (is_trouble, heading) in [(true, "Trouble, and the way out"), (false, "Remarks that are no trouble")] {
+        let reasons = reasons(outcome, is_trouble);
+        if !reasons.is_empty() {
+            writeln!(text, "\n{heading}").expect("a String grows");
+        }
+        for Reason { family, words, way_out, count, .. } in reasons {
+            writeln!(text, "  {:<16} {count:>4}  {words}", family.name()).expect("a String grows");
+            if let Some(way_out) = way_out {
+                writeln!(text, "  {:<16} {:>4}  -> {way_out}", "", "").expect("a String grows");
+            }
+        }
     }
     for row in outcome.lost() {
         let (error, allowed) = (number(row.error), number(row.allowed));
@@ -81,21 +86,29 @@ fn number(value: Option<f64>) -> String {
     value.map_or("-".into(), |v| if v == 0.0 { "0".into() } else { format!("{v:.1e}") })
 }
 
-/// Reasons with their numbers taken out, so that like ones are counted together; the first stands for them.
-fn reasons(outcome: &StabilityOutcome) -> Vec<(Family, String, usize)> {
-    let mut found: Vec<(Family, String, String, usize)> = Vec::new();
-    for row in &outcome.rows {
-        let words = row.verdict.words();
-        if words.is_empty() {
-            continue;
-        }
+/// Cases with one reason: its numbers are taken out, so that like ones are counted together, and the first stands for them.
+struct Reason<'a> {
+    family: Family,
+    plain: String,
+    words: &'a str,
+    way_out: Option<&'static str>,
+    count: usize,
+}
+
+/// The reasons of what is trouble, or of what is not.
+fn reasons(outcome: &StabilityOutcome, is_trouble: bool) -> Vec<Reason<'_>> {
+    let mut found: Vec<Reason> = Vec::new();
+    let rows = outcome.rows.iter().filter(|row| row.is_trouble() == is_trouble && !row.verdict.words().is_empty());
+    for row in rows {
+        let (words, way_out) = (row.verdict.words(), row.way_out);
         let plain: String = words.chars().filter(|c| c.is_alphabetic() || *c == ' ').collect();
-        match found.iter_mut().find(|(family, known, ..)| *family == row.family && *known == plain) {
-            Some(known) => known.3 += 1,
-            None => found.push((row.family, plain, words.into(), 1)),
+        let like = |known: &&mut Reason| known.family == row.family && known.plain == plain && known.way_out == way_out;
+        match found.iter_mut().find(like) {
+            Some(known) => known.count += 1,
+            None => found.push(Reason { family: row.family, plain, words, way_out, count: 1 }),
         }
     }
-    found.into_iter().map(|(family, _, words, count)| (family, words, count)).collect()
+    found
 }
 
 /// Every case in full.
@@ -116,6 +129,7 @@ fn table(outcome: &StabilityOutcome) -> String {
         "softest",
         "step_s",
         "iterations",
+        "way_out",
     ];
     let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
     let row = |row: &StabilityRow| {
@@ -136,6 +150,7 @@ fn table(outcome: &StabilityOutcome) -> String {
             full(row.softest),
             full(row.step),
             row.iterations.map_or(String::new(), |count| count.to_string()),
+            row.way_out.unwrap_or_default().into(),
         ]
     };
     csv(&header, &outcome.rows.iter().map(row).collect::<Vec<_>>())

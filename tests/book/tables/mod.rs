@@ -3,6 +3,7 @@
 //! A page has a table between `<!-- table NAME -->` and `<!-- end -->`. `SPRINGFIT_WRITE_BOOK=1 cargo test --release book -- --include-ignored`
 //! writes all tables anew.
 
+mod angles;
 mod bodies;
 mod cantilevers;
 mod choice;
@@ -13,6 +14,7 @@ mod motion;
 mod norms;
 mod paper;
 mod readme;
+mod related;
 mod stability;
 mod tensile;
 mod truths;
@@ -47,7 +49,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 19] = [
+const MAKERS: [Maker; 22] = [
     ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
@@ -67,6 +69,9 @@ const MAKERS: [Maker; 19] = [
     ("stability", stability::table, true, Kept::Magnitude),
     ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),
+    ("angles", angles::table, false, Kept::ToRounding),
+    ("related", related::table, false, Kept::Roughly),
+    ("sparsity", related::sparsity, false, Kept::Roughly),
 ];
 
 /// A scene of the folder `scenes`.

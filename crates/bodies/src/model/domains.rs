@@ -115,6 +115,7 @@ fn table(dimension: usize, content: f64, gradients: Vec<f64>) -> Tabulation {
         volumetric: Vec::new(),
         values: Vec::new(),
         gradients,
+        modes: None,
     }
 }
 

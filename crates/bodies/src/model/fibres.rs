@@ -64,6 +64,7 @@ fn of_cells<'l>(
                 volumetric: Vec::new(),
                 values: Vec::new(),
                 gradients: along.collect(),
+                modes: None,
             };
             let law = SpringLaw::new(law.clone(), &[volume * thickness]);
             springs.push(MeasureSpring {

@@ -38,6 +38,7 @@ impl Program {
     /// # Errors
     /// The element has no such groups, or not those that the recipe needs; or the springs are linearly dependent.
     pub fn new(element: &Element, groups: Option<&[String]>, recipe: Recipe) -> Result<Program> {
+        element.check_plain("generated code")?;
         let springs = recipe.springs(element, groups)?;
         let prefix = format!("{}_{}", identifier(&element.name), identifier(recipe.name()));
         let plan = Plan::of(element, &springs);

@@ -45,9 +45,15 @@ pub struct Definition {
 #[serde(deny_unknown_fields)]
 pub struct NodeEntry {
     /// The node is at this place of the reference cell, numbers or constants such as `"1/3"` and `"sqrt(3)/3"`.
+    #[serde(default)]
+    #[schemars(extend("x-default" = "none, with `condense`"))]
     pub at: Vec<Constant>,
     /// The shape function is 1 at the node and 0 at the others.
     pub shape: String,
+    /// The function belongs to no node: it is 0 at all of them, and its amplitude is the one of least energy in each cell. Such functions,
+    /// bubbles and incompatible modes, come after the nodes.
+    #[serde(default)]
+    pub condense: bool,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -187,7 +187,7 @@ impl SpringKind {
 
 impl Symmetry {
     /// One list that represents all orders in which a spring measures the same.
-    pub(super) fn representative(self, nodes: &[usize]) -> Vec<usize> {
+    pub(crate) fn representative(self, nodes: &[usize]) -> Vec<usize> {
         match self {
             Symmetry::Any => {
                 let mut sorted = nodes.to_vec();

@@ -7,6 +7,7 @@
 
 mod bounds;
 mod cell;
+mod condensing;
 mod constant;
 mod definition;
 mod formula;
@@ -14,6 +15,7 @@ mod groups;
 mod integrand;
 mod invariance;
 mod kind;
+mod modes;
 mod outline;
 mod proof;
 mod quadrature;
@@ -29,13 +31,14 @@ pub(crate) use formula::{Formula, dot};
 pub use groups::SpringGroup;
 pub use integrand::Integrand;
 pub use kind::{Kind, SpringKind, Symmetry};
+pub use modes::Modes;
 pub use outline::Outline;
 pub use quadrature::Quadrature;
 pub use springfit_shipped::{ELEMENTS as SHIPPED, ElementFile};
 pub use symmetry::permutations;
 pub use tabulation::{ShapeFunctions, Tabulation};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::named::unknown;
 use crate::symbolic::{Polynomial, Scope};
@@ -139,7 +142,8 @@ impl Element {
     }
 
     fn proved(text: &str) -> Result<Element> {
-        let definition: Definition = file::parse_toml(text)?;
+        let mut definition: Definition = file::parse_toml(text)?;
+        let condensed = condensing::take(&mut definition)?;
         let dimension = definition.cell.dimension();
         proof::names(&definition)?;
         proof::coordinates(&definition)?;
@@ -154,7 +158,11 @@ impl Element {
         for (a, node) in definition.nodes.iter().enumerate() {
             values.push(scope.expression(&node.shape).map_err(|e| e.under(format!("nodes[{a}].shape")))?);
         }
-        proof::moderate(&definition, &values)?;
+        let mut beside = Vec::new();
+        for (a, mode) in (definition.nodes.len()..).zip(&condensed) {
+            beside.push(scope.expression(&mode.shape).map_err(|e| e.under(format!("nodes[{a}].shape")))?);
+        }
+        proof::moderate(&definition, &[&values[..], &beside].concat())?;
         proof::nodal(&definition, &values)?;
         let rule = proof::quadrature(&definition, &definition.quadrature, "quadrature")?;
         let volumetric = definition.volumetric_quadrature.as_ref();
@@ -166,8 +174,10 @@ impl Element {
 
         let functions = ShapeFunctions::new(values, dimension);
         proof::tabulable(&functions, rule.weights.len() + volumetric.as_ref().map_or(0, |r| r.weights.len()))?;
-        let tabulation = Tabulation::new(&functions, &rule, volumetric.as_ref());
+        let mut tabulation = Tabulation::new(&functions, &rule, volumetric.as_ref());
         proof::finite(&tabulation)?;
+        tabulation.modes =
+            condensing::tabulate(&definition, beside, &functions, &tabulation, (&rule, volumetric.as_ref()))?;
         Ok(Element {
             reflection: reflection(&positions, dimension),
             name: definition.name,
@@ -194,6 +204,26 @@ impl Element {
     /// Whether the nodes are the corners of the cell alone, so that its edges are straight.
     pub fn has_corners_alone(&self) -> bool {
         self.nodes() == self.cell.corners().len()
+    }
+
+    /// The number of functions beside those of the nodes, whose amplitudes are condensed cell by cell.
+    pub fn modes(&self) -> usize {
+        self.tabulation.modes.as_ref().map_or(0, |modes| modes.count())
+    }
+
+    /// Checks that no function is condensed.
+    ///
+    /// # Errors
+    /// Some are; `what` cannot be had of such an element: kind `Unsupported`.
+    pub fn check_plain(&self, what: &str) -> Result<()> {
+        match self.modes() {
+            0 => Ok(()),
+            count => {
+                let expected = format!("an element without condensed functions for {what}");
+                let found = format!("{} with {count}", self.name);
+                Err(Error::expected("element", expected, found).of_kind(ErrorKind::Unsupported))
+            }
+        }
     }
 
     /// The number of nodes.

@@ -34,6 +34,7 @@ impl Element {
             volumetric: Vec::new(),
             values: Vec::new(),
             gradients: Vec::new(),
+            modes: None,
         };
         for (point, weight) in rule {
             table.weights.push(weight);

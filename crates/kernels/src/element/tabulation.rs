@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+use super::modes::Modes;
 use super::quadrature::Quadrature;
 use crate::symbolic::{Expr, Program};
 
@@ -23,6 +24,8 @@ pub struct Tabulation<C = f64> {
     pub values: Vec<C>,
     /// The gradients `∂N_a/∂ξ_k(ξ_q)`, `[points × nodes × dimension]`.
     pub gradients: Vec<C>,
+    /// The functions that are condensed, if the element has any.
+    pub modes: Option<Box<Modes<C>>>,
 }
 
 impl Tabulation {
@@ -36,6 +39,7 @@ impl Tabulation {
             volumetric: Vec::new(),
             values: Vec::new(),
             gradients: Vec::new(),
+            modes: None,
         };
         if let Some(other) = volumetric {
             table.volumetric = vec![0.0; rule.weights.len()];
@@ -60,7 +64,7 @@ impl Tabulation {
             .chunks_exact(self.dimension)
             .flat_map(|g| tangents.iter().map(move |t| g.iter().zip(t).map(|(a, b)| a * b).sum()))
             .collect();
-        Tabulation { gradients, dimension: tangents.len(), ..self }
+        Tabulation { gradients, dimension: tangents.len(), modes: None, ..self }
     }
 }
 
@@ -76,6 +80,7 @@ impl<C> Tabulation<C> {
             volumetric: all(&self.volumetric),
             values: all(&self.values),
             gradients: all(&self.gradients),
+            modes: self.modes.as_ref().map(|modes| Box::new(modes.map(&convert))),
         }
     }
 

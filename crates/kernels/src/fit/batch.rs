@@ -5,12 +5,13 @@
 use super::closed::Closed;
 use super::constrained::{MANY, solve_nonnegative, solve_wide};
 use super::delicate::DelicateCells;
-use super::least_squares::off_diagonal_equations;
 use super::method::{Certificate, Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
+use super::rows::Rows;
 use super::settings::Fit;
+use super::weight::ClosedWeight;
 use super::wide::Wide;
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke};
@@ -36,6 +37,9 @@ pub struct Batch<'a> {
 /// If two nodes are nearer than this, relative to the cell, the gradients of springs on functions have less than ten
 /// digits in `f64`.
 const NEAR: f64 = 1e-6;
+
+/// If the sine of an angle that a spring measures is below this, its gradient has lost a digit or more.
+const STRAIGHT: f64 = 0.1;
 
 /// What is reported of the cells besides their constants.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -231,7 +235,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         let normal = match &self.closed {
             Some(closed) => closed.equations_alone(self.springs, &x, &geometry, hooke),
-            None => off_diagonal_equations(self.springs, &x, &geometry, hooke),
+            None => {
+                let rows = Rows::of_gradients(self.springs, &x, &geometry, measured);
+                rows.normal(ClosedWeight::OffDiagonal, &x, &geometry.entries(hooke))
+            }
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
@@ -239,9 +246,10 @@ impl<'a, T: Packed> Workspace<'a, T> {
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })
     }
 
-    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which nearly coincide.
+    /// Whether springs measure functions of nodes at `x`, `[nodes × dimension]`, two of which nearly coincide, or angles near 0 or π.
     fn are_near(&self, x: &[f64]) -> bool {
-        !self.measured.is_empty() && nearness(x, self.element.dimension()) < NEAR
+        !self.measured.is_empty()
+            && (nearness(x, self.element.dimension()) < NEAR || self.springs.least_sine(x) < STRAIGHT)
     }
 
     /// The gradients of the springs on functions in the first `cells` lanes; the other lanes repeat the first. False if

@@ -48,7 +48,7 @@ enum Steps {
 impl<T: Real> Closed<T> {
     /// None for objectives without a closed form.
     pub fn of(springs: &Springs, fit: &Fit) -> Option<Closed<T>> {
-        let Route::Closed(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+        let Route::Closed(weight) = fit.objective.route(springs.need_matrix()) else { return None };
         let lengths_alone = springs.content.is_none() && springs.parallel.is_empty();
         let steps = match weight {
             _ if fit.tied => Steps::Groups,

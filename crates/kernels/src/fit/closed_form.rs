@@ -5,8 +5,9 @@
 use super::least_squares::normal_equations;
 use super::modulus::{Modulus, sum};
 use super::normal::Normal;
+use super::rows::Rows;
 use super::weight::{ClosedWeight, Weight};
-use crate::element::{Element, permutations};
+use crate::element::{Element, SpringKind, Symmetry, permutations};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Moduli;
 use crate::scalar::Scalar;
@@ -39,6 +40,7 @@ pub struct ClosedForm {
     /// The springs between all pairs of nodes of the exact network, for [`ClosedForm::exact`].
     exact: Vec<SymmetryClass>,
     springs: Springs,
+    rows: Rows<Fraction>,
     /// The equations of all entries; their right-hand side is unused.
     plain: Normal<Fraction>,
     geometry: Geometry<Fraction>,
@@ -52,6 +54,8 @@ pub struct SymmetryClass {
     pub group: String,
     /// The nodes of each spring; all nodes for the spring on the content.
     pub springs: Vec<Vec<usize>>,
+    /// The place of each among all springs.
+    pub places: Vec<usize>,
 }
 
 /// The exact network: springs of rest length zero, and springs on the content.
@@ -82,7 +86,7 @@ impl ClosedForm {
     ///
     /// # Errors
     /// The springs belong to another element; a node or shape function is not rational; the element's own quadrature is
-    /// not exact on such a shape; or the measure of a spring requires roots.
+    /// not exact on such a shape; or `∇c ∇cᵀ` of the measure of a spring requires roots.
     pub fn new(element: &Element, springs: &Springs, sides: bool) -> Result<ClosedForm> {
         Self::of(element, springs, sides, Modulus::isotropic(element.dimension()))
     }
@@ -97,12 +101,10 @@ impl ClosedForm {
 
     fn of(element: &Element, springs: &Springs, sides: bool, moduli: Vec<Modulus>) -> Result<ClosedForm> {
         springs.check(element)?;
+        element.check_plain("closed forms, which are linear in the moduli")?;
         let refuse = |why: &str| {
             Error::new(format!("{} has no closed form: {why}", element.name)).of_kind(ErrorKind::Unsupported)
         };
-        if !springs.functions.is_empty() {
-            return Err(refuse("its angles, areas, couplings or measures need roots"));
-        }
         let positions =
             element.rational_positions.as_ref().ok_or_else(|| refuse("a node is not at a rational place"))?;
         let table = element
@@ -137,14 +139,40 @@ impl ClosedForm {
         }
         let by_axis = !is_isotropic(&moduli);
         let classes = classes(element, springs, &x, by_axis);
-        let mut plain = Normal::default();
-        normal_equations(ClosedWeight::None, springs, &x, &geometry, &moduli[0].hooke(d, &x[0]), &mut plain);
+        let (mut functions, mut squares) = (Vec::new(), Vec::new());
+        for (f, spring) in springs.functions.iter().enumerate() {
+            let at: Vec<Fraction> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).cloned().collect();
+            let (row, square) = spring.rational_row(&at, d).ok_or_else(|| {
+                let group = &springs.names[springs.groups[springs.pairs.len() + f]];
+                refuse(&format!("what its springs \"{group}\" measure needs roots, or has no gradient on this shape"))
+            })?;
+            let mut whole = vec![x[0].zero(); x.len()];
+            for (&a, row) in spring.nodes.iter().zip(row.chunks_exact(d)) {
+                (0..d).for_each(|k| whole[a * d + k] = whole[a * d + k].clone() + &row[k]);
+            }
+            functions.extend(whole);
+            squares.push(square);
+        }
+        let rows = Rows::new(springs, &x, &geometry, (functions, squares));
+        let plain = equations(ClosedWeight::None, springs, &x, &geometry, &rows, &moduli[0]);
         let stiffness: Vec<_> = moduli.iter().map(|modulus| modulus.stiffness(&geometry)).collect();
         let norm = quadratic(moduli.len(), |i, j| inner(&stiffness[i], &stiffness[j]));
         let mut exact = self::classes(element, &Springs::exact(element, false, false), &x, by_axis);
         exact.retain(|class| class.springs[0].len() == 2);
         let springs = springs.clone();
-        Ok(ClosedForm { moduli, variables, positions: x, stiffness, classes, norm, exact, springs, plain, geometry })
+        Ok(ClosedForm {
+            moduli,
+            variables,
+            positions: x,
+            stiffness,
+            classes,
+            norm,
+            exact,
+            springs,
+            rows,
+            plain,
+            geometry,
+        })
     }
 
     /// The exact network: `k_ab = −μ ∫ ∇N_a·∇N_b dV` of every pair of nodes, and the content.
@@ -173,10 +201,7 @@ impl ClosedForm {
         let zero = self.positions[0].zero();
         let mut group = vec![0; self.springs.len()];
         for (i, class) in self.classes.iter().enumerate() {
-            for nodes in &class.springs {
-                let spring = self.springs.pairs.iter().position(|pair| pair[..] == nodes[..]);
-                group[spring.unwrap_or(self.springs.len() - 1)] = i;
-            }
+            class.places.iter().for_each(|&spring| group[spring] = i);
         }
         let solve = |normal: &Normal<Fraction>| {
             let mut tied = Normal::default();
@@ -193,7 +218,7 @@ impl ClosedForm {
                 let normal = self.equations(closed, &self.moduli[0]);
                 let of_stiffness = |r: &Vec<Fraction>| {
                     let mut normal = normal.clone();
-                    normal.rhs = self.works(r, closed == ClosedWeight::OffDiagonal);
+                    normal.rhs = self.rows.works(r, closed == ClosedWeight::OffDiagonal);
                     solve(&normal)
                 };
                 self.stiffness.iter().map(of_stiffness).collect::<Result<Vec<_>>>()?
@@ -209,7 +234,7 @@ impl ClosedForm {
             (0..m).map(row).collect()
         };
         let images: Vec<_> = k.iter().map(image).collect();
-        let works: Vec<_> = self.stiffness.iter().map(|r| self.works(r, false)).collect();
+        let works: Vec<_> = self.stiffness.iter().map(|r| self.rows.works(r, false)).collect();
         let less = |i: usize, j: usize| inner(&works[i], &k[j]) + &inner(&works[j], &k[i]);
         let more = |i: usize, j: usize| inner(&k[i], &images[j]);
         let change = quadratic(self.moduli.len(), |i, j| more(i, j) - &less(i, j));
@@ -220,39 +245,24 @@ impl ClosedForm {
 
     /// The equations of the springs if this modulus is one and the others are zero.
     fn equations(&self, weight: ClosedWeight, modulus: &Modulus) -> Normal<Fraction> {
-        let hooke = modulus.hooke(self.geometry.dimension, &self.positions[0]);
-        let mut normal = Normal::default();
-        normal_equations(weight, &self.springs, &self.positions, &self.geometry, &hooke, &mut normal);
-        normal
+        equations(weight, &self.springs, &self.positions, &self.geometry, &self.rows, modulus)
     }
+}
 
-    /// `⟨R, g_s g_sᵀ⟩` of every spring, over all blocks or over those of different nodes.
-    fn works(&self, r: &[Fraction], off_diagonal: bool) -> Vec<Fraction> {
-        let (n, d) = (self.geometry.nodes, self.geometry.dimension);
-        // xᵀ R_ab y
-        let block = |a: usize, b: usize, x: &[Fraction], y: &[Fraction]| {
-            let entry = |e: usize| r[(a * d + e / d) * n * d + b * d + e % d].clone() * &x[e / d] * &y[e % d];
-            sum((0..d * d).map(entry), &r[0])
-        };
-        let of_pair = |&[a, b]: &[usize; 2]| {
-            let x = &self.positions;
-            let along: Vec<Fraction> = (0..d).map(|k| x[b * d + k].clone() - &x[a * d + k]).collect();
-            let across = block(a, b, &along, &along) + &block(b, a, &along, &along);
-            let own = match off_diagonal {
-                true => r[0].zero(),
-                false => block(a, a, &along, &along) + &block(b, b, &along, &along),
-            };
-            (own - &across) / &inner(&along, &along)
-        };
-        let mut works: Vec<Fraction> = self.springs.pairs.iter().map(of_pair).collect();
-        if self.springs.content.is_some() {
-            let gradient = self.geometry.content_gradient();
-            let of = |a: usize| &gradient[a * d..(a + 1) * d];
-            let blocks = (0..n * n).filter(|e| !(off_diagonal && e / n == e % n));
-            works.push(sum(blocks.map(|e| block(e / n, e % n, of(e / n), of(e % n))), &r[0]));
-        }
-        works
+fn equations(
+    weight: ClosedWeight,
+    springs: &Springs,
+    x: &[Fraction],
+    geometry: &Geometry<Fraction>,
+    rows: &Rows<Fraction>,
+    modulus: &Modulus,
+) -> Normal<Fraction> {
+    if !springs.functions.is_empty() {
+        return rows.normal(weight, x, &modulus.stiffness(geometry));
     }
+    let mut normal = Normal::default();
+    normal_equations(weight, springs, x, geometry, &modulus.hooke(springs.dimension, &x[0]), &mut normal);
+    normal
 }
 
 fn to_f64(value: &BigRational) -> f64 {
@@ -297,24 +307,46 @@ fn classes(element: &Element, springs: &Springs, x: &[Fraction], by_axis: bool) 
         if by_axis { along.collect() } else { vec![sum(along, &x[0])] }
     };
     let squares: Vec<Vec<Fraction>> = (0..n * n).map(|i| square(i / n, i % n)).collect();
-    let keeps = |p: &Vec<usize>| (0..n * n).all(|i| squares[i] == squares[p[i / n] * n + p[i % n]]);
+    let pairs = springs.pairs.iter().map(|pair| (SpringKind::Length, pair.to_vec()));
+    let functions = springs.functions.iter().map(|f| (f.kind, f.nodes.clone()));
+    let all: Vec<(SpringKind, Vec<usize>)> = pairs.chain(functions).collect();
+    let known = |kind: SpringKind, nodes: &[usize]| (kind, kind.properties().symmetry.representative(nodes));
+    let own: Vec<(SpringKind, Vec<usize>)> = all.iter().map(|(kind, nodes)| known(*kind, nodes)).collect();
+    // A symmetry takes every spring to a spring. What a user's own expression measures may change where the element is mirrored.
+    let takes = |p: &[usize], kind: SpringKind, nodes: &[usize]| {
+        let image: Vec<usize> = nodes.iter().map(|&a| p[a]).collect();
+        image == *nodes || kind.properties().symmetry != Symmetry::Ordered && own.contains(&known(kind, &image))
+    };
+    let keeps = |p: &Vec<usize>| {
+        (0..n * n).all(|i| squares[i] == squares[p[i / n] * n + p[i % n]])
+            && all.iter().all(|(kind, nodes)| takes(p, *kind, nodes))
+    };
     let symmetries: Vec<Vec<usize>> =
         permutations(element.cell, &element.positions).into_iter().filter(keeps).collect();
     let mut classes: Vec<SymmetryClass> = Vec::new();
-    for (s, pair) in springs.pairs.iter().enumerate() {
-        let images = symmetries.iter().map(|p| [p[pair[0]], p[pair[1]]]);
-        let of = images.clone().find_map(|[a, b]| {
-            classes.iter().position(|class| class.springs.iter().any(|t| t[..] == [a, b] || t[..] == [b, a]))
-        });
+    for (s, (kind, nodes)) in all.iter().enumerate() {
+        let symmetry = kind.properties().symmetry;
+        let mut images =
+            symmetries.iter().map(|p| symmetry.representative(&nodes.iter().map(|&a| p[a]).collect::<Vec<_>>()));
         let group = &springs.names[springs.groups[s]];
-        match of.filter(|&i| classes[i].group == *group) {
-            Some(i) => classes[i].springs.push(pair.to_vec()),
-            None => classes.push(SymmetryClass { group: group.clone(), springs: vec![pair.to_vec()] }),
+        let of = images.find_map(|image| {
+            let is_like = |class: &SymmetryClass| {
+                class.group == *group && class.springs.iter().any(|t| symmetry.representative(t) == image)
+            };
+            classes.iter().position(is_like)
+        });
+        match of {
+            Some(i) => {
+                classes[i].springs.push(nodes.clone());
+                classes[i].places.push(s);
+            }
+            None => classes.push(SymmetryClass { group: group.clone(), springs: vec![nodes.clone()], places: vec![s] }),
         }
     }
     if springs.content.is_some() {
-        let group = springs.names[springs.groups[springs.len() - 1]].clone();
-        classes.push(SymmetryClass { group, springs: vec![(0..n).collect()] });
+        let last = springs.len() - 1;
+        let group = springs.names[springs.groups[last]].clone();
+        classes.push(SymmetryClass { group, springs: vec![(0..n).collect()], places: vec![last] });
     }
     classes
 }

@@ -8,8 +8,9 @@ use super::least_squares::normal_equations;
 use super::method::Verdict;
 use super::normal::Normal;
 use super::precision::{differences, measured, solved};
+use super::rows::Rows;
 use super::settings::Fit;
-use super::weight::Route;
+use super::weight::{ClosedWeight, Route};
 use crate::element::Element;
 use crate::material::Hooke;
 use crate::scalar::{DoubleDouble, Scalar};
@@ -26,9 +27,8 @@ pub struct DelicateCells<'a> {
 
 impl DelicateCells<'_> {
     /// Writes the constants of the cell with nodes at `x`, `[nodes × dimension]`, m. `plain` and `shape` are the
-    /// positions relative to the first node and the geometry, in `f64`. None if the Jacobian vanishes, a spring has no
-    /// gradient, or the objective is that of the blocks and springs measure functions, which is implemented for `f64`
-    /// only.
+    /// positions relative to the first node and the geometry, in `f64`. None if the Jacobian vanishes or a spring has no
+    /// gradient.
     pub fn constants(&self, x: &[f64], (plain, shape): (&[f64], &Geometry), constants: &mut [f64]) -> Option<Verdict> {
         let DelicateCells { element, springs, hooke, fit } = *self;
         let any = DoubleDouble::from(0.0);
@@ -37,14 +37,22 @@ impl DelicateCells<'_> {
         if !geometry.update(&element.tabulation, &x) {
             return None;
         }
-        let route = fit.objective.route(!springs.functions.is_empty());
-        let Route::Closed(weight) = route else {
-            let measured = measured(springs, &x)?;
-            let method = solved(springs, &x, &geometry, hooke, &measured, fit)?;
-            return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
-        };
+        let route = fit.objective.route(springs.need_matrix());
         let mut normal = Normal::default();
-        normal_equations(weight, springs, &x, &geometry, &hooke.of_kind(&any), &mut normal);
+        match route {
+            Route::Closed(weight) => {
+                normal_equations(weight, springs, &x, &geometry, &hooke.of_kind(&any), &mut normal);
+            }
+            Route::Blocks => {
+                let rows = Rows::of_gradients(springs, &x, &geometry, measured(springs, &x)?);
+                normal = rows.normal(ClosedWeight::OffDiagonal, &x, &geometry.entries(&hooke.of_kind(&any)));
+            }
+            Route::Reduced(_) => {
+                let measured = measured(springs, &x)?;
+                let method = solved(springs, &x, &geometry, hooke, &measured, fit)?;
+                return Some(method.finish_alone(|| are_independent(springs, fit.tied, plain, shape), constants));
+            }
+        }
         let normal = normal.by_unknowns(springs, fit.tied);
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         fit.spread(springs, constants, &k);

@@ -109,6 +109,7 @@ impl<'a, T: Packed> Differences<'a, T> {
             fill(&mut self.geometry.gradients, &geometry.gradients);
             fill(&mut self.geometry.volumes, &geometry.volumes);
             fill(&mut self.geometry.volumetric, &geometry.volumetric);
+            fill(&mut self.geometry.modes, &geometry.modes);
         }
         Ok(())
     }
@@ -171,7 +172,10 @@ impl<'a, T: Packed> Differences<'a, T> {
         for entry in self.stiffness.iter_mut() {
             *entry = zero.clone();
         }
-        for (grad, v, w) in self.geometry.each_point() {
+        if self.geometry.is_condensed() {
+            self.stiffness.clone_from_slice(&self.geometry.entries(&self.hooke.lanes));
+        }
+        for (grad, v, w) in self.geometry.each_point().filter(|_| !self.geometry.is_condensed()) {
             let grad = grad.as_chunks::<D>().0;
             match &self.hooke.lanes {
                 Hooke::Isotropic(Moduli { lambda, mu }) => {

@@ -38,7 +38,7 @@ pub fn constants_in<T: Scalar>(
     x: &[T],
     moduli: &Moduli<T::Constant>,
 ) -> Result<Vec<T>> {
-    let weight = weight.closed(!springs.functions.is_empty())?;
+    let weight = weight.closed(springs.need_matrix())?;
     if (table.nodes, table.dimension) != (springs.nodes, springs.dimension) {
         let expected = format!("a table of {} nodes in {} dimensions", springs.nodes, springs.dimension);
         return Err(Error::expected("table", expected, format!("{} in {}", table.nodes, table.dimension)));
@@ -171,29 +171,6 @@ pub(super) fn equations<T: Scalar, const D: usize>(
     if springs.content.is_some() {
         cell.content(weight, &mut gram[(m - 1) * m..m * m], rhs);
     }
-}
-
-/// The equations of the blocks of different nodes if springs measure functions, of which only g is known:
-/// `M_st = (g_s·g_t)² − Σ_a (g_sa·g_ta)²`, `b_s = g_sᵀ R g_s − Σ_a g_saᵀ R_aa g_sa`.
-pub fn off_diagonal_equations(springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
-    let (d, m, size) = (springs.dimension, springs.len(), x.len());
-    let r = geometry.stiffness(hooke);
-    let mut g = Vec::new();
-    springs.gradients(x, geometry, &mut g);
-    let row = |s: usize| &g[s * size..(s + 1) * size];
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut normal = Normal::new(vec![0.0; m * m], vec![0.0; m]);
-    for s in 0..m {
-        for t in 0..=s {
-            let alone = row(s).chunks_exact(d).zip(row(t).chunks_exact(d)).map(|(a, b)| dot(a, b).powi(2));
-            normal.gram[s * m + t] = dot(row(s), row(t)).powi(2) - alone.sum::<f64>();
-        }
-        for i in 0..size {
-            let others = (0..size).filter(|j| j / d != i / d);
-            normal.rhs[s] += row(s)[i] * others.map(|j| r[(i, j)] * row(s)[j]).sum::<f64>();
-        }
-    }
-    normal
 }
 
 /// Sets the lower triangle to zero.

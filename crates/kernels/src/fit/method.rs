@@ -106,7 +106,7 @@ pub struct Verdict {
 impl<T: Real> Method<T> {
     /// None for objectives that do not require the reduced element.
     pub fn like(any: &T, springs: &Springs, fit: &Fit) -> Option<Method<T>> {
-        let Route::Reduced(weight) = fit.objective.route(!springs.functions.is_empty()) else { return None };
+        let Route::Reduced(weight) = fit.objective.route(springs.need_matrix()) else { return None };
         Some(Method::weighted(any, springs, fit, weight))
     }
 

@@ -43,6 +43,7 @@ pub mod published;
 mod reduction;
 mod residual;
 mod rest;
+mod rows;
 mod sampled;
 mod settings;
 mod singular;

@@ -40,7 +40,7 @@ impl<T> Default for Nodal<T> {
 /// Whether the equations of the nodes are fewer than those of the springs.
 pub fn is_shorter(springs: &Springs) -> bool {
     let small = springs.nodes * springs.dimension * (springs.dimension + 1) / 2;
-    springs.functions.is_empty() && springs.parallel.is_empty() && 5 * small < 4 * springs.pairs.len()
+    !springs.need_matrix() && springs.parallel.is_empty() && 5 * small < 4 * springs.pairs.len()
 }
 
 impl<T: Scalar> Nodal<T> {

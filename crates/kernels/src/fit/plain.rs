@@ -29,15 +29,19 @@ const ROUNDING: f64 = 1e-12;
 /// strain `∂u_k/∂x_l + ∂u_l/∂x_k` (`∂u_k/∂x_k` on the diagonal) that a displacement of node a causes, `∂N_a/∂x_l` in the column of its
 /// direction k. v_q is the weight of the point multiplied by the Jacobian determinant.
 ///
+/// Functions that belong to no node have columns behind those of the nodes, from which they are taken out: `R_uu − R_ua R_aa⁻¹ R_au`.
+///
 /// # Errors
 /// The element is tangled.
 pub fn stiffness(element: &Element, x: &[f64], hooke: &Hooke) -> Result<DMatrix<f64>> {
     let geometry = geometry(element, x)?;
-    let (n, d) = (element.nodes(), element.dimension());
+    let (d, modes) = (element.dimension(), element.modes());
+    let n = element.nodes() + modes;
     let (law, lambda) = hooke.entries(d);
     let law = DMatrix::from_row_slice(strains(d), strains(d), &law);
     let mut r = DMatrix::zeros(n * d, n * d);
-    for (gradients, volume, volumetric) in geometry.each_point() {
+    for (q, (gradients, volume, volumetric)) in geometry.each_point().enumerate() {
+        let gradients = [gradients, &geometry.modes[q * modes * d..(q + 1) * modes * d]].concat();
         let mut b = DMatrix::zeros(strains(d), n * d);
         let mut divergence = DVector::zeros(n * d);
         for a in 0..n {
@@ -50,6 +54,14 @@ pub fn stiffness(element: &Element, x: &[f64], hooke: &Hooke) -> Result<DMatrix<
         // Elements may have a rule of their own for the term λ (div u)².
         r += (volumetric - volume) * lambda * &divergence * divergence.transpose();
     }
+    if modes == 0 {
+        return Ok(r);
+    }
+    let (kept, beside) = (x.len(), modes * d);
+    let own = r.view((kept, kept), (beside, beside)).into_owned().pseudo_inverse(0.0);
+    let own = own.map_err(Error::new)?;
+    let across = r.view((0, kept), (kept, beside)).into_owned();
+    let r = r.view((0, 0), (kept, kept)) - &across * own * across.transpose();
     Ok(r)
 }
 

@@ -7,8 +7,9 @@ use super::input::{check_finite, check_length, check_moduli, check_nodes};
 use super::least_squares::normal_equations;
 use super::method::Method;
 use super::normal::Normal;
+use super::rows::Rows;
 use super::settings::Fit;
-use super::weight::{Route, Weight};
+use super::weight::{ClosedWeight, Route, Weight};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Hooke, Moduli};
@@ -82,15 +83,46 @@ fn closed_equations<T: Real>(
     moduli: &Moduli,
     fit: &Fit,
 ) -> Result<Option<Normal<T>>> {
-    let Route::Closed(weight) = fit.objective.route(!springs.functions.is_empty()) else { return Ok(None) };
+    let weight = match fit.objective.route(springs.need_matrix()) {
+        Route::Closed(weight) => weight,
+        Route::Blocks => ClosedWeight::OffDiagonal,
+        Route::Reduced(_) => return Ok(None),
+    };
+    let normal = equations(any, element, springs, x, moduli, weight)?;
+    Ok(Some(normal.by_unknowns(springs, fit.tied)))
+}
+
+/// The normal equations of all springs under this weight.
+fn equations<T: Real>(
+    any: &T,
+    element: &Element,
+    springs: &Springs,
+    x: &[f64],
+    moduli: &Moduli,
+    weight: ClosedWeight,
+) -> Result<Normal<T>> {
+    let precise = differences(&DoubleDouble::from(0.0), element.dimension(), x);
     let x = differences(any, element.dimension(), x);
     let mut geometry = Geometry::like(any, &element.tabulation);
     if !geometry.update(&element.tabulation, &x) {
         return Err(no_answer("the Jacobian is not positive everywhere"));
     }
-    let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, &Hooke::Isotropic(*moduli).of_kind(any), &mut normal);
-    Ok(Some(normal.by_unknowns(springs, fit.tied)))
+    let hooke = Hooke::Isotropic(*moduli).of_kind(any);
+    if !springs.need_matrix() {
+        let mut normal = Normal::default();
+        normal_equations(weight, springs, &x, &geometry, &hooke, &mut normal);
+        return Ok(normal);
+    }
+    let measured = known(any, measured(springs, &precise))
+        .ok_or_else(|| no_answer("what one of the springs measures has no finite gradient other than zero"))?;
+    let rows = Rows::of_gradients(springs, &x, &geometry, measured);
+    Ok(rows.normal(weight, &x, &geometry.entries(&hooke)))
+}
+
+/// Numbers of more digits in those of the kind of `any`.
+fn known<T: Real>(any: &T, values: Option<Vec<DoubleDouble>>) -> Option<Vec<T>> {
+    let known = |g: DoubleDouble| any.constant(&g.hi) + &any.constant(&g.lo);
+    Some(values?.into_iter().map(known).collect())
 }
 
 /// The constants of a fit under `k ≥ 0` in double-double numbers, `[springs]`, N/m, if the optimum has the same
@@ -179,8 +211,7 @@ fn shaped<T: Real>(
     if !geometry.update(&element.tabulation, &x) {
         return None;
     }
-    let known = |g: DoubleDouble| any.constant(&g.hi) + &any.constant(&g.lo);
-    let measured: Vec<T> = measured(springs, &precise)?.into_iter().map(known).collect();
+    let measured = known(any, measured(springs, &precise))?;
     solved(springs, &x, &geometry, &Hooke::Isotropic(*moduli), &measured, fit)
 }
 
@@ -214,12 +245,7 @@ pub(super) fn solved<T: Real>(
 /// the equations have no closed form or are singular; or the element has no stiffness.
 pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64], moduli: &Moduli) -> Result<f64> {
     check(element, springs, x, moduli)?;
-    let weight = weight.closed(!springs.functions.is_empty())?;
-    let x = differences(&0.0, element.dimension(), x);
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, &x).map_err(|fault| no_answer(&fault.to_string()))?;
-    let mut normal = Normal::default();
-    normal_equations(weight, springs, &x, &geometry, &Hooke::Isotropic(*moduli), &mut normal);
+    let normal = equations(&0.0, element, springs, x, moduli, weight.closed(false)?)?;
     let (scaled, _) = normal.scaled();
     let m = scaled.size();
     let eigenvalues = nalgebra::DMatrix::from_vec(m, m, scaled.gram).symmetric_eigenvalues();

@@ -99,7 +99,10 @@ impl<T: Real> Reduced<T> {
         let n = springs.nodes;
         let x = &x.as_chunks::<D>().0[..n];
         self.set_mix(weight, x);
-        self.set_stiffness::<D>(n, geometry, hooke);
+        match geometry.is_condensed() {
+            true => self.mix_matrix::<D>(n, &geometry.entries(hooke)),
+            false => self.set_stiffness::<D>(n, geometry, hooke),
+        }
         self.set_gradients(springs, x, geometry, measured);
         self.take_out_rotations::<D>(n);
         if weight.divides_by_stiffness() {

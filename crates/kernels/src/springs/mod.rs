@@ -5,10 +5,13 @@
 //!
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
+mod angle;
 mod content;
+mod functions;
 mod law;
 mod measure;
 mod patch;
+mod rational;
 mod turns;
 mod vector;
 
@@ -23,7 +26,7 @@ pub use vector::{cross, distance, dot, norm, unit};
 use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
-use crate::symbolic::{Differentiable, Expr, Jet};
+use crate::symbolic::Expr;
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses.
@@ -55,6 +58,8 @@ pub struct Springs {
     pub(crate) touching: Vec<(usize, usize)>,
     /// Those of these pairs that join the same two nodes.
     pub(crate) parallel: Vec<(usize, usize)>,
+    /// Whether the element has condensed functions, so that its stiffness is no sum over products of the gradients of its nodes.
+    pub(crate) condensed: bool,
 }
 
 /// A spring on a function of the positions of some nodes of the element.
@@ -91,6 +96,7 @@ impl Springs {
             names: chosen.iter().map(|g| g.name.clone()).collect(),
             touching: Vec::new(),
             parallel: Vec::new(),
+            condensed: element.modes() > 0,
         };
         for (index, group) in chosen.iter().enumerate() {
             let embedded = element.space() > element.dimension();
@@ -147,6 +153,7 @@ impl Springs {
             names: vec![String::new(); pairs.len()],
             touching: sharing(&pairs, 1),
             parallel: sharing(&pairs, 2),
+            condensed: false,
             pairs,
         }
     }
@@ -211,7 +218,13 @@ impl Springs {
             pairs,
             areas,
             points,
+            condensed: element.modes() > 0,
         }
+    }
+
+    /// Whether a fit needs the matrix R and the gradients of the springs, because closed forms do not know a spring or the element.
+    pub(crate) fn need_matrix(&self) -> bool {
+        self.condensed || !self.functions.is_empty()
     }
 
     /// Whether spring s of an exact network measures content.
@@ -337,28 +350,6 @@ impl Springs {
             g[(self.len() - 1) * size..].copy_from_slice(&geometry.content_gradient());
         }
     }
-
-    /// Writes the rows of the springs on functions alone, `[functions × nodes·dimension]`, into `rows`, which must be
-    /// zero. False if a row is zero or not finite.
-    ///
-    /// # Panics
-    /// If `rows` has another length.
-    pub fn function_gradients<T: Differentiable>(&self, x: &[T], rows: &mut [T]) -> bool {
-        let d = self.dimension;
-        let size = self.nodes * d;
-        for (row, spring) in rows.chunks_exact_mut(size).zip(&self.functions) {
-            let at: Vec<T> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).cloned().collect();
-            let gradient = Jet::gradient(&spring.function, &at);
-            for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
-                // Added, because a coupling may name a node twice.
-                row[a * d..(a + 1) * d].iter_mut().zip(g).for_each(|(row, g)| *row = row.clone() + g);
-            }
-        }
-        let springs = rows[..self.functions.len() * size].chunks_exact(size);
-        springs
-            .map(|row| row.iter().map(|g| g.rounded().powi(2)).sum::<f64>())
-            .all(|square| square > 0.0 && square.is_finite())
-    }
 }
 
 /// The pairs of tangents, as sums of the columns t₁, t₂, t₃ of the Jacobian, that span the areas `|n_k|` and
@@ -381,6 +372,7 @@ fn area_tables(table: &Tabulation) -> Vec<Arc<Tabulation>> {
         volumetric: Vec::new(),
         values: table.values[q * table.nodes..(q + 1) * table.nodes].to_vec(),
         gradients: table.gradients[q * size..(q + 1) * size].to_vec(),
+        modes: None,
         ..*table
     };
     let spanned = |q: usize| SPANS.map(|span| Arc::new(at(q).along(&span.map(|t| t.to_vec()))));

@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Stiffness and the reduced space* of the book.
 
+mod condensed;
 mod embedded;
 mod fault;
 mod hyperelastic;
@@ -31,6 +32,10 @@ pub struct Geometry<T = f64> {
     pub volumes: Vec<T>,
     /// The volumes for the term λ (div u)²; empty if it has the same quadrature.
     pub volumetric: Vec<T>,
+    /// The gradients of functions that are condensed, `[points × modes × dimension]`, 1/m.
+    pub modes: Vec<T>,
+    /// The number of functions that are condensed.
+    pub mode_count: usize,
 }
 
 impl<T: Scalar> Geometry<T> {
@@ -43,6 +48,8 @@ impl<T: Scalar> Geometry<T> {
             gradients: vec![any.zero(); table.gradients.len()],
             volumes: vec![any.zero(); table.points()],
             volumetric: vec![any.zero(); table.volumetric.len()],
+            modes: vec![any.zero(); table.modes.as_ref().map_or(0, |modes| modes.gradients.len())],
+            mode_count: table.modes.as_ref().map_or(0, |modes| modes.count()),
         }
     }
 
@@ -91,6 +98,7 @@ impl<T: Scalar> Geometry<T> {
                 }
             }
         }
+        self.update_modes(n, table, x);
         positive
     }
 
@@ -220,12 +228,14 @@ impl Geometry {
     /// `R_ab = ∫ λ ∇N_a ∇N_bᵀ + μ (∇N_b ∇N_aᵀ + ∇N_a·∇N_b I) dV`, the same matrix without the products with zeros.
     /// Natsupakpong and Çavuşoğlu (2010), (13).
     pub fn stiffness(&self, hooke: impl Into<Hooke>) -> DMatrix<f64> {
-        let Moduli { lambda, mu } = match hooke.into() {
-            Hooke::Isotropic(moduli) => moduli,
-            Hooke::Anisotropic(stiffness) => return self.anisotropic(&stiffness),
-        };
         let (n, d) = (self.nodes, self.dimension);
-        let mut r = DMatrix::zeros(n * d, n * d);
+        let size = n * d;
+        let Moduli { lambda, mu } = match hooke.into() {
+            hooke @ Hooke::Anisotropic(_) => return DMatrix::from_vec(size, size, self.entries(&hooke)),
+            hooke if self.is_condensed() => return DMatrix::from_vec(size, size, self.entries(&hooke)),
+            Hooke::Isotropic(moduli) => moduli,
+        };
+        let mut r = DMatrix::zeros(size, size);
         for (grad, v, w) in self.each_point() {
             let (lambda, mu) = (w * lambda, v * mu);
             for a in 0..n {
@@ -243,19 +253,6 @@ impl Geometry {
         }
         r.fill_upper_triangle_with_lower_triangle();
         r
-    }
-
-    fn anisotropic(&self, stiffness: &Stiffness) -> DMatrix<f64> {
-        let size = self.nodes * self.dimension;
-        let mut r = vec![0.0; size * size];
-        for (grad, v, w) in self.each_point() {
-            match self.dimension {
-                1 => add_anisotropic::<f64, 1>(&mut r, grad.as_chunks().0, stiffness, v, w),
-                2 => add_anisotropic::<f64, 2>(&mut r, grad.as_chunks().0, stiffness, v, w),
-                _ => add_anisotropic::<f64, 3>(&mut r, grad.as_chunks().0, stiffness, v, w),
-            }
-        }
-        DMatrix::from_fn(size, size, |i, j| r[i.max(j) * size + i.min(j)])
     }
 }
 

@@ -7,7 +7,7 @@ use super::record::{
 use crate::element::SpringKind;
 use crate::springs::HINGE_POINTS;
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
 /// A hinge on a director: its place among the springs, and its points.
 type Half<'a> = (&'a SpringRecord<'static>, [usize; HINGE_POINTS]);

@@ -127,6 +127,7 @@ impl Measuring {
             volumetric: Vec::new(),
             values: vec![1.0 / nodes as f64; nodes],
             gradients: term.gradients.iter().flatten().copied().collect(),
+            modes: None,
         };
         self.tables.entry(key).or_insert_with(|| Arc::new(table())).clone()
     }

@@ -167,6 +167,7 @@ fn simplex_table(d: usize, space: usize) -> Tabulation {
         volumetric: Vec::new(),
         values: vec![1.0 / (d + 1) as f64; d + 1],
         gradients: (0..=d).flat_map(|a| (0..d).map(move |k| (a, k))).map(gradient).collect(),
+        modes: None,
     }
 }
 

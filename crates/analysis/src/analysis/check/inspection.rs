@@ -38,8 +38,10 @@ pub fn inspect(file: &str, loaded: Result<Element, Error>) -> Inspection {
         }
     };
     let springs: usize = element.springs.iter().map(|g| g.nodes.len().max(1)).sum();
+    let beside =
+        if element.modes() > 0 { format!(" and {} condensed functions", element.modes()) } else { String::new() };
     let finding = format!(
-        "{} nodes, {springs} springs in {} groups, {} quadrature points",
+        "{} nodes{beside}, {springs} springs in {} groups, {} quadrature points",
         element.nodes(),
         element.springs.len(),
         element.tabulation.points()

@@ -21,7 +21,9 @@ const SEED: u64 = 7;
 pub const ASKED: (f64, f64) = (1.0, 0.3);
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
-    let mut properties = vec![stiffness(element), patch(element), moduli(element)];
+    let mut properties = vec![stiffness(element), patch(element)];
+    properties.extend(modes(element));
+    properties.push(moduli(element));
     let formats = &element.formats;
     properties.extend(formats.gmsh.as_ref().map(|entry| round_trip(element, entry, true)));
     properties.extend(formats.vtk.as_ref().map(|entry| round_trip(element, entry, false)));
@@ -123,6 +125,25 @@ fn patch_defect(element: &Element, x: &[f64]) -> f64 {
     }
     let size = volume.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     volume.iter().zip(&boundary).map(|(v, b)| (v - b).abs()).fold(0.0, f64::max) / size
+}
+
+/// A uniform stress must not move the functions that are condensed, on any shape: `∫ ∂M_j/∂x dV = 0`, relative to `∫ |∂M_j/∂x| dV`. Then
+/// the patch test that nodes pass is passed with them.
+fn modes(element: &Element) -> Option<Property> {
+    let (count, d) = (element.modes(), element.dimension());
+    let bubbles = element.tabulation.modes.as_ref()?.bubbles.iter().filter(|is_bubble| **is_bubble).count();
+    let defect = |x: &Vec<f64>| {
+        let geometry = geometry(element, x);
+        let (mut sum, mut size) = (vec![0.0; count * d], 0.0f64);
+        for (gradients, volume) in geometry.modes.chunks_exact(count * d).zip(&geometry.volumes) {
+            sum.iter_mut().zip(gradients).for_each(|(sum, g)| *sum += volume * g);
+            size += volume * gradients.iter().map(|g| g * g).sum::<f64>().sqrt();
+        }
+        sum.iter().fold(0.0f64, |most, sum| most.max(sum.abs())) / size
+    };
+    let worst = shapes(element).iter().map(defect).fold(0.0, f64::max);
+    let finding = format!("{count} functions, {bubbles} of them bubbles, mean of their gradients {worst:.1e}");
+    Some(Property::new("condensed functions", worst < 1e-11, finding).with(worst))
 }
 
 /// The moduli of the finite elements on a periodic box.

@@ -118,7 +118,9 @@ fn degree(element: &Element) -> Property {
         let rule = Quadrature::of_degree(element.cell, degree);
         stiffness(&Tabulation::new(&element.functions, &rule, None))
     };
-    let (Some(own), Some(exact)) = (stiffness(&element.tabulation), with(24)) else {
+    // What is condensed has gradients that no rule of more points would have.
+    let own = Tabulation { modes: None, ..element.tabulation.clone() };
+    let (Some(own), Some(exact)) = (stiffness(&own), with(24)) else {
         return Property::noted(name, "the reference cell has no stiffness");
     };
     let error = |r: &DMatrix<f64>| (r - &exact).norm() / exact.norm();

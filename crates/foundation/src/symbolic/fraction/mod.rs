@@ -9,6 +9,7 @@ mod packed;
 mod polynomial;
 mod print;
 mod scalar;
+mod value;
 
 pub use polynomial::Polynomial;
 

@@ -137,6 +137,7 @@ impl<'a> Cell<'a> {
                 volumetric: at(&table.volumetric, "VOLUMETRIC", q, volumetric),
                 values: Vec::new(),
                 gradients: at(&gradients, "GRADIENTS", &(q * size), size),
+                modes: None,
             };
             work(q, &one);
         });

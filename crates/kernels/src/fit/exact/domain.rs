@@ -111,6 +111,8 @@ impl ExactDomains {
             gradients: table.gradients.clone(),
             volumes: vec![weight],
             volumetric: Vec::new(),
+            modes: Vec::new(),
+            mode_count: 0,
         };
         let mut constant = 0.0;
         let mut parameters = vec![0.0; if self.form.law.is_some() { 2 } else { 1 }];

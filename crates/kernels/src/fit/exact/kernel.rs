@@ -136,6 +136,8 @@ impl ExactBatch<'_> {
             gradients: rounded(&geometry.gradients),
             volumes: rounded(&geometry.volumes),
             volumetric: rounded(&geometry.volumetric),
+            modes: rounded(&geometry.modes),
+            mode_count: geometry.mode_count,
         })
     }
 

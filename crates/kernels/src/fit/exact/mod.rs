@@ -94,6 +94,7 @@ pub fn fit_exact<'a>(
             return Err(Error::expected("shear", expected, found).of_kind(ErrorKind::Unsupported));
         }
     }
+    element.check_plain("exact networks")?;
     check_cells(element, points, connectivity)?;
     let cells = connectivity.len() / element.nodes();
     material.check("material", cells)?;

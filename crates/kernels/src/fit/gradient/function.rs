@@ -32,6 +32,7 @@ impl<'a> CellFunction<'a> {
         fit: GradientFit,
     ) -> Result<CellFunction<'a>> {
         let (moduli, d) = (moduli.into(), element.dimension());
+        element.check_plain("derivatives of fits")?;
         check_cells(element, points, connectivity)?;
         springs.check(element)?;
         moduli.check("moduli", connectivity.len() / element.nodes())?;

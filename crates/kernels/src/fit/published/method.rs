@@ -21,9 +21,9 @@ pub enum Method {
     Baudet,
     /// Baudet et al. (2007, 2009), with forces that correct Poisson's ratio.
     BaudetCorrected,
-    /// Delingette (2008), triangular quadratic springs.
+    /// Delingette (2008), quadratic springs of triangles and tetrahedra.
     DelingetteQuadratic,
-    /// Delingette (2008), triangular biquadratic springs.
+    /// Delingette (2008), biquadratic springs of triangles and tetrahedra.
     DelingetteBiquadratic,
     /// Maciel, Boulic and Thalmann (2003), one constant for all springs.
     MacielUniform,
@@ -126,7 +126,8 @@ impl Method {
             }
             Method::DelingetteQuadratic | Method::DelingetteBiquadratic => {
                 "H. Delingette, Triangular springs for modeling nonlinear membranes, IEEE Transactions on \
-                 Visualization and Computer Graphics 14 (2008) 329-341"
+                 Visualization and Computer Graphics 14 (2008) 329-341; tetrahedra: Biquadratic and quadratic springs for \
+                 modeling St Venant Kirchhoff materials, ISBMS 2008, LNCS 5104, 40-48"
             }
             Method::MacielUniform => {
                 "A. Maciel, R. Boulic, D. Thalmann, Deformable tissue parameterized by properties of real biological \
@@ -180,7 +181,7 @@ impl Method {
                 }
             }
             Method::DelingetteQuadratic | Method::DelingetteBiquadratic => {
-                const { &[cover(Triangle, EDGES, Any, None)] }
+                const { &[cover(Triangle, EDGES, Any, None), cover(Tetrahedron, EDGES, Any, None)] }
             }
             Method::MacielUniform => {
                 const {

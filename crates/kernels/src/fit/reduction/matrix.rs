@@ -29,7 +29,7 @@ impl<T: Real> Reduced<T> {
     }
 
     /// `C R Cᵀ` with the map C from nodes to differences, lower triangle.
-    fn mix_matrix<const D: usize>(&mut self, n: usize, r: &[T]) {
+    pub(super) fn mix_matrix<const D: usize>(&mut self, n: usize, r: &[T]) {
         let (full, size) = ((n - 1) * D, n * D);
         let zero = self.size.zero();
         let mut half = vec![zero.clone(); full * size];

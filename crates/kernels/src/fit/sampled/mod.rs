@@ -84,6 +84,7 @@ pub fn fit_sampled(
         return Err(Error::expected("springs", "at least one spring to fit", "none"));
     }
     springs.check(element)?;
+    element.check_plain("sampled fits, which are those of large deformation")?;
     fit.check(element.dimension())?;
     if element.space() > element.dimension() {
         let problem = "the sampled fit is known for cells that fill their space";

@@ -138,14 +138,15 @@ impl LargeBody {
     }
 }
 
-/// That a law serves the cells of surfaces and curves in space.
+/// That a law serves the cells, among them those of surfaces and curves in space.
 ///
 /// # Errors
-/// One is bent at rest, or its law has fibres.
+/// One has condensed functions, is bent at rest, or its law has fibres.
 pub(super) fn check_embedded(mesh: &Mesh, laws: &EnergyMap) -> Result<()> {
     let unsupported = |expected: &str, found: String| {
         Err(Error::expected("material.law", expected, found).of_kind(ErrorKind::Unsupported))
     };
+    mesh.blocks.iter().try_for_each(|block| block.element.check_plain("large deformation"))?;
     if let Some((cell, bend)) = Body::new(mesh, laws).bent() {
         let name = &mesh.blocks[cell.block].element.name;
         let found = format!("{name} cell {} that is bent by {bend:.1e} of its size", cell.cell + 1);

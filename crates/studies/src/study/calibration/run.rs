@@ -9,7 +9,7 @@ use crate::calibration::{Asked, Estimate, FieldEstimate, Laws, Limit, Unknown, U
 use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::MaterialMap;
-use crate::mesh::Mesh;
+use crate::mesh::{CellBlock, Mesh};
 use crate::named::unknown;
 use crate::study::body::applied_cases;
 use crate::study::checkpoint::Controls;
@@ -56,6 +56,9 @@ pub fn calibrate_with(
         }
         None => scene.build_mesh()?,
     };
+    let is_plain =
+        |block: &CellBlock| block.element.check_plain("calibrations, whose derivatives are linear in the moduli");
+    mesh.blocks.iter().try_for_each(is_plain)?;
     let base = scene.material_of(&mesh)?;
     base.materials().map_err(|_| {
         let expected = "isotropic materials, where moduli are found";

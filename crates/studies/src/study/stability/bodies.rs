@@ -40,6 +40,9 @@ pub fn sweep_bodies(elements: &[Element]) -> Result<Vec<StabilityRow>> {
     Ok(rows)
 }
 
+/// What helps where stiffnesses side by side differ too much.
+const CONTRAST: &str = "hold the stiff part in place of a stiffness that no number beside the soft one can have";
+
 /// A bar of two cubes, ν = 0, under tension, with the exact solution `u = σ (ℓ/E₁ + ℓ/E₂)` at its end.
 fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
     let spec =
@@ -92,11 +95,14 @@ fn solved(
     let of = |verdict| StabilityRow::new(subject, Family::Contrast, case, "factor, refined", verdict);
     let system = System::new(entries, support)?;
     let Some(factor) = system.cholesky()? else {
-        return Ok(of(Verdict::Refused("the stiffness is not positive definite in rounding".into())));
+        return Ok(
+            of(Verdict::Refused("the stiffness is not positive definite in rounding".into())).with_way_out(CONTRAST)
+        );
     };
     let (u, left) = system.solve(&factor, f);
     if !(left <= PROMISED) {
-        return Ok(of(Verdict::Refused(format!("{left:.1e} of the forces or displacements are left"))));
+        let left = format!("{left:.1e} of the forces or displacements are left");
+        return Ok(of(Verdict::Refused(left)).with_way_out(CONTRAST));
     }
     let error = worst(ends.iter().map(|&dof| (u[dof] - exact).abs() / exact));
     let mut diagonal = vec![0.0; f.len()];
@@ -179,7 +185,10 @@ fn mesh_row(case: &str, source: &MeshSource, hold: bool) -> StabilityRow {
     let of = |verdict| StabilityRow::new("mesh of squares", Family::Mesh, case, "read and held", verdict);
     let mesh = match Mesh::resolve_within(source, &[], 1.0, Some(Gate::default())) {
         Ok(mesh) => mesh,
-        Err(e) => return of(Verdict::Refused(e.to_string())),
+        Err(e) => {
+            return of(Verdict::Refused(e.to_string()))
+                .with_way_out("mend the cells or the points that the error names");
+        }
     };
     let mut said = Vec::new();
     let mut say = |count: usize, what: &str| said.extend((count > 0).then(|| format!("{count} {what}")));
@@ -193,11 +202,13 @@ fn mesh_row(case: &str, source: &MeshSource, hold: bool) -> StabilityRow {
         let left: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
         support.fix(&left, &[0, 1], 2);
     }
-    for body in unheld_bodies(&mesh, &support) {
+    let unheld = unheld_bodies(&mesh, &support);
+    for body in &unheld {
         said.push(format!("a body of {} nodes with {} rigid motions left", body.points, body.motions));
     }
     match said.is_empty() {
         true => of(Verdict::Accurate),
-        false => of(Verdict::Told(said.join(", "))),
+        false if unheld.is_empty() => of(Verdict::Told(said.join(", "))),
+        false => of(Verdict::Told(said.join(", "))).with_way_out("hold a node of each body, or join the bodies"),
     }
 }

@@ -1,6 +1,6 @@
 //! The constants of one element in every case, compared with double-double results.
 
-use super::outcome::{StabilityRow, Verdict, worst};
+use super::outcome::{Family, StabilityRow, Verdict, worst};
 use super::shapes::{ShapeCase, shape_cases};
 use crate::element::Element;
 use crate::error::Result;
@@ -29,6 +29,18 @@ const PATTERNS: u64 = 4;
 const MOVES: [f64; 4] = [1.0 / (1u64 << 26) as f64, 1.0 / (1u64 << 34) as f64, 1.0 / (1u64 << 42) as f64, 1e-15];
 /// Bounded and tied fits are tried in one of this number of cases, because each costs as much as the plain fit.
 const THINNED: usize = 4;
+/// What helps where the nodes run the other way round.
+const RENUMBER: &str = "list the nodes in the opposite order; cells of meshes that are read are turned as they are";
+/// What helps where a cell is tangled or flat.
+const RESHAPE: &str = "move the nodes, or mesh anew: the finite element has no stiffness on this shape";
+/// What helps where a spring has no gradient.
+const UNMEASURED: &str =
+    "leave the group of such springs out of the fit, or move the nodes: no angle may be straight, no length zero";
+/// What helps where a motion is too soft.
+const SOFT: &str =
+    "choose frobenius, offdiag or modal, which have an optimum here, or mesh anew without such slender cells";
+/// What helps where the optimum is not known.
+const INEXACT: &str = "choose springs of which none is a combination of the others, or leave a group out";
 /// The density, kg/m³.
 const DENSITY: f64 = 1000.0;
 
@@ -44,7 +56,9 @@ pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
         let chosen = Choice::ALL.into_iter().filter(|choice| *choice == Choice::Free || i % THINNED == 0);
         let fits = chosen.flat_map(|choice| objectives.iter().map(move |o| (*o, choice)));
         let fits = fits.map(|(objective, choice)| subject.row(objective, choice));
-        std::iter::once(subject.exact_row()).chain(fits).collect::<Vec<_>>()
+        // What is condensed has no exact network.
+        let exact = (element.modes() == 0).then(|| subject.exact_row());
+        exact.into_iter().chain(fits).collect::<Vec<_>>()
     });
     Ok(rows.collect())
 }
@@ -88,7 +102,7 @@ impl Subject<'_> {
         let cell: Vec<usize> = (0..element.nodes()).collect();
         let fits = match fit_cells(element, springs, &case.x, &cell, moduli, &fit, &mut |_| {}) {
             Ok(fits) => fits,
-            Err(e) => return of(Verdict::Refused(e.problem().into())),
+            Err(e) => return of(Verdict::Refused(e.problem().into())).with_way_out(self.way_out()),
         };
         let k = &fits.constants;
         let constants = |x: &[f64]| fit_element(element, springs, x, moduli, &fit).ok();
@@ -105,6 +119,7 @@ impl Subject<'_> {
             _ if fits.deficient > 0 => of(Verdict::Dependent),
             _ if fits.unreached > 0 => {
                 of(Verdict::Refused("no end is reached: a motion is too soft beside the stiffest".into()))
+                    .with_way_out(SOFT)
             }
             (Objective::Spectral(_), _) => {
                 let certificate = fits.certificates[0];
@@ -116,7 +131,9 @@ impl Subject<'_> {
             }
             (_, Some(Some(reference))) => self.judged(of, distance(k, reference), PROMISED, constants),
             (_, Some(None)) => of(Verdict::Lost).with_error(f64::INFINITY, PROMISED),
-            (_, None) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
+            (_, None) => {
+                of(Verdict::Told("twice the digits find no answer to compare with".into())).with_way_out(INEXACT)
+            }
         };
         if choice == Choice::Free {
             let single = single_constants(element, springs, &case.x, &moduli, &fit).ok();
@@ -132,6 +149,19 @@ impl Subject<'_> {
         row
     }
 
+    /// What helps where the element has no fit.
+    fn way_out(&self) -> &'static str {
+        let Subject { element, springs, case } = self;
+        if case.family == Family::Reversed {
+            return RENUMBER;
+        }
+        let mut geometry = Geometry::new(&element.tabulation);
+        match geometry.set(&element.tabulation, &case.x) {
+            Ok(()) if !springs.functions().is_empty() => UNMEASURED,
+            Ok(()) | Err(_) => RESHAPE,
+        }
+    }
+
     /// The exact network: its springs between nodes compared with double-double results.
     fn exact_row(&self) -> StabilityRow {
         let Subject { element, case, .. } = self;
@@ -141,7 +171,7 @@ impl Subject<'_> {
         let made = |x: &[f64]| fit_exact(element, x, &cell, material, &ExactFit::default(), &mut |_| {});
         let fits = match made(&case.x) {
             Ok(fits) => fits,
-            Err(e) => return of(Verdict::Refused(e.problem().into())),
+            Err(e) => return of(Verdict::Refused(e.problem().into())).with_way_out(self.way_out()),
         };
         let pairs = |fits: &CellFits| fits.constants[..fits.springs.pairs().len()].to_vec();
         let k = pairs(&fits);
@@ -149,7 +179,7 @@ impl Subject<'_> {
             Ok(reference) => {
                 self.judged(of, distance(&k, &reference), PROMISED, |x| made(x).ok().map(|fits| pairs(&fits)))
             }
-            Err(_) => of(Verdict::Told("twice the digits find no answer to compare with".into())),
+            Err(_) => of(Verdict::Told("twice the digits find no answer to compare with".into())).with_way_out(INEXACT),
         };
         row.negative = Some([k.iter().filter(|k| **k < 0.0).count(), fits.constants.len()]);
         row

@@ -64,13 +64,13 @@ fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Linear
     let options = Options { step, integrator: Integrator::ImplicitEuler, linear: true, solver, ..Options::default() };
     let mut simulation = match Simulation::new(Motion::free(&network, &points, &masses), options) {
         Ok(simulation) => simulation,
-        Err(e) => return of(Verdict::Refused(e.to_string())),
+        Err(e) => return of(Verdict::Refused(e.to_string())).with_way_out("take a shorter step"),
     };
     let share = masses[1] / (masses[0] + masses[1]);
     let stretch = 1e-3;
     let start = [-share * stretch, 0.0, (1.0 - share) * stretch, 0.0];
     if let Err(e) = simulation.start(&start, &[0.0; 4]) {
-        return of(Verdict::Refused(e.to_string()));
+        return of(Verdict::Refused(e.to_string())).with_way_out("take a shorter step");
     }
     let (mut errors, mut iterations) = (Vec::new(), 0);
     let root = Complex::new(1.0, -step * square.sqrt());
@@ -97,7 +97,8 @@ fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRo
     let options = Options { step, integrator: Integrator::SymplecticEuler, ..Options::default() };
     let limit = 2.0 / square.sqrt();
     match Simulation::new(Motion::free(&network, &points, &masses), options) {
-        Err(e) if step > 0.999 * limit => of(Verdict::Refused(e.to_string())),
+        Err(e) if step > 0.999 * limit => of(Verdict::Refused(e.to_string()))
+            .with_way_out("take the step that the error names, or an implicit integrator"),
         Err(_) => of(Verdict::Lost),
         Ok(_) if step > 1.001 * limit => of(Verdict::Lost),
         Ok(simulation) => {
@@ -134,7 +135,8 @@ fn collapse(element: &Element) -> Result<Vec<StabilityRow>> {
         let exact = volume * energy.respond(&f).0;
         match geometry.respond(&energy, state, &x) {
             None if exact.is_finite() => of(Verdict::Lost),
-            None => of(Verdict::Refused("no response: the energy is not finite".into())),
+            None => of(Verdict::Refused("no response: the energy is not finite".into()))
+                .with_way_out("load in smaller steps, so that no cell loses its content"),
             Some(found) => {
                 let finite = found.force.iter().chain(found.tangent.iter()).all(|v| v.is_finite());
                 let error = if finite { (found.energy - exact).abs() / exact.abs() } else { f64::INFINITY };

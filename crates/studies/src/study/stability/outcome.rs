@@ -148,6 +148,8 @@ pub struct StabilityRow {
     pub step: Option<f64>,
     /// The number of iterations.
     pub iterations: Option<usize>,
+    /// What to do about it, where the result is trouble and something helps. A remark without it is no trouble.
+    pub way_out: Option<&'static str>,
 }
 
 impl StabilityRow {
@@ -167,6 +169,21 @@ impl StabilityRow {
             softest: None,
             step: None,
             iterations: None,
+            way_out: None,
+        }
+    }
+
+    /// Names what to do about a result that is trouble.
+    pub fn with_way_out(mut self, way_out: &'static str) -> StabilityRow {
+        self.way_out = Some(way_out);
+        self
+    }
+
+    /// Whether something has to be done: there is no result, one that is wrong, or one with a way out.
+    pub fn is_trouble(&self) -> bool {
+        match self.verdict {
+            Verdict::Refused(_) | Verdict::Lost => true,
+            Verdict::Accurate | Verdict::InputLimited | Verdict::Dependent | Verdict::Told(_) => self.way_out.is_some(),
         }
     }
 

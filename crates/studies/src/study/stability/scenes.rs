@@ -19,6 +19,14 @@ const RATIOS: [f64; 8] = [-0.9, -0.5, 0.0, 0.3, 0.45, 0.49, 0.499, 0.499999];
 const STIFFER: [f64; 6] = [1e-12, 1e-6, 1e-3, 1e3, 1e6, 1e12];
 /// The factors on all lengths.
 const LONGER: [f64; 5] = [1e-7, 1e-3, 10.0, 1e4, 1e8];
+/// What helps where the scene does not run.
+const REFUSED: &str = "run the scene with this material by itself: its error names the key";
+/// What helps against negative springs that let the network fall.
+const INDEFINITE: &str =
+    "fit with nonnegative = true, with the objective \"divergence\", or with springs on the content of cells";
+/// What helps where springs do not hold a motion.
+const MECHANISM: &str =
+    "add springs (springs = \"all\"), or hold more nodes; springfit check counts the mechanisms of an element";
 /// The density if the scene has none, kg/m³.
 const DENSITY: f64 = 1000.0;
 
@@ -68,7 +76,7 @@ pub fn stability_of_scene(scene: &Scene, progress: &mut Progress) -> Result<Stab
             }
             Err(e) => {
                 let verdict = Verdict::Refused(e.to_string());
-                rows.push(StabilityRow::new(subject, *family, case, "all", verdict));
+                rows.push(StabilityRow::new(subject, *family, case, "all", verdict).with_way_out(REFUSED));
             }
         }
     }
@@ -94,12 +102,20 @@ fn of_fit(
     let standing = fit.stability.as_ref().map(|stability| stability.standing);
     let mut row = match (error, standing) {
         (Some(error), _) if error > PROMISED => row(Verdict::Lost).with_error(error, PROMISED),
-        (_, Some(Standing::Indefinite)) => row(Verdict::Told("the network is indefinite".into())),
-        (_, Some(Standing::Singular)) => row(Verdict::Told("the network is a mechanism".into())),
-        (_, Some(Standing::Soft)) => row(Verdict::Told("the network is near a mechanism".into())),
+        (_, Some(Standing::Indefinite)) => {
+            row(Verdict::Told("the network is indefinite".into())).with_way_out(INDEFINITE)
+        }
+        (_, Some(Standing::Singular)) => {
+            row(Verdict::Told("the network is a mechanism".into())).with_way_out(MECHANISM)
+        }
+        (_, Some(Standing::Soft)) => {
+            row(Verdict::Told("the network is near a mechanism".into())).with_way_out(MECHANISM)
+        }
         (Some(error), _) => row(Verdict::Accurate).with_error(error, PROMISED),
         (None, _) if fit.deficient > 0 => row(Verdict::Dependent),
-        (None, Some(Standing::Stable)) => row(Verdict::Told("stable".into())),
+        (None, Some(Standing::Stable)) => {
+            row(Verdict::Told("stable; its error changes with Poisson's ratio and is not compared".into()))
+        }
         (None, None) => row(Verdict::Told("not examined: the scene has no loads".into())),
     };
     row.negative = Some([fit.network.negative(), fit.network.len()]);
