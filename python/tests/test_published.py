@@ -6,9 +6,11 @@ import pytest
 import springfit as sf
 
 
-def test_delingettes_tetrahedra_are_mujocos_flex():
+def test_delingettes_tetrahedra_are_mujocos_flex(tmp_path, monkeypatch):
     """MuJoCo's flex of tetrahedra has the energy of St. Venant-Kirchhoff in squared lengths of edges, which is that of biquadratic springs."""
     mujoco = pytest.importorskip("mujoco")
+    # MuJoCo writes its warnings to a file beside the caller.
+    monkeypatch.chdir(tmp_path)
     rng = np.random.default_rng(1)
     points = np.array([[0, 0, 0], [1, 0.1, 0], [0.2, 0.9, 0.1], [0.1, 0.2, 1.1], [1.1, 0.9, 0.8]])
     cells = np.array([[0, 1, 2, 3], [1, 4, 2, 3]])

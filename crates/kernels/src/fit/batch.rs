@@ -5,7 +5,7 @@
 use super::closed::Closed;
 use super::constrained::{MANY, solve_nonnegative, solve_wide};
 use super::delicate::DelicateCells;
-use super::method::{Certificate, Method, Verdict};
+use super::method::{Certificate, LEAST_MEASURED_PIVOT, Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
@@ -241,6 +241,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
             }
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
+        let mut eliminated = normal.clone();
+        if self.closed.is_none()
+            && !is_delicate
+            && !(eliminated.solve_regular() && eliminated.least_pivot() >= LEAST_MEASURED_PIVOT)
+        {
+            return self.fit_alone(cell, nodes, constants, true);
+        }
         let (k, rank) = if self.fit.nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
         self.fit.spread(self.springs, constants, &k);
         Ok(Verdict { certificate: None, rank, reached: true, delicate: false })

@@ -25,7 +25,7 @@ const SOFTEST: f64 = 1e-4;
 const LEAST_PIVOT: f64 = 1e-6;
 /// A pivot below this means that too many digits are lost, for every objective, if springs measure functions, whose gradients have lost
 /// some digits before.
-const LEAST_MEASURED_PIVOT: f64 = 1e-4;
+pub(super) const LEAST_MEASURED_PIVOT: f64 = 1e-4;
 /// The softest motion is known to nine digits if its stiffness is this many rounding errors.
 const KNOWN: f64 = 1e9;
 
