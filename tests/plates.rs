@@ -570,7 +570,7 @@ fn hinges_need_no_directors() {
     let mut fixed = Support { prescribed: vec![None; points.len()] };
     let held: Vec<usize> = record.held.iter().map(|held| held.point).collect();
     fixed.fix(&held, &[0, 1, 2], 3);
-    for size in [1e-4, 0.2] {
+    for size in [1e-2, 0.2] {
         let force = |count: usize| {
             let mut force = vec![0.0; count];
             ends[5..].iter().for_each(|p| force[3 * p + 1] = size);
