@@ -104,12 +104,15 @@ impl ModulusTest<'_> {
 
     /// The times or frequencies, and the first and the last relaxation time.
     fn checked(&self) -> Result<(&[f64], [f64; 2])> {
-        let (name, places, lists): (&str, &[f64], Vec<(&str, &[f64], bool)>) = match *self {
-            ModulusTest::Relaxation { times, moduli } => ("time", times, vec![("modulus", moduli, false)]),
-            ModulusTest::Frequencies { frequencies, storage, loss } => {
-                ("frequency", frequencies, vec![("storage", storage, true), ("loss", loss, true)])
-            }
+        let (name, places) = match *self {
+            ModulusTest::Relaxation { times, .. } => ("time", times),
+            ModulusTest::Frequencies { frequencies, .. } => ("frequency", frequencies),
         };
+        let lists = match *self {
+            ModulusTest::Relaxation { moduli, .. } => vec![("modulus", moduli)],
+            ModulusTest::Frequencies { storage, loss, .. } => vec![("storage", storage), ("loss", loss)],
+        };
+        let rises = matches!(self, ModulusTest::Frequencies { .. });
         if places.len() < 3 {
             return Err(Error::expected(name, "three or more", places.len()));
         }
@@ -120,7 +123,7 @@ impl ModulusTest<'_> {
         if let Some(pair) = places.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(Error::expected(name, "numbers that rise", format!("{} after {}", pair[1], pair[0])));
         }
-        for (key, list, _) in &lists {
+        for (key, list) in &lists {
             if list.len() != places.len() {
                 return Err(Error::expected(*key, format!("{} numbers", places.len()), list.len()));
             }
@@ -128,7 +131,7 @@ impl ModulusTest<'_> {
                 return Err(Error::expected(*key, "numbers of Pa above zero", found));
             }
         }
-        let (key, list, rises) = lists[0];
+        let (key, list) = lists[0];
         let largest = list.iter().copied().fold(0.0, f64::max);
         let wrong = |pair: &&[f64]| if rises { pair[0] - pair[1] } else { pair[1] - pair[0] } > NOISE * largest;
         if let Some(pair) = list.windows(2).find(wrong) {
