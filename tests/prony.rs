@@ -5,11 +5,12 @@ use springfit::dynamics::{
     BranchForm, Decay, Integrator, LargeMemory, LinearMemory, Memory, Motion, Options, RelaxingPart, Simulation,
 };
 use springfit::element::Element;
-use springfit::fit::{ExactFit, ShearSprings};
+use springfit::fit::{ExactFit, ModulusTest, ShearSprings};
 use springfit::material::{Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, State};
 use springfit::mesh::{BoxMesh, Mesh};
 use springfit::model::{MaterialPoints, Support, displaced, exact_network, finite_elements, lumped_masses};
 use springfit::study::{Event, ModelMotion, MotionEnding, Outcome, Record, Scene, run};
+use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -34,7 +35,7 @@ fn series(terms: &[[f64; 3]]) -> Relaxation {
 
 fn branches(mesh: &Mesh, form: BranchForm, terms: &[[f64; 3]]) -> Memory {
     let points = MaterialPoints::of(mesh, &material(mesh.dimension), ShearSprings::Cells).unwrap();
-    Memory::Large(LargeMemory::new(points, form, &mesh.points, &series(terms)).unwrap())
+    Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, &series(terms)).unwrap()))
 }
 
 struct Random(u64);
@@ -672,4 +673,74 @@ fn wrong_keys_are_named() {
     };
     run(&long, &mut hear).unwrap();
     assert!(notes.iter().any(|note| note.contains("50.000 times the shortest relaxation time")), "{notes:?}");
+}
+
+/// A table that a Prony series with times of the fit has made gives that series; other times give its moduli; tables that no series has are named.
+#[test]
+fn measured_moduli_give_their_series() {
+    let times: Vec<f64> = (0..41).map(|i| 0.01 * 10f64.powf(i as f64 / 10.0)).collect();
+    // The times of the fit are two in each decade from 0.01 to 100 s.
+    let known = [[0.3, 0.1], [0.2, 10.0]];
+    let modulus =
+        |t: f64, terms: &[[f64; 2]]| 8e3 * terms.iter().fold(1.0, |sum, [g, tau]| sum + g * f64::exp_m1(-t / tau));
+    let moduli: Vec<f64> = times.iter().map(|t| modulus(*t, &known)).collect();
+    let fitted = ModulusTest::Relaxation { times: &times, moduli: &moduli }.fit().unwrap();
+    assert!(fitted.error < 1e-9 && (fitted.modulus / 8e3 - 1.0).abs() < 1e-6, "{fitted:?}");
+    let large: Vec<&[f64; 2]> = fitted.terms.iter().filter(|[share, _]| *share > 1e-5).collect();
+    assert_eq!(large.len(), 2, "{fitted:?}");
+    for (found, expected) in large.iter().zip(known) {
+        assert!((found[0] - expected[0]).abs() < 1e-5 && (found[1] / expected[1] - 1.0).abs() < 1e-9, "{fitted:?}");
+    }
+    // Other times: the series is another, its moduli are near.
+    let others = [[0.4, 0.4], [0.15, 3.0]];
+    let frequencies: Vec<f64> = (0..31).map(|i| 0.03 * 10f64.powf(i as f64 / 10.0)).collect();
+    let sum = |of: &dyn Fn(f64) -> f64| others.iter().map(|[g, tau]| g * of(*tau)).sum::<f64>();
+    let storage = |f: &f64| 8e3 * (1.0 - sum(&|tau| 1.0 / (1.0 + (TAU * f * tau).powi(2))));
+    let loss = |f: &f64| 8e3 * sum(&|tau| TAU * f * tau / (1.0 + (TAU * f * tau).powi(2)));
+    let (storage, loss): (Vec<f64>, Vec<f64>) = frequencies.iter().map(|f| (storage(f), loss(f))).unzip();
+    let test = ModulusTest::Frequencies { frequencies: &frequencies, storage: &storage, loss: &loss };
+    let fitted = test.fit().unwrap();
+    println!("{fitted:?}");
+    assert!(fitted.error < 0.01 && (fitted.modulus / 8e3 - 1.0).abs() < 0.02, "{fitted:?}");
+    series(&fitted.terms.iter().map(|[share, time]| [*share, 0.0, *time]).collect::<Vec<_>>());
+    let wrong =
+        |times: &[f64], moduli: &[f64]| ModulusTest::Relaxation { times, moduli }.fit().unwrap_err().to_string();
+    for (message, pattern) in [
+        (wrong(&[1.0, 2.0], &[2.0, 1.0]), "time: … found 2"),
+        (wrong(&[1.0, 2.0, 2.0], &[2.0, 1.0, 0.5]), "time: … found 2 after 2"),
+        (wrong(&[0.0, 2.0, 3.0], &[2.0, 1.0, 0.5]), "time: … found 0"),
+        (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0]), "modulus: … found 2"),
+        (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0, -0.5]), "modulus: … found -0.5"),
+        (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0, 1.5]), "modulus: … fall with time, found 1.5 after 1"),
+    ] {
+        reads(&message, pattern).unwrap();
+    }
+}
+
+/// A scene that has measured moduli moves as one that has their series; its note has the error.
+#[test]
+fn a_scene_takes_measured_moduli() {
+    let times = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+    // τ = 1 s is one of the times of the fit, 10^(−1 + i/2) for 0.1 to 10 s.
+    let moduli: Vec<f64> = times[..5].iter().map(|t| 2e3 * (1.0 + 0.4 * f64::exp_m1(-t))).collect();
+    let motion = "duration = 2\nstep = 0.1\nevery = 1\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
+    let given = bar("{ shear = 0.4, time = 1 }", EXACT, motion);
+    let list = format!("relaxation = {{ measured = {{ time = {:?}, modulus = {moduli:?} }} }}", &times[..5]);
+    let measured = given.replace("relaxation = { terms = [{ shear = 0.4, time = 1 }] }", &list);
+    let [given, fitted] = [given, measured.clone()].map(|text| outcome(&text));
+    let end = |outcome: &Outcome| outcome.motion.as_ref().unwrap().models[1].records[2].watched[0];
+    assert!((end(&fitted) / end(&given) - 1.0).abs() < 1e-6, "{} {}", end(&fitted), end(&given));
+    let note = fitted.of_loads.iter().find(|note| note.contains("Prony series")).unwrap();
+    assert!(note.contains("an error of 0.00 %") && note.contains("2.0000e3 Pa"), "{note}");
+    for (text, message) in [
+        (
+            measured.replace("measured = {", "terms = [{ shear = 0.1, time = 1 }], measured = {"),
+            "…relaxation.measured: … found both…",
+        ),
+        (measured.replace("time = [0.1", "time = [-0.1"), "…relaxation.measured.time: … found -0.1…"),
+        (measured.replace("modulus = [", "storage = ["), "…relaxation.measured: … \"loss\", found others…"),
+        (measured.replace("modulus = [", "of = \"bulk\", modulus = ["), "…relaxation.measured.of: …bulk…"),
+    ] {
+        reads(&refusal(&text), message).unwrap();
+    }
 }

@@ -467,6 +467,32 @@ group = "zmax"
 force = [0, 0, 1.0]
 "#;
 
+/// Cubes whose relaxation was measured, over time.
+pub const RELAXED: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+[material.relaxation]
+measured = { time = [0.1, 1.0, 10.0], modulus = [3.0, 2.0, 1.0], of = "all" }
+[[fit]]
+objective = "exact"
+"#;
+
+/// And over frequency.
+pub const DYNAMIC: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+[material.relaxation]
+measured = { frequency = [0.1, 1.0, 10.0], storage = [1.0, 2.0, 3.0], loss = [0.1, 0.5, 0.1] }
+[[fit]]
+objective = "exact"
+"#;
+
 /// With finite elements that follow a law in motion, explicitly.
 pub const EXPLICIT: &str = r#"
 [mesh]
@@ -526,7 +552,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 18] = [
+pub const ALL: [(&str, &str); 20] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -545,6 +571,8 @@ pub const ALL: [(&str, &str); 18] = [
     ("damped", DAMPED),
     ("explicit", EXPLICIT),
     ("creep", CREEP),
+    ("relaxed", RELAXED),
+    ("dynamic", DYNAMIC),
 ];
 
 /// Files that the scenes name.

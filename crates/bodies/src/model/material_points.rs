@@ -107,11 +107,8 @@ impl MaterialPoint<'_> {
     pub fn deformation(&self, x: &[f64], d: usize) -> Matrix3<f64> {
         let mut f = Matrix3::zeros();
         for (node, gradient) in self.nodes.iter().zip(self.gradients) {
-            for k in 0..d {
-                for l in 0..d {
-                    f[(k, l)] += x[node * d + k] * gradient[l];
-                }
-            }
+            let at = &x[node * d..(node + 1) * d];
+            f += Vector3::new(at[0], at[1], at.get(2).copied().unwrap_or(0.0)) * gradient.transpose();
         }
         if d < 3 {
             f[(2, 2)] = 1.0;

@@ -41,6 +41,7 @@ pub mod plain;
 mod precision;
 pub mod published;
 mod reduction;
+mod relaxation;
 mod residual;
 mod rest;
 mod rows;
@@ -82,6 +83,7 @@ pub use objective::{Balance, Choices, Objective};
 pub use precision::{
     bounded_constants, condition, constants_of_kind, distance_from_optimum, double_double_constants, single_constants,
 };
+pub use relaxation::{FittedSeries, ModulusTest};
 pub use residual::{ElementErrors, Spread, SpreadSum, each_element_errors, element_errors};
 pub use rest::Rest;
 pub use sampled::{

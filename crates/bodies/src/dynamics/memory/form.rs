@@ -66,9 +66,12 @@ struct Present {
 impl Present {
     fn of(point: &MaterialPoint, x: &[f64], d: usize) -> Option<Present> {
         let f = point.deformation(x, d);
-        let j = f.determinant();
-        let inverse = f.try_inverse().filter(|_| j > 0.0)?.transpose();
-        Some(Present { f, inverse, size: j.cbrt() * j.cbrt() })
+        let [a, b, c] = [0, 1, 2].map(|k| f.column(k).into_owned());
+        // The columns of J F⁻ᵀ are products of those of F.
+        let across = [b.cross(&c), c.cross(&a), a.cross(&b)];
+        let j = a.dot(&across[0]);
+        let edge = j.cbrt();
+        (j > 0.0).then(|| Present { f, inverse: Matrix3::from_columns(&across) / j, size: edge * edge })
     }
 }
 
@@ -112,10 +115,12 @@ impl Form {
                 BranchForm::Edges => {
                     spatial.clear();
                     spatial.extend(point.gradients.iter().map(|g| inverse * g));
-                    for ((a, b), slot) in pairs(spatial.len()).zip(slots) {
-                        target[*slot] -= point.weight * size * spatial[a].dot(&spatial[b]);
+                    let scale = point.weight * size;
+                    for (a, first) in spatial.iter().enumerate() {
+                        let (own, others) = slots.split_at(spatial.len() - 1 - a);
+                        own.iter().zip(&spatial[a + 1..]).for_each(|(slot, b)| target[*slot] -= scale * first.dot(b));
+                        slots = others;
                     }
-                    slots = &slots[spatial.len() * (spatial.len() - 1) / 2..];
                     if d < 3 {
                         target.push(size);
                         measures.push(point.weight);
@@ -148,14 +153,16 @@ impl Form {
         let (constants, own) = numbers.split_at(self.edges.len());
         let mut energy = 0.0;
         for (&[a, b], k) in self.edges.iter().zip(constants) {
+            let mut square = 0.0;
             for axis in 0..d {
                 let apart = x[a * d + axis] - x[b * d + axis];
-                energy += k * apart * apart / 2.0;
+                square += apart * apart;
                 if !force.is_empty() {
                     force[a * d + axis] += k * apart;
                     force[b * d + axis] -= k * apart;
                 }
             }
+            energy += k * square / 2.0;
         }
         let mut entry = 0;
         if !tangent.is_empty() {

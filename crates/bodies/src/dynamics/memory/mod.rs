@@ -21,7 +21,7 @@ pub enum Memory {
     /// Of a linear model.
     Linear(LinearMemory),
     /// Of a model at large deformation.
-    Large(LargeMemory),
+    Large(Box<LargeMemory>),
 }
 
 impl Memory {

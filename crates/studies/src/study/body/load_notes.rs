@@ -17,17 +17,10 @@ pub fn load_notes(scene: &Scene, mesh: &Mesh, cases: &[Case]) -> Vec<String> {
         cases.iter().zip(scene.loads()).flat_map(|(case, load)| [swallowed(case, load), contradicted(case, mesh)]);
     part_notes(scene, mesh)
         .into_iter()
-        .chain(of_relaxation(scene))
+        .chain(scene.relaxation_note())
         .chain(of_tractions(scene, mesh))
         .chain(of_cases.flatten())
         .collect()
-}
-
-/// That only a motion lets stress relax.
-fn of_relaxation(scene: &Scene) -> Option<String> {
-    scene.relaxation().map(|_| {
-        "the material relaxes in [motion] alone: loads, frequencies and networks that are written have the moduli against a sudden strain".into()
-    })
 }
 
 /// That a part of a force acts on held points, where it does nothing. Of a body force that is the weight of what is held.

@@ -1,8 +1,10 @@
 //! The `[material.relaxation]` of a scene.
 
 use super::value;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::fit::{FittedSeries, ModulusTest};
 use crate::material::{Relaxation, RelaxationTerm};
+use crate::study::choice::choice;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -10,8 +12,12 @@ use serde::Deserialize;
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelaxationEntry {
-    /// The moduli relax in these terms of a Prony series, one or more. Of each modulus the shares add up to at most 1.
+    /// The moduli relax in these terms of a Prony series, one or more. Of each modulus the shares add up to at most 1. One of `terms` and
+    /// `measured` is required.
+    #[serde(default)]
     terms: Vec<TermEntry>,
+    /// The terms are fitted to these moduli; a note has the error.
+    measured: Option<MeasuredModuli>,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
@@ -29,17 +35,86 @@ struct TermEntry {
     time: f64,
 }
 
+/// Measured moduli, of a relaxation test or of a dynamic one.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct MeasuredModuli {
+    /// A relaxation test was read at these times in s after a strain was applied, above 0 and rising.
+    time: Option<Vec<f64>>,
+    /// The test has these moduli in Pa, above 0 and falling. The key belongs to `time`.
+    modulus: Option<Vec<f64>>,
+    /// A dynamic test has these frequencies in Hz, above 0 and rising. The key stands in place of `time`.
+    frequency: Option<Vec<f64>>,
+    /// The test has these storage moduli in Pa, above 0 and rising. The key belongs to `frequency`.
+    storage: Option<Vec<f64>>,
+    /// The test has these loss moduli in Pa, 0 or more. The key belongs to `frequency`.
+    loss: Option<Vec<f64>>,
+    /// The moduli are those of shear, and bulk does not relax (`shear`); or all moduli relax alike (`all`).
+    #[schemars(extend("enum" = MeasuredPart::NAMES, "default" = MeasuredPart::default().name()))]
+    of: Option<String>,
+}
+
+/// What relaxes as measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum MeasuredPart {
+    /// Shear.
+    #[default]
+    Shear,
+    /// Shear and bulk.
+    All,
+}
+
+crate::named!(MeasuredPart {
+    "shear" => Shear,
+    "all" => All,
+});
+
 impl RelaxationEntry {
     /// The Prony series of the key `relaxation`.
     ///
     /// # Errors
-    /// A share or a time is out of its range.
+    /// A share or a time is out of its range, or measured moduli are those of no series.
     pub fn check(&self) -> Result<Relaxation> {
         self.series().map_err(|e| e.under("relaxation"))
     }
 
+    /// The series that was fitted, if moduli were measured.
+    pub fn fitted(&self) -> Option<FittedSeries> {
+        self.measured.as_ref()?.fit().ok()
+    }
+
     fn series(&self) -> Result<Relaxation> {
+        if let Some(measured) = &self.measured {
+            if !self.terms.is_empty() {
+                return Err(Error::expected("measured", "either \"terms\" or \"measured\"", "both"));
+            }
+            return measured.series().map_err(|e| e.under("measured"));
+        }
         let term = |term: &TermEntry| RelaxationTerm { shear: term.shear, bulk: term.bulk, time: term.time };
         Relaxation::new(self.terms.iter().map(term).collect())
+    }
+}
+
+impl MeasuredModuli {
+    fn series(&self) -> Result<Relaxation> {
+        let of = choice("of", self.of.as_deref(), MeasuredPart::default(), MeasuredPart::named)?;
+        let term = |&[shear, time]: &[f64; 2]| {
+            let bulk = if of == MeasuredPart::All { shear } else { 0.0 };
+            RelaxationTerm { shear, bulk, time }
+        };
+        Relaxation::new(self.fit()?.terms.iter().map(term).collect())
+    }
+
+    fn fit(&self) -> Result<FittedSeries> {
+        match (&self.time, &self.modulus, &self.frequency, &self.storage, &self.loss) {
+            (Some(times), Some(moduli), None, None, None) => ModulusTest::Relaxation { times, moduli }.fit(),
+            (None, None, Some(frequencies), Some(storage), Some(loss)) => {
+                ModulusTest::Frequencies { frequencies, storage, loss }.fit()
+            }
+            _ => {
+                let expected = "\"time\" and \"modulus\", or \"frequency\", \"storage\" and \"loss\"";
+                Err(Error::new(format!("expected {expected}, found others")))
+            }
+        }
     }
 }

@@ -146,7 +146,7 @@ impl Relaxing {
 
     fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
         let points = MaterialPoints::of(mesh, &self.material, shear)?;
-        Ok(Memory::Large(LargeMemory::new(points, form, &mesh.points, &self.relaxation)?))
+        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, &self.relaxation)?)))
     }
 
     /// The memory of parts of a stiffness, each of shear or not.
