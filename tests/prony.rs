@@ -708,7 +708,7 @@ fn measured_moduli_give_their_series() {
     for (message, pattern) in [
         (wrong(&[1.0, 2.0], &[2.0, 1.0]), "time: … found 2"),
         (wrong(&[1.0, 2.0, 2.0], &[2.0, 1.0, 0.5]), "time: … found 2 after 2"),
-        (wrong(&[0.0, 2.0, 3.0], &[2.0, 1.0, 0.5]), "time: … found 0"),
+        (wrong(&[0.0, 2.0, 3.0], &[2.0, 1.0, 0.5]), "time: … found 0.0"),
         (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0]), "modulus: … found 2"),
         (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0, -0.5]), "modulus: … found -0.5"),
         (wrong(&[1.0, 2.0, 3.0], &[2.0, 1.0, 1.5]), "modulus: … fall with time, found 1.5 after 1"),

@@ -5,6 +5,7 @@
 use super::constrained::solve_nonnegative;
 use super::normal::Normal;
 use crate::error::{Error, ErrorKind, Result};
+use crate::range;
 use std::f64::consts::TAU;
 
 /// Measured moduli of one kind, all of shear, of bulk or of Young, Pa.
@@ -116,9 +117,9 @@ impl ModulusTest<'_> {
         if places.len() < 3 {
             return Err(Error::expected(name, "three or more", places.len()));
         }
-        let is_sound = |x: &f64| *x > 0.0 && x.is_finite();
+        let is_sound = |x: &f64| range::contains(*x);
         if let Some(found) = places.iter().find(|x| !is_sound(x)) {
-            return Err(Error::expected(name, "numbers above zero", found));
+            return Err(Error::expected(name, "numbers above zero, from 1e-30 to 1e30", format!("{found:?}")));
         }
         if let Some(pair) = places.windows(2).find(|pair| pair[1] <= pair[0]) {
             return Err(Error::expected(name, "numbers that rise", format!("{} after {}", pair[1], pair[0])));
@@ -128,7 +129,11 @@ impl ModulusTest<'_> {
                 return Err(Error::expected(*key, format!("{} numbers", places.len()), list.len()));
             }
             if let Some(found) = list.iter().find(|x| !(is_sound(x) || *key == "loss" && **x == 0.0)) {
-                return Err(Error::expected(*key, "numbers of Pa above zero", found));
+                return Err(Error::expected(
+                    *key,
+                    "numbers of Pa above zero, from 1e-30 to 1e30",
+                    format!("{found:?}"),
+                ));
             }
         }
         let (key, list) = lists[0];
