@@ -72,7 +72,7 @@ pub struct Job<'a> {
 }
 
 /// The largest angle of a sheet that is flat at rest, rad: coordinates in files have six digits or more.
-const FLAT: f64 = 1e-5;
+pub(super) const FLAT: f64 = 1e-5;
 
 /// A sum of tensions at rest below this share of what they would be if the springs had no rest measures is a rounding error.
 const BALANCED: f64 = 1e-9;
@@ -121,7 +121,9 @@ impl<'a> Job<'a> {
             |part: &&HingePart| holds.hinges == Hinges::None || part.rest.abs() > FLAT && is_node(&part.points[3]);
         if let Some(part) = parts.hinges.iter().find(bent).filter(|_| holds.hinges != Hinges::Any) {
             let (expected, found, advice) = match holds.hinges {
-                Hinges::None => ("springs between two points", "a hinge at", "lammps, xpbd and npz hold hinges"),
+                Hinges::None => {
+                    ("springs between two points", "a hinge at", "mujoco, lammps, xpbd and npz hold hinges")
+                }
                 _ => ("sheets that are flat at rest", "a bent hinge at", "lammps, xpbd and npz hold bent hinges"),
             };
             return unsupported(

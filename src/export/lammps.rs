@@ -1,6 +1,6 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
-use super::job::{Hinges, Holds, Job, Tension};
+use super::job::{FLAT, Hinges, Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -21,7 +21,7 @@ const HOLDS: Holds = Holds {
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "lammps",
-    title: "a data file and an input script for LAMMPS: harmonic bonds, hinges as quadratic dihedrals",
+    title: "a data file and an input script for LAMMPS: harmonic bonds, hinges as dihedrals",
     command: "lmp -in in.network",
     leaves_out: dampers,
     has_loads: false,
@@ -68,9 +68,12 @@ fn data(job: &Job) -> String {
     springs().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, s.rest)));
     let hinges = || job.parts.hinges.iter().enumerate().map(|(i, hinge)| (i + 1, hinge));
     if dihedrals > 0 {
-        line(format_args!("\nDihedral Coeffs # quadratic\n"));
-        // The dihedral of a flat sheet is 180°.
-        hinges().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, 180.0 - s.rest.to_degrees())));
+        line(format_args!("\nDihedral Coeffs # {}\n", dihedral_style(job)));
+        hinges().for_each(|(i, s)| match dihedral_style(job) {
+            "harmonic" => line(format_args!("{i} {:e} 1 1", s.constant)),
+            // The dihedral of a flat sheet is 180°.
+            _ => line(format_args!("{i} {:e} {:e}", s.constant / 2.0, 180.0 - s.rest.to_degrees())),
+        });
     }
     line(format_args!("\nAtoms # {}\n", style(job)));
     for p in 0..atoms {
@@ -92,6 +95,13 @@ fn data(job: &Job) -> String {
 /// The style of atoms.
 fn style(job: &Job) -> &'static str {
     if job.parts.hinges.is_empty() { "bond" } else { "molecular" }
+}
+
+/// The style of dihedrals. `K (φ − φ₀)²` takes φ from its cosine, which does not know angles near 180°, those of flat sheets; `K (1 + cos φ)` does, and bends
+/// softer at large angles.
+fn dihedral_style(job: &Job) -> &'static str {
+    let is_flat = job.parts.hinges.iter().all(|hinge| hinge.rest.abs() <= FLAT);
+    if is_flat { "harmonic" } else { "quadratic" }
 }
 
 fn input(job: &Job) -> String {
@@ -118,11 +128,19 @@ fn input(job: &Job) -> String {
     let (longest_step, step) = (job.step, 0.2 * job.step);
     // A ten-thousandth of a millionth of the weight.
     let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();
-    let (reach, dmax, least) = (2.1 * longest, 0.1 * longest, 1e-10 * weight);
+    let (reach, least) = (2.1 * longest, 1e-10 * weight);
     let style = style(job);
-    let (dihedrals, hinges) = match job.parts.hinges.is_empty() {
-        true => ("", ""),
-        false => ("dihedral_style quadratic\n", "hinges are quadratic dihedrals with K = k/2, one type each; "),
+    let has_hinges = !job.parts.hinges.is_empty();
+    let dihedrals = if has_hinges { format!("dihedral_style {}\n", dihedral_style(job)) } else { String::new() };
+    let hinges = match (has_hinges, dihedral_style(job)) {
+        (false, _) => "",
+        (true, "harmonic") => "hinges are harmonic dihedrals with K = k, one type each; ",
+        (true, _) => "hinges are quadratic dihedrals with K = k/2, one type each; ",
+    };
+    // Membranes are much stiffer than hinges, where conjugate gradients end early.
+    let minimiser = match has_hinges {
+        true => "  \"min_style hftn\" &\n".to_string(),
+        false => format!("  \"min_style cg\" &\n  \"min_modify dmax {:e} line quadratic\" &\n", 0.1 * longest),
     };
     let damping = job.network.damping.mass;
     let drag = match damping > 0.0 {
@@ -165,9 +183,7 @@ fix weight all addforce v_wx v_wy v_wz energy v_height
 fix_modify weight energy yes
 {held}{plane}thermo 1000
 if \"${{mode}} == rest\" then &
-  \"min_style cg\" &
-  \"min_modify dmax {dmax:e} line quadratic\" &
-  \"minimize 0 {least:e} 100000 1000000\" &
+{minimiser}  \"minimize 0 {least:e} 100000 1000000\" &
 else &
   \"fix nve all nve\" &
 {drag}  \"timestep {step:e}\" &
