@@ -613,3 +613,22 @@ fn directors_do_not_shorten_explicit_steps() {
         }
     }
 }
+
+/// A thick sheet that moves in its plane has the frequencies of its membrane, with lumped and with consistent masses: directors add no mass.
+#[test]
+fn directors_add_no_mass() {
+    let frequencies = |bending: &str| {
+        let text = format!(
+            "[mesh]\nbox = {{ element = \"tri3\", size = [1.0, 0.1], cells = [40, 4] }}\nspace = 3\n[material]\nyoung = 1e6\npoisson = 0\nthickness = 0.05\n\
+             density = 1000\nbending = \"{bending}\"\n[[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"xmin\"\n[[fix]]\nwhere = \"x > -1\"\naxes = [\"z\"]\n\
+             [output]\nfrequencies = 2\n"
+        );
+        let scene = springfit::study::Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
+        let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
+        let found = &outcome.frequencies[0];
+        [found.consistent.clone().unwrap(), found.frequencies.clone().unwrap()].concat()
+    };
+    for (sheet, membrane) in frequencies("plate").into_iter().zip(frequencies("none")) {
+        assert!((sheet / membrane - 1.0).abs() < 1e-3, "{sheet} {membrane}");
+    }
+}

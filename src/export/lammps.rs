@@ -3,7 +3,8 @@
 use super::job::{FLAT, Hinges, Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
-use crate::report::NetworkRecord;
+use crate::report::{HingePart, NetworkRecord};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 const HOLDS: Holds = Holds {
@@ -68,11 +69,17 @@ fn data(job: &Job) -> String {
     springs().for_each(|(i, s)| line(format_args!("{i} {:e} {:e}", s.constant / 2.0, s.rest)));
     let hinges = || job.parts.hinges.iter().enumerate().map(|(i, hinge)| (i + 1, hinge));
     if dihedrals > 0 {
-        line(format_args!("\nDihedral Coeffs # {}\n", dihedral_style(job)));
-        hinges().for_each(|(i, s)| match dihedral_style(job) {
-            "harmonic" => line(format_args!("{i} {:e} 1 1", s.constant)),
-            // The dihedral of a flat sheet is 180°.
-            _ => line(format_args!("{i} {:e} {:e}", s.constant / 2.0, 180.0 - s.rest.to_degrees())),
+        let styles = dihedral_styles(job);
+        let all = if styles.len() > 1 { "hybrid" } else { styles.first().copied().unwrap_or_default() };
+        line(format_args!("\nDihedral Coeffs # {all}\n"));
+        hinges().for_each(|(i, s)| {
+            let own = of_hinge(s);
+            let name = if styles.len() > 1 { format!("{own} ") } else { String::new() };
+            match own {
+                "harmonic" => line(format_args!("{i} {name}{:e} 1 1", s.constant)),
+                // The dihedral of a flat sheet is 180°.
+                _ => line(format_args!("{i} {name}{:e} {:e}", s.constant / 2.0, 180.0 - s.rest.to_degrees())),
+            }
         });
     }
     line(format_args!("\nAtoms # {}\n", style(job)));
@@ -97,11 +104,15 @@ fn style(job: &Job) -> &'static str {
     if job.parts.hinges.is_empty() { "bond" } else { "molecular" }
 }
 
-/// The style of dihedrals. `K (φ − φ₀)²` takes φ from its cosine, which does not know angles near 180°, those of flat sheets; `K (1 + cos φ)` does, and bends
-/// softer at large angles.
-fn dihedral_style(job: &Job) -> &'static str {
-    let is_flat = job.parts.hinges.iter().all(|hinge| hinge.rest.abs() <= FLAT);
-    if is_flat { "harmonic" } else { "quadratic" }
+/// The style of the dihedral of a hinge. `K (φ − φ₀)²` takes φ from its cosine, which does not know angles near 180°, those of flat sheets; `K (1 + cos φ)` does,
+/// and bends softer at large angles.
+fn of_hinge(hinge: &HingePart) -> &'static str {
+    if hinge.rest.abs() <= FLAT { "harmonic" } else { "quadratic" }
+}
+
+/// The styles of all dihedrals, by their names.
+fn dihedral_styles(job: &Job) -> BTreeSet<&'static str> {
+    job.parts.hinges.iter().map(of_hinge).collect()
 }
 
 fn input(job: &Job) -> String {
@@ -130,16 +141,24 @@ fn input(job: &Job) -> String {
     let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();
     let (reach, least) = (2.1 * longest, 1e-10 * weight);
     let style = style(job);
-    let has_hinges = !job.parts.hinges.is_empty();
-    let dihedrals = if has_hinges { format!("dihedral_style {}\n", dihedral_style(job)) } else { String::new() };
-    let hinges = match (has_hinges, dihedral_style(job)) {
-        (false, _) => "",
-        (true, "harmonic") => "hinges are harmonic dihedrals with K = k, one type each; ",
-        (true, _) => "hinges are quadratic dihedrals with K = k/2, one type each; ",
+    let styles: Vec<&str> = dihedral_styles(job).into_iter().collect();
+    let dihedrals = match &styles[..] {
+        [] => String::new(),
+        [one] => format!("dihedral_style {one}\n"),
+        several => format!("dihedral_style hybrid {}\n", several.join(" ")),
     };
-    // Membranes are much stiffer than hinges, where conjugate gradients end early.
-    let minimiser = match has_hinges {
-        true => "  \"min_style hftn\" &\n".to_string(),
+    let hinges = match &styles[..] {
+        [] => "",
+        ["harmonic"] => "flat hinges are harmonic dihedrals with K = k, one type each; ",
+        ["quadratic"] => "bent hinges are quadratic dihedrals with K = k/2, one type each; ",
+        _ => {
+            "flat hinges are harmonic dihedrals with K = k, and bent ones quadratic ones with K = k/2, one type each; "
+        }
+    };
+    let most = if styles.is_empty() { "100000 1000000" } else { "1000000 10000000" };
+    // Membranes are much stiffer than hinges, where conjugate gradients end early. Damped motion by steps that stay below the longest stable one does not.
+    let minimiser = match !styles.is_empty() {
+        true => format!("  \"timestep {step:e}\" &\n  \"min_style fire\" &\n  \"min_modify tmax 1\" &\n"),
         false => format!("  \"min_style cg\" &\n  \"min_modify dmax {:e} line quadratic\" &\n", 0.1 * longest),
     };
     let damping = job.network.damping.mass;
@@ -183,7 +202,7 @@ fix weight all addforce v_wx v_wy v_wz energy v_height
 fix_modify weight energy yes
 {held}{plane}thermo 1000
 if \"${{mode}} == rest\" then &
-{minimiser}  \"minimize 0 {least:e} 100000 1000000\" &
+{minimiser}  \"minimize 0 {least:e} {most}\" &
 else &
   \"fix nve all nve\" &
 {drag}  \"timestep {step:e}\" &

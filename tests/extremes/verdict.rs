@@ -128,9 +128,12 @@ pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
 
 /// The error by its definition, of numbers that are brought to the size of one first.
 fn rms(fem: &[f64], found: &[f64], mesh: &Mesh) -> f64 {
+    // Directors of a sheet are no points of the body.
+    let dofs = mesh.node_count() * mesh.dimension;
+    let (fem, found) = (&fem[..dofs], &found[..dofs]);
     let unit = fem.iter().fold(0.0f64, |a, u| a.max(u.abs()));
     let length = |u: &[f64]| u.iter().map(|u| (u / unit).powi(2)).sum::<f64>();
     let largest = fem.chunks_exact(mesh.dimension).map(length).fold(0.0, f64::max).sqrt();
     let apart: Vec<f64> = fem.iter().zip(found).map(|(a, b)| a - b).collect();
-    100.0 * (length(&apart) / mesh.point_count() as f64).sqrt() / largest
+    100.0 * (length(&apart) / mesh.node_count() as f64).sqrt() / largest
 }

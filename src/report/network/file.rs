@@ -53,7 +53,9 @@ impl<'a> NetworkFile<'a> {
         if let Some(fitted) = fit.masses() {
             return Some(fitted);
         }
-        outcome.motion.as_ref().map(|motion| &motion.masses[..]).or(outcome.masses.as_deref())
+        let of_motion = outcome.motion.as_ref().map(|motion| &motion.masses[..]);
+        // Without inertia a motion needs none.
+        of_motion.filter(|masses| masses.iter().any(|mass| *mass != 0.0)).or(outcome.masses.as_deref())
     }
 
     pub(super) fn support(&self) -> Support {

@@ -73,7 +73,7 @@ pub fn lumped_masses(
 
 /// How many times the rotary inertia of a plate directors have: as much as no explicit step of theirs is much shorter than one of the membrane. Thin plates move
 /// as if they had none.
-const INERTIA: f64 = 4.0;
+pub(super) const INERTIA: f64 = 4.0;
 
 /// The share of a triangle in the mass of a director.
 pub(super) struct TurningMass {

@@ -12,6 +12,9 @@ use std::sync::Arc;
 /// The sum of the normals at an edge, relative to their number, below which the sheet is folded onto itself there.
 const FOLDED: f64 = 0.1;
 
+/// The least thickness of a sheet relative to its edges.
+const THINNEST: f64 = 1e-4;
+
 impl Mesh {
     /// The number of points that are nodes of cells. Those after them are the directors of a sheet.
     pub fn node_count(&self) -> usize {
@@ -22,7 +25,8 @@ impl Mesh {
     /// long, or as the sheet is thick if that is more. `gyration` is `t²/12` of each triangle, m².
     ///
     /// # Errors
-    /// The mesh is no surface of triangles of three nodes in space, or is folded onto itself at an edge; the kind is `Unsupported`.
+    /// The mesh is no surface of triangles of three nodes in space, or is folded onto itself at an edge: kind `Unsupported`. The sheet is too thin to be computed:
+    /// kind `Limit`.
     pub fn with_directors(mut self, gyration: Vec<f64>) -> Result<Mesh> {
         let unsupported = |found: String| {
             let expected = "a surface in space of triangles of three nodes";
@@ -55,14 +59,23 @@ impl Mesh {
                 first + place
             }));
         }
-        let thickest = gyration.iter().fold(0.0, |most: f64, own| most.max((12.0 * own).sqrt()));
+        let thicknesses = || gyration.iter().map(|own| (12.0 * own).sqrt());
+        let (thinnest, thickest) = (thicknesses().fold(f64::INFINITY, f64::min), thicknesses().fold(0.0, f64::max));
         for ([a, b], normal, count) in &normals {
             let size = norm(normal);
             if size < FOLDED * count {
                 let middle = self.mean_place(&[*a, *b]);
                 return unsupported(format!("one that is folded onto itself at {middle:?} m"));
             }
-            let reach = distance(self.point(*a), self.point(*b)).max(thickest);
+            let length = distance(self.point(*a), self.point(*b));
+            if !(thinnest >= THINNEST * length) {
+                let problem = format!(
+                    "expected a sheet of at least {THINNEST:e} of its edges, found a thickness of {thinnest:.3e} m at an edge of {length:.3e} m: its bending is lost in \
+                     rounding errors of its membrane"
+                );
+                return Err(Error::at("bending", problem).of_kind(ErrorKind::Limit));
+            }
+            let reach = length.max(thickest);
             let middle = self.mean_place(&[*a, *b]);
             self.points.extend(middle.iter().zip(normal).map(|(x, n)| x + reach * n / size));
         }

@@ -100,6 +100,11 @@ impl<'a> Simulation<'a> {
         let unstable = |expected: String| {
             Error::expected("step", expected, format!("{:e} s", options.step)).of_kind(ErrorKind::Infeasible)
         };
+        let loose = || {
+            let expected = "supports that hold every part of a model whose stiffness is positive definite";
+            let found = "a motion that nothing resists, or that releases energy";
+            Error::expected("quasi-static", expected, found).of_kind(ErrorKind::Infeasible)
+        };
         if !is_implicit {
             let longest = simulation.longest_step();
             if options.step > longest {
@@ -107,11 +112,10 @@ impl<'a> Simulation<'a> {
                 return Err(unstable(expected));
             }
         } else if options.linear && !simulation.is_definite(options.step)? {
-            let expected = match options.quasi_static {
-                true => "inertia, or supports that hold a model which releases no energy",
-                false => "a step short enough for a model that releases energy as it moves",
-            };
-            return Err(unstable(expected.into()));
+            return Err(match options.quasi_static {
+                true => loose(),
+                false => unstable("a step short enough for a model that releases energy as it moves".into()),
+            });
         }
         let is_plain = simulation.motion.memory.is_none() && !simulation.resistance.is_damped();
         if !is_implicit && !options.account && !options.linear && is_plain {

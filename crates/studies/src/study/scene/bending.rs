@@ -19,8 +19,8 @@ pub enum Bending {
 }
 
 impl Bending {
-    /// The mesh with what resists bending, if anything does; `material_of` has the thicknesses. `flexural` is the flexural stiffness D, N·m, if it is not that of the
-    /// thickness: then `D/C_xx` of the stiffness C of the membrane has the place of `t²/12`, in the rotary inertia too.
+    /// The mesh with what resists bending, if anything does; `material_of` has the thicknesses. If the flexural stiffness D, N·m, is given and not that of the
+    /// thickness, `D/C_xx` of the stiffness C of the membrane has the place of `t²/12`, in the rotary inertia too.
     ///
     /// # Errors
     /// Those of the material; the mesh is no surface of triangles in space; or the flexural stiffness is not above zero, or belongs to no plate.

@@ -261,11 +261,7 @@ impl Scene {
     /// The file or an element is wrong, or a cell has no volume; or a mesh that is to bend is no surface of triangles.
     pub fn build_mesh(&self) -> Result<Mesh> {
         let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
-        let bent = {
-            let MaterialEntry { bending, flexural, .. } = self.material.first();
-            bending.of(mesh, *flexural, |mesh| self.material_of(mesh))
-        };
-        bent.map_err(|e| e.placed(|e| self.at(&self.material.key(0), e)))
+        self.bent(mesh)
     }
 
     /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong

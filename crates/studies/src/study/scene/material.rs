@@ -90,8 +90,7 @@ pub struct MaterialEntry {
     /// A surface in space of triangles resists bending as this says. It is the same in every entry of `[[material]]`.
     #[serde(default)]
     pub bending: Bending,
-    /// A sheet that bends has this flexural stiffness D in N·m, above 0, in place of that of its thickness, as cloth, laminates and lipid layers have. It is the same in
-    /// every entry of `[[material]]`.
+    /// A sheet that bends has this flexural stiffness D in N·m, above 0, in place of that of its thickness. It is the same in every entry of `[[material]]`.
     #[schemars(extend("x-default" = "`E t³/(12 (1 − ν²))`"))]
     pub flexural: Option<f64>,
     /// Rods have this cross-section in m², above 0.

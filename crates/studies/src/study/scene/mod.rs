@@ -28,6 +28,7 @@ mod regions;
 mod relaxation;
 mod relaxing;
 mod setting;
+mod sheet;
 mod source;
 pub(in crate::study) mod value;
 mod variants;

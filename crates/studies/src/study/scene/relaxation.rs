@@ -1,12 +1,15 @@
 //! The `[material.relaxation]` of a scene.
 
 use super::value;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{FittedSeries, ModulusTest};
 use crate::material::{Relaxation, RelaxationTerm};
 use crate::study::choice::choice;
 use schemars::JsonSchema;
 use serde::Deserialize;
+
+/// The largest error of a series that stands for measured moduli.
+const LARGEST_ERROR: f64 = 0.2;
 
 /// How the moduli of a material relax.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
@@ -102,7 +105,16 @@ impl MeasuredModuli {
             let bulk = if of == MeasuredPart::All { shear } else { 0.0 };
             RelaxationTerm { shear, bulk, time }
         };
-        Relaxation::new(self.fit()?.terms.iter().map(term).collect())
+        let fitted = self.fit()?;
+        if fitted.terms.is_empty() {
+            return Err(Error::new("expected moduli that relax, found some that do not"));
+        }
+        if !(fitted.error <= LARGEST_ERROR) {
+            let expected = format!("moduli that a Prony series has within {:.0} %", 100.0 * LARGEST_ERROR);
+            let found = format!("an error of {:.0} %", 100.0 * fitted.error);
+            return Err(Error::new(format!("expected {expected}, found {found}")).of_kind(ErrorKind::Infeasible));
+        }
+        Relaxation::new(fitted.terms.iter().map(term).collect())
     }
 
     fn fit(&self) -> Result<FittedSeries> {

@@ -18,6 +18,8 @@ use faer::sparse::Triplet;
 /// whether it is linear in the moduli.
 const OTHER: f64 = 0.5;
 const BETWEEN: f64 = 0.75;
+/// The least share of a modulus with which a network is made to show the same.
+const LEAST: f64 = 0.02;
 /// The difference that rounding may leave in a network that is linear in the moduli, relative to its forces.
 const LINEAR: f64 = 1e-9;
 
@@ -120,27 +122,31 @@ impl Relaxing {
         if self.relaxation.is_alike() {
             return Ok((None, self.parts(mesh, vec![(own, true)])?));
         }
-        let with_bulk = |share: f64| -> Result<Entries> {
-            let material = self.material.of_isotropic(|material: Material| with_moduli(material, 1.0, share))?;
+        let with = |shear: f64, bulk: f64| -> Result<Entries> {
+            let material = self.material.of_isotropic(|material: Material| with_moduli(material, shear, bulk))?;
             let reference = Reference { held: &self.held, ..Reference::default() };
             let (made, _) = fit_without_errors(mesh, &material, &reference, fit, &mut |_| {})?;
             Ok(made.network.stiffness(&mesh.points))
         };
-        let (other, between) = (with_bulk(OTHER)?, with_bulk(BETWEEN)?);
+        let (other, between) = (with(1.0, OTHER)?, with(1.0, BETWEEN)?);
         // K(s) = K_shear + s K_bulk for the share s of the bulk modulus.
         let weight = (BETWEEN - OTHER) / (1.0 - OTHER);
         let curved = combined(&[(1.0, &between), (-weight, &own), (weight - 1.0, &other)]);
-        let [off, size] = [&curved, &own].map(|entries| size(mesh, entries));
-        if !(off <= LINEAR * size) {
+        let slope = 1.0 / (1.0 - OTHER);
+        let bulk = combined(&[(slope, &own), (-slope, &other)]);
+        let shear = combined(&[(1.0 - slope, &own), (slope, &other)]);
+        // Constants that may not be negative change as they do for the material where it has relaxed alone.
+        let [left, left_bulk] = self.relaxation.sums().map(|sum| (1.0 - sum).max(LEAST));
+        let relaxed = with(left, left_bulk)?;
+        let bent = combined(&[(1.0, &relaxed), (-left, &shear), (-left_bulk, &bulk)]);
+        let [off, bent, size] = [&curved, &bent, &own].map(|entries| size(mesh, entries));
+        if !(off <= LINEAR * size && bent <= LINEAR * size) {
             let expected = format!(
                 "shares of shear and bulk that are alike for \"{}\", whose springs are not linear in the moduli",
                 fit.name
             );
             return Err(Error::expected("terms", expected, "others").of_kind(ErrorKind::Unsupported));
         }
-        let slope = 1.0 / (1.0 - OTHER);
-        let bulk = combined(&[(slope, &own), (-slope, &other)]);
-        let shear = combined(&[(1.0 - slope, &own), (slope, &other)]);
         Ok((None, self.parts(mesh, vec![(shear, true), (bulk, false)])?))
     }
 
