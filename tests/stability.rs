@@ -63,7 +63,7 @@ fn no_case_of_an_element_with_springs_on_angles_is_lost() {
     }
 }
 
-/// What needs something done is told apart from what is only said, and says what helps.
+/// The printed text lists trouble apart from remarks, and each trouble has its way out.
 #[test]
 fn trouble_names_its_way_out_and_what_is_stable_is_no_trouble() {
     let folder = TempDir::new().unwrap();

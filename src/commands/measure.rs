@@ -171,7 +171,7 @@ impl Measure {
         text.as_deref().map(|text| Quantity::Length.parse(text).map_err(|e| e.under(key))).transpose()
     }
 
-    /// The options whose numbers may be too large or too small for a stiffness or a volume to be one; nothing where none is given.
+    /// Names the given options whose numbers may make a stiffness or a volume overflow or vanish; empty if none is given.
     fn ranges(&self) -> String {
         let options = [
             ("--spacing", self.spacing.is_some()),

@@ -35,7 +35,7 @@ pub struct Holds {
 pub enum Hinges {
     /// Any.
     Any,
-    /// Those that are flat at rest.
+    /// Hinges that are flat at rest.
     Flat,
     /// None.
     None,
@@ -253,9 +253,8 @@ impl<'a> Job<'a> {
         match *points {
             [a, b, c] => {
                 let [a, b, c] = [a, b, c].map(|p| self.place(p));
-                let edge = |end: [f64; 3]| [0, 1, 2].map(|k| end[k] - a[k]);
-                let twice = cross(edge(b), edge(c));
-                if self.network.dimension == 2 { twice[2] / 2.0 } else { norm(&twice) / 2.0 }
+                let area = area_vector([a, b, c]);
+                if self.network.dimension == 2 { area[2] } else { norm(&area) }
             }
             _ => volume_by_edges(std::array::from_fn(|i| self.place(points[i]))).0,
         }
@@ -356,15 +355,18 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     crate::springs::distance(&a, &b)
 }
 
+/// The area of a triangle times its unit normal.
+fn area_vector([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let edge = |end: [f64; 3]| [0, 1, 2].map(|k| end[k] - a[k]);
+    cross(edge(b), edge(c)).map(|twice| twice / 2.0)
+}
+
 /// The area A of a triangle in space, and `∂A/∂(ℓ²) = (ℓ_b² + ℓ_c² − ℓ²)/(16 A)` of its edges, from `16 A² = 4 ℓ_b² ℓ_c² − (ℓ_b² + ℓ_c² − ℓ²)²`.
 fn area_by_edges(x: [[f64; 3]; 3]) -> (f64, Vec<([usize; 2], f64)>) {
     let edges = [[0, 1], [1, 2], [0, 2]];
     let squares = edges.map(|[a, b]| distance(x[a], x[b]).powi(2));
     let sum: f64 = squares.iter().sum();
-    let area = {
-        let edge = |a: usize| [0, 1, 2].map(|k| x[a][k] - x[0][k]);
-        norm(&cross(edge(1), edge(2))) / 2.0
-    };
+    let area = norm(&area_vector(x));
     (area, edges.into_iter().zip(squares).map(|(edge, square)| (edge, (sum - 2.0 * square) / (16.0 * area))).collect())
 }
 

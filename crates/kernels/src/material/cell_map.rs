@@ -35,7 +35,7 @@ impl<T: Clone + PartialEq> CellMap<T> {
     /// The values of another kind that follow from these.
     ///
     /// # Errors
-    /// Those of `of`.
+    /// This returns the errors of `of`.
     pub fn try_map<U: Clone + PartialEq>(&self, of: impl Fn(&T) -> Result<U>) -> Result<CellMap<U>> {
         match self {
             CellMap::Uniform(value) => of(value).map(CellMap::Uniform),

@@ -24,7 +24,7 @@ impl EnergyMap {
     /// The body with another law in place of each.
     ///
     /// # Errors
-    /// Those of `of`.
+    /// This returns the errors of `of`.
     pub fn try_map(&self, of: impl Fn(&Energy, State) -> Result<Energy>) -> Result<EnergyMap> {
         let laws: Result<Vec<_>> = self.laws.iter().map(|(law, state)| Ok((of(law, *state)?, *state))).collect();
         Ok(EnergyMap { laws: laws?.into(), of: self.of.clone() })

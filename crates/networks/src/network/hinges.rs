@@ -1,15 +1,12 @@
 //! Hinges between triangles in place of those on directors, for programs that have no directors.
 
-use super::measures::plain;
-use super::record::{
-    HeldRecord, MeasureKind, MeasureRecord, NetworkRecord, NodalForceRecord, ShareRecord, SpringRecord,
-};
+use super::record::{HeldRecord, MeasureKind, NetworkRecord, NodalForceRecord, NodalLoadRecord, SpringRecord};
 use crate::element::SpringKind;
 use crate::springs::HINGE_POINTS;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// A hinge on a director: its place among the springs, and its points.
+/// A hinge on a director, and its points.
 type Half<'a> = (&'a SpringRecord<'static>, [usize; HINGE_POINTS]);
 
 impl NetworkRecord {
@@ -46,8 +43,6 @@ impl NetworkRecord {
                 (None, Ok(points)) => halves.entry(points[3]).or_default().push((spring, points)),
             }
         }
-        let mut measures = self.measures.clone();
-        measures.push(hinge());
         for sides in halves.values() {
             let sum: f64 = sides.iter().map(|(spring, _)| spring.constant).sum();
             for (i, (first, own)) in sides.iter().enumerate() {
@@ -56,11 +51,11 @@ impl NetworkRecord {
                     // Triangles that run through the edge in opposite directions measure their turns towards one side.
                     let is_of_one_side = own[1] == other[2];
                     let turned = if is_of_one_side { first.rest + second.rest } else { first.rest - second.rest };
+                    // The hinge measures what its halves do, of other points.
                     springs.push(SpringRecord {
                         points: Cow::Owned(points),
                         constant: first.constant * second.constant / sum,
                         rest: wrapped(turned - std::f64::consts::PI),
-                        measure: measures.len() - 1,
                         ..(*first).clone()
                     });
                 }
@@ -81,7 +76,7 @@ impl NetworkRecord {
         let loads = self.loads.iter().map(|load| {
             let force = |f: &NodalForceRecord| Some(NodalForceRecord { point: moved(f.point)?, ..f.clone() });
             let forces = load.forces.iter().filter_map(force).collect();
-            super::record::NodalLoadRecord { name: load.name.clone(), forces, held: held(&load.held) }
+            NodalLoadRecord { name: load.name.clone(), forces, held: held(&load.held) }
         });
         // Nodes are the first points, and stay where they are; so cells and the surface name the same ones.
         Some(NetworkRecord {
@@ -91,7 +86,6 @@ impl NetworkRecord {
             held: held(&self.held),
             loads: loads.collect(),
             largest_step: None,
-            measures,
             springs,
             ..self.clone()
         })
@@ -111,12 +105,6 @@ impl NetworkRecord {
         }
         is_director
     }
-}
-
-/// What the hinge between two triangles measures.
-fn hinge() -> MeasureRecord {
-    let turn = ShareRecord { nodes: (0..HINGE_POINTS).collect(), share: 1.0 };
-    MeasureRecord { cells: vec![turn], ..plain(MeasureKind::Turn) }
 }
 
 /// An angle between −π and π.

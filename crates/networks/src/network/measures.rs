@@ -66,7 +66,7 @@ fn identity(measure: &Measure) -> Option<Identity> {
     }
 }
 
-pub(super) fn plain(kind: MeasureKind) -> MeasureRecord {
+fn plain(kind: MeasureKind) -> MeasureRecord {
     MeasureRecord { kind, element: None, terms: Vec::new(), cells: Vec::new(), expression: None }
 }
 

@@ -5,6 +5,7 @@
 use super::decay::Decay;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Entries;
+use crate::springs::dot;
 use faer::sparse::{SparseColMat, Triplet};
 
 /// A part of the stiffness at rest, and the share of it that relaxes in each term.
@@ -196,8 +197,4 @@ impl LinearMemory {
     pub(super) fn dissipated(&self) -> f64 {
         self.dissipated
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -18,9 +18,9 @@ pub use linear::{LinearMemory, RelaxingPart};
 /// The memory of a model, beside its elastic forces.
 #[derive(Debug, Clone)]
 pub enum Memory {
-    /// Of a linear model.
+    /// A linear model has this memory.
     Linear(LinearMemory),
-    /// Of a model at large deformation.
+    /// A model at large deformation has this memory.
     Large(Box<LargeMemory>),
 }
 
