@@ -19,7 +19,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from settle import judge, settle, taken
+from settle import judge, seconds, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -59,11 +59,11 @@ def advance(x, v, applied=0.0):
     return x + step * v, v
 
 
-def move(seconds, applied=0.0):
+def move(duration, applied=0.0):
     """The positions at each frame."""
     x, v = points, np.zeros_like(points)
     frames, count = [points], 0
-    for frame in range(1, round(seconds * rate) + 1):
+    for frame in range(1, round(duration * rate) + 1):
         while count * step < frame / rate:
             x, v = advance(x, v, applied)
             count += 1
@@ -137,7 +137,7 @@ if __name__ == "__main__":
     if bpy.app.background:
         bpy.ops.wm.read_factory_settings(use_empty=True)
     is_rest = given[:1] == ["--rest"]
-    frames = [points, come_to_rest(applied)] if is_rest else move(float((given or [1])[0]), applied)
+    frames = [points, come_to_rest(applied)] if is_rest else move(seconds(given, 1.0), applied)
     made = objects()
     keep(made, frames)
     x = shown(made[0], len(frames))

@@ -20,7 +20,7 @@ from pathlib import Path
 
 import mujoco
 import numpy as np
-from settle import judge, settle, taken
+from settle import judge, seconds, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -188,7 +188,7 @@ if __name__ == "__main__":
     else:
         m = model()
         d = start(m, forces)
-        for _ in range(round(float((given or [2])[0]) / step)):
+        for _ in range(round(seconds(given, 2.0) / step)):
             mujoco.mj_step(m, d)
         x = positions(m, d)
         moved = np.linalg.norm(x - points, axis=1)

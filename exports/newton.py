@@ -21,7 +21,7 @@ from pathlib import Path
 
 import newton
 import numpy as np
-from settle import judge, settle, taken
+from settle import judge, seconds, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -146,7 +146,7 @@ if __name__ == "__main__":
         x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
         np.save(given[1], x)
     else:
-        duration = float((given or [0.5])[0])
+        duration = seconds(given, 0.5)
         body = Motion(forces=forces)
         for _ in range(round(duration / step)):
             body.advance()

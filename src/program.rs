@@ -22,7 +22,7 @@ struct Verbosity {
     /// Print results and errors alone: no notes, no progress, no names of files
     #[arg(short, long, global = true, help_heading = "Messages", conflicts_with = "verbose")]
     quiet: bool,
-    /// Print the time of each stage as well
+    /// Print all tables and notes of a run, and the time of each stage as well
     #[arg(short, long, global = true, help_heading = "Messages")]
     verbose: bool,
 }
@@ -44,7 +44,8 @@ Examples:
   springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
 
 Results go to standard output; notes, progress and errors to standard error.
-Tables fit the terminal, or 120 columns where there is none; COLUMNS sets another width.
+Lines fit the terminal; COLUMNS sets another width. Where there is none, tables fit 100 columns,
+and a note is one line.
 NO_COLOR=1 or CLICOLOR=0 turns colours off.
 
 Exit codes:

@@ -2,10 +2,11 @@
 
 use clap::builder::styling::{AnsiColor, Style};
 use clap::error::{ContextKind, ContextValue};
+use console::measure_text_width;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use springfit::error::{Error, Result};
-use springfit::report;
+use springfit::report::{self, Detail};
 use springfit::study::Event;
 use springfit::text::{cut, printable, printable_lines, time_in_words};
 use std::io::{IsTerminal, Write};
@@ -20,7 +21,7 @@ pub enum Level {
     /// Notes and progress as well.
     #[default]
     Usual,
-    /// The time of each stage as well.
+    /// All tables and notes, and the time of each stage as well.
     Verbose,
 }
 
@@ -54,12 +55,20 @@ const TRIAL: Duration = Duration::from_secs(1);
 /// A stage that will take longer says so.
 const LONG: Duration = Duration::from_secs(10);
 /// Columns of a page where there is no terminal, and the least that tables are fitted to.
-const PAGE: usize = 120;
+const PAGE: usize = 100;
 const NARROWEST: usize = 40;
+/// More files of a folder are named in one line.
+const FEW_FILES: usize = 2;
 
 /// A record as a JSON document.
 pub fn json_text(record: &impl Serialize) -> String {
     serde_json::to_string_pretty(record).expect("keys are text") + "\n"
+}
+
+impl Level {
+    fn detail(self) -> Detail {
+        if self == Level::Verbose { Detail::All } else { Detail::Overview }
+    }
 }
 
 impl Stage {
@@ -80,7 +89,7 @@ impl Stage {
 impl Terminal {
     pub fn new(grammar: fn() -> clap::Command, level: Level) -> Terminal {
         let now = Instant::now();
-        report::set_page_width(page_width());
+        report::set_page(page_width().unwrap_or(PAGE), level.detail());
         Terminal { grammar, level, start: now, bar: None, stage: Stage::new("", 0), last: now, is_document: false }
     }
 
@@ -145,8 +154,20 @@ impl Terminal {
     pub fn note(&mut self, note: &str) {
         if self.level != Level::Quiet {
             self.clear();
-            tell(&format!("note: {note}"));
+            tell(&self.within_page(&format!("note: {note}")));
         }
+    }
+
+    /// How much of the tables of a run is printed.
+    pub fn detail(&self) -> Detail {
+        self.level.detail()
+    }
+
+    /// Breaks sentences into lines where a terminal or `COLUMNS` sets a width. Elsewhere a sentence is a line, which other programs search.
+    pub fn within_page(&self, text: &str) -> String {
+        let Some(page) = page_width() else { return text.into() };
+        text.lines().map(|line| broken(line, page) + "\n").collect::<String>().trim_end_matches('\n').to_string()
+            + if text.ends_with('\n') { "\n" } else { "" }
     }
 
     /// Removes the bar.
@@ -195,12 +216,24 @@ impl Terminal {
         self.print_document(&json_text(record))
     }
 
-    /// Names the files that were written; beside a document on standard error.
+    /// Names the files that were written, several of a folder in one line; beside a document on standard error.
     ///
     /// # Errors
     /// Standard output cannot be written.
     pub fn written(&mut self, paths: &[PathBuf]) -> Result<()> {
-        paths.iter().try_for_each(|path| self.say(&format!("written: {}", path.display())))
+        let is_listed = |files: &[PathBuf]| files.len() <= FEW_FILES || self.detail() == Detail::All;
+        let mut lines = Vec::new();
+        for files in paths.chunk_by(|a, b| a.parent() == b.parent()) {
+            if is_listed(files) {
+                lines.extend(files.iter().map(|path| format!("written: {}", path.display())));
+                continue;
+            }
+            let folder = files[0].parent().map_or(String::new(), |folder| folder.display().to_string());
+            let names: Vec<_> =
+                files.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy()).collect();
+            lines.push(self.within_page(&format!("written: {} in {folder}", names.join(", "))));
+        }
+        lines.iter().try_for_each(|line| self.say(line))
     }
 
     /// A line after the results.
@@ -242,8 +275,33 @@ pub fn printable_error(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// The columns of the terminal or of `COLUMNS`, which goes first.
-fn page_width() -> usize {
+/// The line in lines of at most `page` columns, as far as its words allow. Those behind the first one are indented; what is aligned in columns
+/// stays as it is.
+fn broken(line: &str, page: usize) -> String {
+    let is_in_columns = line.starts_with(' ') || line.contains("  ");
+    if is_in_columns || measure_text_width(line) <= page {
+        return line.into();
+    }
+    let mut text = String::new();
+    let mut room = page;
+    for word in line.split(' ') {
+        let width = measure_text_width(word);
+        if text.is_empty() {
+            room = page.saturating_sub(width);
+        } else if width < room {
+            text.push(' ');
+            room -= width + 1;
+        } else {
+            text += "\n  ";
+            room = page.saturating_sub(width + 2);
+        }
+        text += word;
+    }
+    text
+}
+
+/// The columns of the terminal or of `COLUMNS`, which goes first; none where there is neither.
+fn page_width() -> Option<usize> {
     let given = std::env::var("COLUMNS").ok().and_then(|columns| columns.trim().parse::<usize>().ok());
     let terminal = || {
         let terminal = console::Term::stdout();
@@ -254,7 +312,7 @@ fn page_width() -> usize {
             .flatten()
             .map(|(_, columns)| usize::from(columns))
     };
-    given.filter(|columns| *columns > 0).or_else(terminal).unwrap_or(PAGE).max(NARROWEST)
+    given.filter(|columns| *columns > 0).or_else(terminal).map(|columns| columns.max(NARROWEST))
 }
 
 /// Prints a line on standard error; if it cannot be written, nothing is lost. Its first word has a colour on a terminal,

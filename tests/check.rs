@@ -52,7 +52,7 @@ const WRONG: [(&str, &str, &str); 19] = [
     ("negative", "quadrature rule", "0 points outside the cell, 1 negative weights"),
     ("order", "loads", "formats.vtk.order: expected each of 0 to 3 once, found [0, 0, 2, 3]"),
     ("outside", "loads", "quadrature.points[4]: expected a point in the cell, found [1.1, 0.0]"),
-    ("patch", "patch test", "forces of uniform stress against tractions on the sides: largest defect"),
+    ("patch", "patch test", "uniform stress against tractions of sides, defect"),
     ("singular", "loads", "nodes[0].shape: is NaN at nodes[0], expected 1"),
     ("spring", "loads", "springs[0].nodes[0]: expected two different nodes below 4, found [0, 4]"),
     ("spurious", "rank of R", "3 of 5, 2 spurious modes"),

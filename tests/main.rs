@@ -36,6 +36,7 @@ mod fields;
 mod files;
 mod fill_layers;
 mod fills;
+mod first_screen;
 mod fits;
 mod formats;
 mod fraction;

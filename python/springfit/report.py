@@ -107,8 +107,7 @@ class Report:
     @property
     def notes(self) -> list[str]:
         """What a reader must know before the figures are trusted."""
-        # The mark is in tables of the program.
-        return [note.replace(" (* in the table)", "") for note in self.record["notes"]]
+        return list(self.record["notes"])
 
     @property
     def fits(self) -> pandas.DataFrame:

@@ -321,8 +321,7 @@ impl Network {
     fn notes(&self) -> Vec<String> {
         let mesh = report::mesh_notes(self.body.mesh());
         let of_fit = self.body.fit().map(|(outcome, _)| report::notes_beside_summary(outcome));
-        // Python has no table.
-        mesh.into_iter().chain(of_fit.into_iter().flatten()).map(|note| note.replace(report::IN_TABLE, "")).collect()
+        mesh.into_iter().chain(of_fit.into_iter().flatten()).collect()
     }
 
     /// The name of the fit.

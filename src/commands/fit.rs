@@ -70,6 +70,9 @@ pub struct Fit {
     /// Leave out the errors of the elements' matrices, which take up to half of the time
     #[arg(long, help_heading = "Output")]
     no_errors: bool,
+    /// Print the compliances 1/k as well, which engines of position-based dynamics take
+    #[arg(long, help_heading = "Output", conflicts_with_all = ["json", "table", "shard"])]
+    compliance: bool,
     /// Where the springs go: .json with all that is known of them, .npz, .csv or .vtu
     #[arg(short, long, help_heading = "Output")]
     output: PathBuf,
@@ -187,6 +190,9 @@ impl Fit {
         // The file first: who reads the table may have gone away.
         format.write(&self.output, &NetworkFile::of(&outcome, &outcome.fits[0]))?;
         self.format.print_outcome(terminal, &outcome)?;
+        if self.compliance {
+            terminal.print(&format!("\n{}", report::compliances(&outcome.fits[0].network).titled_text()))?;
+        }
         // A larger body has it in its file alone.
         let is_told = outcome.mesh.point_count() <= FEW;
         let step = is_told.then(|| NetworkFile::of(&outcome, &outcome.fits[0]).longest_step()).flatten();

@@ -4,11 +4,14 @@ use crate::terminal::{Terminal, json_text};
 use clap::Args;
 use serde::Serialize;
 use springfit::error::{Error, Result};
-use springfit::report::{self, Markup, Report, Table};
+use springfit::report::{self, Detail, Markup, Report, Table};
 use springfit::study::Outcome;
 use springfit::text::printable_lines;
 use std::ffi::OsString;
 use std::sync::OnceLock;
+
+/// Notes that are printed of an outcome, unless all are asked for.
+const MOST_NOTES: usize = 8;
 
 /// The options of a command that prints tables.
 #[derive(Args)]
@@ -47,7 +50,7 @@ impl OutputOptions {
     /// # Errors
     /// Standard output cannot be written.
     pub fn print_text(&self, terminal: &mut Terminal, text: &str) -> Result<()> {
-        if self.is_text() { terminal.print(text) } else { terminal.print_document(text) }
+        if self.is_text() { terminal.print(&terminal.within_page(text)) } else { terminal.print_document(text) }
     }
 
     /// What is printed of a result.
@@ -65,17 +68,28 @@ impl OutputOptions {
         printable_lines(&text).into_owned()
     }
 
-    /// Prints an outcome with its notes, which a report has as well.
+    /// Prints an outcome with its notes, which a report has as well. Unless all is asked for, it is one row for each fit and the notes that
+    /// cost most, each once for all that it concerns.
     ///
     /// # Errors
     /// Standard output cannot be written.
     pub fn print_outcome(&self, terminal: &mut Terminal, outcome: &Outcome) -> Result<()> {
         let record = || Report::of(outcome);
+        let detail = terminal.detail();
         let text = || format!("{}\n{}", report::summary(outcome), report::tables(outcome));
-        self.print(terminal, record, || Table::all(&record()), text)?;
-        if !self.json {
-            let notes = if self.is_text() { report::notes_beside_summary } else { report::notes };
-            notes(outcome).iter().for_each(|note| terminal.note(note));
+        let text = self.text(record, || Table::all(&record()), text);
+        self.print_text(terminal, &text)?;
+        if self.json {
+            return Ok(());
+        }
+        let (notes, most) = match (self.is_text(), detail) {
+            (false, _) => (report::notes(outcome), usize::MAX),
+            (true, Detail::All) => (report::notes_beside_summary(outcome), usize::MAX),
+            (true, Detail::Overview) => (report::groups_beside_summary(outcome), MOST_NOTES),
+        };
+        notes.iter().take(most).for_each(|note| terminal.note(note));
+        if notes.len() > most {
+            terminal.note(&format!("… and {} more with -v", notes.len() - most));
         }
         Ok(())
     }

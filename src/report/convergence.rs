@@ -2,6 +2,7 @@
 
 use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
 use super::summary::size;
+use super::table::Priority::First;
 use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
@@ -14,16 +15,16 @@ use std::path::PathBuf;
 fn columns() -> Vec<Column> {
     vec![
         Column::words("model"),
-        Column::words("level"),
+        Column::words("level").priority(First),
         Column::numbers("h").unit("mm"),
         Column::numbers("cells"),
-        Column::numbers("unknowns"),
+        Column::numbers("unknowns").priority(First),
         Column::numbers("compliance").unit("J"),
         Column::numbers("of finite\nelements").unit("%"),
-        Column::numbers("of the\ntruth").unit("%"),
-        Column::numbers("rate"),
-        Column::numbers("displacements\ne_rms").unit("%"),
-        Column::words("network"),
+        Column::numbers("of the\ntruth").unit("%").priority(First),
+        Column::numbers("rate").priority(First),
+        Column::numbers("displacements\ne_rms").unit("%").priority(First),
+        Column::words("network").priority(First),
     ]
 }
 

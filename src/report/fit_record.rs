@@ -1,13 +1,14 @@
 //! Fits in `report.json`.
 
 use super::load_record::LoadRecord;
+use super::verdict::verdict;
 use crate::fit::Spread;
 use crate::fit::published::Unmet;
 use crate::number::finite;
 use crate::positive::PositiveOutcome;
 use crate::study::{
-    EngineOutcome, FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, SampledOutcome, TensionOutcome,
-    WholeOutcome,
+    EngineOutcome, FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, Outcome, SampledOutcome,
+    TensionOutcome, WholeOutcome,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,10 @@ pub struct FitRecord {
     /// The network is `fitted`, `stable`, `near-mechanism`, `indefinite` or a `mechanism`; at large deformation it is `converged` or
     /// `stalled`.
     pub status: String,
+    /// What must be known first of the network: `not trusted`, its status where that is not well, `inverted cells`, `not the optimum`, `locks`,
+    /// `not the material` with the percentage, or its status.
+    #[serde(default)]
+    pub verdict: String,
     /// The network has this number of springs.
     pub springs: usize,
     /// The constants of all elements took this processor time in s without assembly, in the pass that made them.
@@ -93,8 +98,11 @@ pub struct FitRecord {
 }
 
 impl FitRecord {
-    /// Makes the record of a fit of a body of `elements` elements; `thickness` is that of all elements, or `None` if theirs differ.
-    pub(super) fn of(outcome: &FitOutcome, elements: usize, thickness: Option<f64>) -> FitRecord {
+    /// Makes the record of a fit of a run.
+    pub(super) fn of(run: &Outcome, outcome: &FitOutcome) -> FitRecord {
+        let elements = run.mesh.cell_count();
+        // That of all elements; none if theirs differ.
+        let thickness = run.material.thicknesses().uniform().copied();
         let certificate = outcome.kind.stiffness();
         let moduli = outcome.moduli.as_ref();
         FitRecord {
@@ -102,6 +110,7 @@ impl FitRecord {
             name: outcome.fit.name.clone(),
             groups: outcome.fit.springs.clone(),
             status: outcome.status().into(),
+            verdict: verdict(run, outcome),
             springs: outcome.network.len(),
             seconds: outcome.seconds,
             seconds_per_element: outcome.seconds_per_element(elements),

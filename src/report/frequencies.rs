@@ -1,6 +1,8 @@
 //! Natural frequencies side by side.
 
+use super::note::{Note, Weight};
 use super::table::Digits::{Signed, Significant};
+use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
 use crate::study::{BODY, FrequencyOutcome, Outcome, Standard, locks_at};
 
@@ -24,11 +26,13 @@ pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
     let most = rows.iter().map(|(.., found)| found.len()).max().unwrap_or(0);
     let reference = rows.iter().position(|(name, _, found)| *name == BODY && !found.is_empty());
     let pair = |i: usize| {
-        let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string());
+        let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string()).priority(First);
         [column("f", "Hz"), column("off", "%")]
     };
-    let columns =
-        [Column::words("model"), Column::words("masses")].into_iter().chain((1..=most).flat_map(pair)).collect();
+    let columns = [Column::words("model"), Column::words("masses").priority(First)]
+        .into_iter()
+        .chain((1..=most).flat_map(pair))
+        .collect();
     let row = |(place, (name, masses, found)): (usize, &(&str, &str, &[f64]))| {
         let cells = |i: usize| {
             let value = found.get(i).copied();
@@ -55,10 +59,11 @@ fn rigid(models: &[FrequencyOutcome]) -> String {
 }
 
 /// Which frequencies are missing, and what those of the finite elements are not right for.
-pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
+pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<Note> {
     let note = |model: &FrequencyOutcome| {
         let kind = if model.frequencies.is_some() { " with consistent masses" } else { "" };
-        model.reason.as_ref().map(|why| format!("{}: no natural frequencies{kind}: {why}", model.name))
+        let words = |why| format!("no natural frequencies{kind}: {why}");
+        model.reason.as_ref().map(|why| Note::of_model(Weight::Broken, &model.name, words(why)))
     };
     let is_compared = !outcome.frequencies.is_empty();
     let has_finer =
@@ -71,5 +76,6 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<String> {
              frequencies are too high"
         )
     });
-    outcome.frequencies.iter().filter_map(note).chain(compared).chain(locking).collect()
+    let of_reference = compared.into_iter().chain(locking).map(|words| Note::of_body(Weight::Reference, words));
+    outcome.frequencies.iter().filter_map(note).chain(of_reference).collect()
 }

@@ -7,6 +7,7 @@ use super::load_record::MeasuredRecord;
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::notes::notes;
 use super::region_record::RegionRecord;
+use super::verdict::finite_elements_verdict;
 use crate::mesh::Mesh;
 use crate::number::finite;
 use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, ModelTimes, Outcome, Reading, extent};
@@ -39,6 +40,9 @@ pub struct Report {
     pub elements: usize,
     /// The cells have elements of these names.
     pub element_types: Vec<String>,
+    /// What must be known first of the finite elements of the mesh: `not trusted` or `locks`; it is empty if they are right.
+    #[serde(default)]
+    pub finite_elements_verdict: String,
     /// This number of elements had their nodes numbered the other way round.
     pub turned_elements: usize,
     /// This number of points of the file belongs to no element.
@@ -128,8 +132,7 @@ impl Report {
 
     /// The report of a run, without the files that it writes.
     pub fn of(outcome: &Outcome) -> Report {
-        let Outcome { mesh, material, .. } = outcome;
-        let thickness = material.thicknesses().uniform().copied();
+        let mesh = &outcome.mesh;
         let materials = RegionRecord::all(outcome);
         let same = |of: fn(&RegionRecord) -> [Option<f64>; 2]| {
             let first = materials.first().and_then(|region| of(region)[0]);
@@ -137,7 +140,7 @@ impl Report {
         };
         let gauge = |load: &BodyLoad| load.gauge.map(GaugeResult::reading);
         let models = outcome.motion.iter().flat_map(|motion| &motion.models);
-        let fit = |fit| FitRecord::of(fit, mesh.cell_count(), thickness);
+        let fit = |fit| FitRecord::of(outcome, fit);
         Report {
             version: VERSION,
             scene: outcome.scene.clone(),
@@ -147,6 +150,7 @@ impl Report {
             nodes: mesh.node_count(),
             elements: mesh.cell_count(),
             element_types: mesh.blocks.iter().map(|block| block.element.name.clone()).collect(),
+            finite_elements_verdict: finite_elements_verdict(outcome),
             turned_elements: mesh.reversed,
             unused_nodes: mesh.unused_points,
             quality: QualityRecord::of(mesh),

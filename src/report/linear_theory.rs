@@ -1,5 +1,6 @@
 //! Whether the linear theory holds for what the finite elements do.
 
+use super::note::{Note, Weight};
 use crate::model::Deformation;
 use crate::number::finite;
 use crate::study::{BodyLoad, ModelMotion, Outcome, extent, is_one_cell_across};
@@ -70,34 +71,40 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
 const BENDS: f64 = 1.5;
 
 /// That a body of one cell across bends, which linear cells resist too much.
-pub(super) fn bending_note(outcome: &Outcome) -> Option<String> {
+pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
     let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
     let bends = |load: &&BodyLoad| load.deformation.is_some_and(|of| of.rotation > BENDS * of.strain);
     let loads: Vec<&str> =
         outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
     (!loads.is_empty() && is_one_cell_across(&outcome.mesh)).then(|| {
-        format!(
+        let words = format!(
             "the body is about one cell across and bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
              from = \"quadratic\" compares with quadratic elements",
             loads.join(", ")
-        )
+        );
+        Note::of_body(Weight::Reference, words)
     })
 }
 
-/// Which loads the linear theory is too small for, and the motion.
-pub(super) fn linear_notes(outcome: &Outcome) -> Vec<String> {
+/// Under which loads, and whether in the motion, the linear theory is left: the largest strain and rotation of all.
+pub(super) fn linear_note(outcome: &Outcome) -> Option<Note> {
     let loads = outcome.loads.iter().filter_map(of_load).map(|(load, deformation)| (load.name.as_str(), deformation));
     let motion = moved(outcome).and_then(|body| Some(("the motion", body.deformation?)));
-    let beyond = loads.chain(motion).filter(|(_, deformation)| deformation.exceeds(Deformation::LINEAR));
-    let note = |(name, deformation): (&str, Deformation)| {
-        // Surfaces and curves in space have no law.
-        let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
-        let law = ". law = \"stable-neo-hookean\" in [material] solves at large deformation";
-        let remedy = if is_bulk { law } else { "" };
-        let large = large_words(deformation);
-        format!("finite elements: {large} under {name} are beyond the linear theory{remedy}")
+    let beyond: Vec<(&str, Deformation)> =
+        loads.chain(motion).filter(|(_, deformation)| deformation.exceeds(Deformation::LINEAR)).collect();
+    let most = |of: fn(&Deformation) -> f64| {
+        // What is not a number is the largest.
+        beyond.iter().map(|(_, deformation)| of(deformation)).max_by(f64::total_cmp)
     };
-    beyond.map(note).collect()
+    let largest = Deformation { strain: most(|of| of.strain)?, rotation: most(|of| of.rotation)? };
+    // Surfaces and curves in space have no law.
+    let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
+    let law = ". law = \"stable-neo-hookean\" in [material] solves at large deformation";
+    let remedy = if is_bulk { law } else { "" };
+    let names: Vec<&str> = beyond.iter().map(|(name, _)| *name).collect();
+    let words =
+        format!("finite elements: {} under {} are beyond the linear theory", large_words(largest), names.join(", "));
+    Some(Note::of_body(Weight::Reference, words).advice(remedy))
 }
 
 /// The strains and rotations that exceed the bound of the linear theory, with the bound.
@@ -121,14 +128,15 @@ pub fn beyond_linear(deformation: Deformation) -> Option<String> {
 
 /// Says what part of a network's error is the fit's, where the springs turn beside linear finite elements. Bodies in space of surfaces and
 /// curves have no law, `is_bulk` is false of them.
-pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>, is_bulk: bool) -> Option<String> {
+pub(super) fn turning_note(model: &ModelMotion, body: Option<Deformation>, is_bulk: bool) -> Option<Note> {
     let ([mean, max], [own_mean, own_max]) = (model.error()?, model.linear_error?);
     let rotation = body?.rotation;
     let law = if is_bulk { ", a law in [material] compares both at large deformation" } else { "" };
-    Some(format!(
-        "{}: the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear. Of the e_rms \
-         of {mean:.2} / {max:.2} % the fit's is {own_mean:.2} / {own_max:.2} %: that of two linear models. linear = true in [motion] \
-         compares linear models{law}",
-        model.name
-    ))
+    let words =
+        format!("the springs turn, and the finite elements, which rotate by up to {rotation:.2} rad, are linear");
+    let figures = format!(
+        ". Of the e_rms of {mean:.2} / {max:.2} % the fit's is {own_mean:.2} / {own_max:.2} %: that of two linear models"
+    );
+    let note = Note::of_model(Weight::Reference, &model.name, words).figures(figures);
+    Some(note.advice(format!(". linear = true in [motion] compares linear models{law}")))
 }

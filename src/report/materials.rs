@@ -1,31 +1,45 @@
 //! What the networks are as materials, in words.
 
-use crate::study::{FitOutcome, Outcome};
+use super::note::{Note, Weight};
+use crate::study::{FitOutcome, Outcome, locks_at};
 
 /// The share by which a tensor or Young's modulus may be off before a network is warned of.
 const FAR: f64 = 0.1;
 
-/// A warning of a network that is far from the material.
-pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<String> {
-    let (name, m) = (&fit.fit.name, &fit.as_material);
-    // A guess that the fit was to replace; or constants that are stiffer than the material by what an engine leaves.
-    let is_for_engine = fit.engine.is_some();
-    if is_for_engine || fit.kind.whole().is_some_and(|whole| whole.is_measured) {
-        return None;
+/// Whether the network is the material that was asked for, as far as a fit is to be it.
+pub(super) fn is_material(outcome: &Outcome, fit: &FitOutcome) -> bool {
+    let m = &fit.as_material;
+    // Constants of the whole object answer as the body, with others than the material has; those for an engine are stiffer by what it leaves.
+    if fit.engine.is_some() || fit.kind.whole().is_some() {
+        return true;
     }
     // Of springs that belong to no cell nothing is known where membranes or rods are beside them.
     if outcome.mesh.is_mixed() && !m.distance.is_finite() {
-        return None;
+        return true;
     }
     // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
     let is_near = |(young, asked): (f64, f64)| (young / asked - 1.0).abs() <= FAR;
-    let is_modulus = m.young.zip(m.asked_young).is_some_and(is_near);
-    if m.distance <= FAR && is_modulus {
+    m.distance <= FAR && m.young.zip(m.asked_young).is_some_and(is_near)
+}
+
+/// How far the network is from the material in percent, without digits behind the point: that of the tensor, or of E where the tensor is near.
+/// It is none if it is not finite.
+pub(super) fn difference(fit: &FitOutcome) -> Option<String> {
+    let m = &fit.as_material;
+    let of_young = m.young.zip(m.asked_young).map_or(0.0, |(young, asked)| (young / asked - 1.0).abs());
+    let share = if m.distance <= FAR { of_young } else { m.distance };
+    share.is_finite().then(|| format!("{:.0}", 100.0 * share))
+}
+
+/// A warning of a network that is far from the material.
+pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Note> {
+    if is_material(outcome, fit) {
         return None;
     }
-    let off = match percent(m.distance) {
-        Some(percent) => format!("its elasticity tensor C differs by {percent} %"),
-        None => "its elasticity tensor C is not finite".into(),
+    let (name, m) = (&fit.fit.name, &fit.as_material);
+    let off = match m.distance.is_finite() {
+        true => format!("its elasticity tensor C differs by {:.1} %", 100.0 * m.distance),
+        false => "its elasticity tensor C is not finite".into(),
     };
     let of = match (m.young, m.poisson) {
         (Some(young), Some(poisson)) => format!("E = {young:.4e} Pa, nu = {poisson:.3}"),
@@ -40,11 +54,13 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Strin
     };
     // Exact networks are those of isotropic materials, and are not recommended in place of themselves.
     let has_remedy = outcome.material.materials().is_ok() && fit.kind.exact().is_none();
-    let remedy = if has_remedy { ". The objective \"exact\" has no such error" } else { "" };
-    Some(format!("{name}: the network is not the material: {off} ({of}; {asked}){remedy}"))
-}
-
-/// In percent with a digit behind the point; rounding is zero.
-fn percent(share: f64) -> Option<String> {
-    share.is_finite().then(|| format!("{:.1}", 100.0 * share))
+    let remedy = match (has_remedy, locks_at(&outcome.mesh, &outcome.material)) {
+        (false, _) => "",
+        (true, None) => ". The objective \"exact\" has no such error",
+        (true, Some(_)) => {
+            ". The objective \"exact\" has no such error, and with volume = \"cells\" or \"patches\" it does not lock"
+        }
+    };
+    let note = Note::of_model(Weight::Model, name, "the network is not the material");
+    Some(note.figures(format!(": {off} ({of}; {asked})")).advice(remedy))
 }

@@ -1,5 +1,6 @@
 //! What is measured of a network, as tables and as text.
 
+use super::table::Priority::First;
 use super::table::{Cell, Column, Digits, Table};
 use crate::study::{Elasticity, MeasuredNetwork, strain_names};
 use crate::text::{printable, printable_lines, rounded};
@@ -21,12 +22,12 @@ fn materials(measured: &MeasuredNetwork) -> Table {
     let mut columns = vec![
         Column::words("material"),
         Column::numbers("volume"),
-        Column::numbers("E").unit(unit),
-        Column::numbers("ν"),
+        Column::numbers("E").unit(unit).priority(First),
+        Column::numbers("ν").priority(First),
     ];
-    columns.extend(axes.iter().map(|axis| Column::numbers(format!("E along {axis}")).unit(unit)));
-    columns.push(Column::numbers("Zener"));
-    columns.push(Column::numbers("anisotropy").unit("%"));
+    columns.extend(axes.iter().map(|axis| Column::numbers(format!("E along {axis}")).unit(unit).priority(First)));
+    columns.push(Column::numbers("Zener").priority(First));
+    columns.push(Column::numbers("anisotropy").unit("%").priority(First));
     let row = |name: String, volume: f64, found: &Elasticity| {
         let number = |value: Option<f64>| Cell::number(value, Digits::Significant(DIGITS));
         let mut cells = vec![Cell::from(name), number(Some(volume)), number(found.young), number(found.poisson)];

@@ -2,8 +2,10 @@
 
 use super::linear_theory::turning_note;
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
+use super::note::{Note, Weight};
 use super::quality::counted;
 use super::table::Digits::{Fixed, Significant};
+use super::table::Priority::First;
 use super::table::{Cell, Column, Table, csv};
 use crate::dynamics::Integrator;
 use crate::scalar::norm;
@@ -14,18 +16,18 @@ pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRec
     let energy = |title| Column::numbers(title).unit("J");
     let columns = vec![
         Column::words("model"),
-        Column::words("ended"),
-        Column::numbers("steps"),
-        Column::numbers("speed").unit("steps/s"),
+        Column::words("ended").priority(First),
+        Column::numbers("steps").priority(First),
+        Column::numbers("speed").unit("steps/s").priority(First),
         energy("kinetic").group("at the end"),
         energy("work").group("at the end"),
         energy("dissipated").group("at the end"),
         energy("start").group("elastic energy"),
         energy("end").group("elastic energy"),
-        Column::numbers("drift of\nthe energy").unit("%"),
+        Column::numbers("drift of\nthe energy").unit("%").priority(First),
         Column::numbers("momentum\nat the end").unit("kg m/s"),
-        Column::numbers("mean").unit("%").group("e_rms"),
-        Column::numbers("max").unit("%").group("e_rms"),
+        Column::numbers("mean").unit("%").group("e_rms").priority(First),
+        Column::numbers("max").unit("%").group("e_rms").priority(First),
     ];
     let row = |model: &MotionRecord| {
         // The state at the start says nothing of the end.
@@ -100,41 +102,41 @@ fn short(seconds: f64) -> f64 {
 }
 
 /// What a reader must know of a motion before trusting it.
-pub(super) fn motion_notes(outcome: &Outcome) -> Vec<String> {
+pub(super) fn motion_notes(outcome: &Outcome) -> Vec<Note> {
     let Some(motion) = &outcome.motion else { return Vec::new() };
     let is_bulk = outcome.mesh.cell_dimension() == outcome.mesh.dimension;
-    let mut notes = step_notes(&motion.recipe);
-    notes.extend(loss(motion));
+    let steps = step_notes(&motion.recipe).into_iter().map(|words| Note::of_body(Weight::Detail, words));
+    let lost = loss(motion).map(|words| Note::of_body(Weight::Reference, words));
+    let mut notes: Vec<Note> = steps.chain(lost).collect();
     for model in &motion.models {
-        let name = &model.name;
+        let mut broken = |words: String| notes.push(Note::of_model(Weight::Broken, &model.name, words));
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {
             let negative = outcome.fits[fit].network.negative();
-            notes.push(format!(
-                "{name}: indefinite, the fastest-growing motion grows by a factor of e every {:.1e} s at rest; {negative} spring \
-                 constants are negative",
+            broken(format!(
+                "indefinite, the fastest-growing motion grows by a factor of e every {:.1e} s at rest; {negative} spring constants are negative",
                 1.0 / growth
             ));
         }
-        notes.extend(turning_note(model, motion.models[0].deformation, is_bulk));
         let known = || model.records.last().map_or(0.0, |record| record.account.time);
         match &model.ending {
             MotionEnding::Complete | MotionEnding::Unsolved => {}
-            MotionEnding::Refused(why) => notes.push(format!("{name}: the motion was not started: {why}")),
-            MotionEnding::NoResponse => notes.push(format!(
-                "{name}: the model has no response after {} steps; its motion is known up to {:?} s",
+            MotionEnding::Refused(why) => broken(format!("the motion was not started: {why}")),
+            MotionEnding::NoResponse => broken(format!(
+                "the model has no response after {} steps; its motion is known up to {:?} s",
                 model.steps,
                 known()
             )),
-            MotionEnding::RanAway => notes.push(format!(
-                "{name}: its numbers grew beyond all bounds after {} steps; its motion is known up to {:?} s",
+            MotionEnding::RanAway => broken(format!(
+                "its numbers grew beyond all bounds after {} steps; its motion is known up to {:?} s",
                 model.steps,
                 known()
             )),
         }
         if model.unsolved > 0 {
             let many = counted(model.unsolved, "step");
-            notes.push(format!("{name}: in {many} the equations were not solved to the tolerance"));
+            broken(format!("in {many} the equations were not solved to the tolerance"));
         }
+        notes.extend(turning_note(model, motion.models[0].deformation, is_bulk));
     }
     notes
 }

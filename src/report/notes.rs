@@ -2,67 +2,82 @@
 
 use super::agreement::{Agreement, agreements};
 use super::frequencies::frequency_notes;
-use super::linear_theory::{bending_note, distrust, linear_notes};
+use super::linear_theory::{bending_note, distrust, linear_note};
 use super::materials::material_note;
 use super::motion::motion_notes;
+use super::note::{Note, Weight, grouped, ordered};
 use super::quality::quality_lines;
 use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
-use crate::study::{FitOutcome, Followed, GaugeResult, Outcome, extent, spurious_modes};
+use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, extent, spurious_modes};
 
-/// What points notes at the table beside them, for those who have none.
-pub const IN_TABLE: &str = " (* in the table)";
-
-/// What a reader must know before trusting a row, one sentence per line.
+/// What a reader must know before trusting a row, one sentence for each model or load, the dearest first.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
-    let quality = quality_lines(&outcome.mesh.quality);
-    let annotations = outcome.mesh.annotations.notes();
-    quality.into_iter().chain(annotations).chain(notes_beside_summary(outcome)).collect()
+    of_summary(outcome).chain(notes_beside_summary(outcome)).collect()
 }
 
-/// Says what a reader must know before trusting a row, one sentence per line, without the lines that `summary` has.
+/// Says what [`notes`] does, without the lines that `summary` has.
 pub fn notes_beside_summary(outcome: &Outcome) -> Vec<String> {
-    let finite = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
-    let finite = finite.map(|trouble| format!("finite elements: {trouble}"));
-    let measured = outcome.loads.iter().filter_map(|load| {
+    ordered(all(outcome)).iter().map(Note::sentence).collect()
+}
+
+/// Says what [`notes`] does with one sentence for all models and loads that it concerns.
+pub(super) fn groups(outcome: &Outcome) -> Vec<String> {
+    of_summary(outcome).chain(groups_beside_summary(outcome)).collect()
+}
+
+/// Says what [`notes_beside_summary`] does with one sentence for all models and loads that it concerns.
+pub fn groups_beside_summary(outcome: &Outcome) -> Vec<String> {
+    grouped(all(outcome)).iter().map(Note::sentence).collect()
+}
+
+/// What `summary` says as well.
+fn of_summary(outcome: &Outcome) -> impl Iterator<Item = String> {
+    let quality = quality_lines(&outcome.mesh.quality);
+    distrust(outcome).into_iter().chain(quality).chain(outcome.mesh.annotations.notes())
+}
+
+fn all(outcome: &Outcome) -> Vec<Note> {
+    let of_body = |weight: Weight| move |words: String| Note::of_body(weight, words);
+    let mut notes: Vec<Note> = spurious(outcome).into_iter().map(of_body(Weight::Broken)).collect();
+    let unsolved = outcome.loads.iter().filter_map(|load| trouble(&load.name, load.followed.as_ref()?));
+    notes.extend(unsolved.map(|words| Note::of_model(Weight::Broken, BODY, words)));
+    notes.extend(outcome.of_loads.iter().cloned().map(of_body(Weight::Reference)));
+    notes.extend(bending_note(outcome).into_iter().chain(linear_note(outcome)).chain(measured(outcome)));
+    let model = outcome.assumed.iter().cloned().chain(fibres(outcome));
+    let model = model.chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off));
+    notes.extend(model.chain(outcome.material.remarks().iter().cloned()).map(of_body(Weight::Model)));
+    notes.extend(sheet_notes(outcome));
+    notes.extend(outcome.fits.iter().flat_map(|fit| of_fit(outcome, fit)));
+    notes.extend(agreements(outcome).iter().map(agreed));
+    notes.extend(frequency_notes(outcome).into_iter().chain(motion_notes(outcome)));
+    notes.extend(lumping(outcome).into_iter().map(of_body(Weight::Detail)).chain(silent(outcome)));
+    notes
+}
+
+/// What errors are relative to, where that is not the finite elements of the mesh.
+fn measured(outcome: &Outcome) -> Vec<Note> {
+    let note = |load: &BodyLoad| {
         let measured = load.measured.filter(|measured| measured.points > 0)?;
         let error = measured.error.map_or("-".into(), |e| format!("e_rms / e_max {:.2} / {:.2} %", e.rms, e.max));
         let own = measured
             .uncertainty
             .map_or(String::new(), |e| format!(", which themselves are right to about {:.2} / {:.2} %", e.rms, e.max));
-        Some(format!(
-            "errors under {} are relative to the displacements {} at {} points{own}; finite elements: {error}",
-            load.name,
-            measured.standard.words(),
-            measured.points
-        ))
-    });
-    let own = outcome.fits.iter().flat_map(|fit| note(outcome, fit));
-    let starts = agreements(outcome);
-    let silent = outcome.loads.iter().filter(|load| load.gauge == Some(GaugeResult::NoReading)).map(|load| {
-        let why = "it requires a force along its axis that acts on one side of it only";
-        format!("the gauge has no reading under {}: {why}", load.name)
-    });
-    let notes = distrust(outcome)
-        .into_iter()
-        .chain(outcome.assumed.iter().cloned())
-        .chain(spurious(outcome))
-        .chain(fibres(outcome))
-        .chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off))
-        .chain(outcome.material.remarks().iter().cloned())
-        .chain(outcome.of_loads.iter().cloned())
-        .chain(lumping(outcome))
-        .chain(finite)
-        .chain(bending_note(outcome))
-        .chain(sheet_notes(outcome))
-        .chain(linear_notes(outcome))
-        .chain(silent)
-        .chain(measured)
-        .chain(own)
-        .chain(starts.iter().map(agreed));
-    notes.chain(frequency_notes(outcome)).chain(motion_notes(outcome)).collect()
+        let words =
+            format!(" are relative to the displacements {} at {} points", measured.standard.words(), measured.points);
+        let note = Note::of_load(Weight::Reference, "errors under ", &load.name, words);
+        Some(note.figures(format!("{own}; finite elements: {error}")))
+    };
+    outcome.loads.iter().filter_map(note).collect()
+}
+
+/// Under which loads the gauge has no reading.
+fn silent(outcome: &Outcome) -> Vec<Note> {
+    let silent = outcome.loads.iter().filter(|load| load.gauge == Some(GaugeResult::NoReading));
+    let why = ": it requires a force along its axis that acts on one side of it only";
+    silent.map(|load| Note::of_load(Weight::Detail, "the gauge has no reading under ", &load.name, why)).collect()
 }
 
 /// That the rule of an element leaves motions without stiffness.
@@ -112,39 +127,40 @@ fn trouble(load: &str, followed: &Followed) -> Option<String> {
     }
 }
 
-fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
-    let name = &fit.fit.name;
+fn of_fit(outcome: &Outcome, fit: &FitOutcome) -> Vec<Note> {
+    let note = |weight, words: String| Note::of_model(weight, &fit.fit.name, words);
     let mut notes = Vec::new();
     if fit.deficient > 0 {
-        notes.push(format!(
-            "{name}: in {} elements the objective has more than one optimum; the one with the smallest constants is used",
-            fit.deficient
+        notes.push(note(
+            Weight::Detail,
+            format!(
+                "in {} elements the objective has more than one optimum; the one with the smallest constants is used",
+                fit.deficient
+            ),
         ));
     }
     if fit.reused > 0 {
         let cells = outcome.mesh.cell_count();
         let fitted = cells.saturating_sub(fit.reused).max(1);
-        notes.push(format!(
-            "{name}: {fitted} of {cells} elements {} fitted, in {:.3} us each. Each of the others has the shape of one of them and takes its \
-             constants{IN_TABLE}",
-            if fitted == 1 { "was" } else { "were" },
-            1e6 * fit.seconds_per_element(cells)
-        ));
+        let were = if fitted == 1 { "was" } else { "were" };
+        let words = format!("{fitted} of {cells} elements {were} fitted");
+        let time = format!(", in {:.3} us each", 1e6 * fit.seconds_per_element(cells));
+        let others = ". Each of the others has the shape of one of them and takes its constants";
+        notes.push(note(Weight::Detail, words).figures(time).advice(others));
     }
     if fit.unreached > 0 {
         let elements = if fit.unreached == 1 { "element" } else { "elements" };
-        notes
-            .push(format!("{name}: in {} {elements} the iteration ended before it reached the optimum", fit.unreached));
+        let words = format!("in {} {elements} the iteration ended before it reached the optimum", fit.unreached);
+        notes.push(note(Weight::Model, words));
     }
     let own = fit.kind.notes(outcome.mesh.cell_count(), &outcome.material);
-    notes.extend(own.into_iter().map(|note| format!("{name}: {note}")));
+    notes.extend(own.into_iter().map(|words| note(Weight::Fit, words)));
     if let Some(engine) = &fit.engine {
         let of_engine = engine.notes(extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
-        notes.extend(of_engine.into_iter().map(|note| format!("{name}: {note}")));
+        notes.extend(of_engine.into_iter().map(|words| note(Weight::Fit, words)));
         if outcome.motion.is_some() {
-            notes.push(format!(
-                "{name}: the motion is that of equations which are solved to the end, not that in the engine"
-            ));
+            let words = "the motion is that of equations which are solved to the end, not that in the engine";
+            notes.push(note(Weight::Reference, words.into()));
         }
     }
     notes.extend(material_note(outcome, fit));
@@ -156,25 +172,28 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         let material = outcome.material.uniform().map_or(String::new(), |material| {
             format!("; the material has {:e} Pa, {}, 1", material.young(), material.poisson())
         });
-        notes.push(format!(
-            "{name}: the whole network has E = {of:.4e} {unit}, nu = {:.3}, Zener ratio {:.3}{material}",
+        let words = format!(
+            "the whole network has E = {of:.4e} {unit}, nu = {:.3}, Zener ratio {:.3}{material}",
             m.poisson, m.zener,
-        ));
+        );
+        notes.push(note(Weight::Fit, words));
     }
-    for load in &fit.loads {
-        if let Some(trouble) = load.followed.and_then(|followed| trouble(&load.name, &followed)) {
-            notes.push(format!("{name}: {trouble}"));
-        }
-    }
-    let Some(stability) = &fit.stability else { return notes };
+    let troubles = fit.loads.iter().filter_map(|load| trouble(&load.name, &load.followed?));
+    notes.extend(troubles.map(|words| note(Weight::Broken, words)));
+    notes.extend(standing(outcome, fit).into_iter().map(|words| note(Weight::Broken, words)));
+    notes
+}
+
+/// Why a network does not stand, or is not known to.
+fn standing(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
+    let Some(stability) = &fit.stability else { return Vec::new() };
     let points = points(outcome, &fit.loose_points);
     let [least, _] = stability.energy_ratio;
-    let remedy = if fit.network.negative() > 0 && fit.kind.published().is_some() {
-        format!("; {} spring constants are negative", fit.network.negative())
-    } else if fit.network.negative() > 0 {
-        format!("; {} spring constants are negative, which \"nonnegative = true\" prevents", fit.network.negative())
-    } else {
-        String::new()
+    let negative = fit.network.negative();
+    let remedy = match (negative, fit.kind.published()) {
+        (0, _) => String::new(),
+        (_, Some(_)) => format!("; {negative} spring constants are negative"),
+        (_, None) => format!("; {negative} spring constants are negative, which \"nonnegative = true\" prevents"),
     };
     let reason = fit.loads.iter().find_map(|load| load.unsolved.as_ref());
     let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));
@@ -182,36 +201,37 @@ fn note(outcome: &Outcome, fit: &FitOutcome) -> Vec<String> {
         true => format!(", and no displacements are given{reason}"),
         false => String::new(),
     };
-    if !stability.is_found && [Standing::Stable, Standing::Soft].contains(&stability.standing) {
-        notes.push(format!(
-            "{name}: the search for the softest motion has not converged; the least energy ratio may be lower than {least:.1e}"
-        ));
-    }
-    match stability.standing {
-        Standing::Stable => {}
-        Standing::Soft => notes.push(format!(
-            "{name}: near-mechanism, a motion has only {least:.1e} of the body's stiffness; the displacements are unreliable. \
-             Loosest: {points}{remedy}"
+    let is_sought = !stability.is_found && [Standing::Stable, Standing::Soft].contains(&stability.standing);
+    let sought = is_sought.then(|| {
+        format!(
+            "the search for the softest motion has not converged; the least energy ratio may be lower than {least:.1e}"
+        )
+    });
+    let words = match stability.standing {
+        Standing::Stable => None,
+        Standing::Soft => Some(format!(
+            "near-mechanism, a motion has only {least:.1e} of the body's stiffness; the displacements are unreliable. Loosest: {points}{remedy}"
         )),
-        Standing::Indefinite => notes.push(format!(
-            "{name}: indefinite, a motion releases energy ({least:.1e} of the energy that it stores in the body): the \
-             equilibrium is unstable{unsolved}. Moving most: {points}{remedy}"
+        Standing::Indefinite => Some(format!(
+            "indefinite, a motion releases energy ({least:.1e} of the energy that it stores in the body): the equilibrium is unstable{unsolved}. \
+             Moving most: {points}{remedy}"
         )),
-        Standing::Singular => notes.push(format!(
-            "{name}: mechanism, a motion has no stiffness, so no displacements are given. Moving freely: {points}{remedy}"
+        Standing::Singular => Some(format!(
+            "mechanism, a motion has no stiffness, so no displacements are given. Moving freely: {points}{remedy}"
         )),
-    }
-    notes
+    };
+    sought.into_iter().chain(words).collect()
 }
 
-fn agreed(agreement: &Agreement) -> String {
+fn agreed(agreement: &Agreement) -> Note {
     let percent = 100.0 * agreement.difference;
     let verdict = match agreement.agree {
         true => format!("agree within {percent:.0} %"),
         false if percent.is_finite() => format!("do not agree: they differ by up to {percent:.0} %"),
         false => "cannot be compared: one of them is not known".into(),
     };
-    format!("{}: held-out errors {verdict} ({})", agreement.fits.join(", "), agreement.load)
+    let words = format!("held-out errors {verdict} ({})", agreement.load);
+    Note::of_model(Weight::Fit, &agreement.fits.join(", "), words)
 }
 
 fn points(outcome: &Outcome, points: &[usize]) -> String {

@@ -3,10 +3,11 @@
 use super::fit_record::FitRecord;
 use super::frequencies::frequencies;
 use super::json::Report;
-use super::load_record::{LoadRecord, MeasuredRecord};
+use super::load_record::LoadRecord;
 use super::motion::motions;
+use super::overview::{measured, overview};
 use super::table::Digits::{Fixed, Signed, Significant};
-use super::table::Priority::{First, Third};
+use super::table::Priority::Third;
 use super::table::{Cell, Column, Table};
 use crate::study::{BODY, FitTimes, ModelTimes, Reading, SampledOutcome, Times};
 
@@ -14,6 +15,7 @@ impl Table {
     /// All tables for which the report has results.
     pub fn all(report: &Report) -> Vec<Table> {
         let all = [
+            overview(report),
             fits(report),
             errors(report),
             materials(report),
@@ -34,39 +36,32 @@ fn loads(report: &Report) -> &[LoadRecord] {
 
 fn fits(report: &Report) -> Table {
     let matrices = "|R-K|/|R| Frobenius";
-    let standing = standing(report);
     let passes = if report.fits.iter().all(|fit| fit.times.is_some()) { "fit median" } else { "fit once" };
     let mut columns = vec![
         Column::words("fit"),
-        // What all have is said below the table, and without loads no network is asked to stand.
-        Column::words("network").priority(if standing.is_some() || loads(report).is_empty() { Third } else { First }),
-        Column::numbers("springs").priority(First),
-        Column::numbers("k < 0").priority(First),
-        Column::numbers("mean").group(matrices).priority(First),
-        Column::numbers("max").group(matrices).priority(First),
-        Column::numbers("mean").group("2-norm").priority(First),
-        Column::numbers("max").group("2-norm").priority(First),
-        Column::numbers(passes).unit("µs/element").priority(First),
+        Column::words("network"),
+        Column::numbers("mean").group(matrices),
+        Column::numbers("max").group(matrices),
+        Column::numbers("mean").group("2-norm"),
+        Column::numbers("max").group("2-norm"),
+        Column::numbers(passes).unit("µs/element"),
         Column::numbers("all").unit("ms").priority(Third),
     ];
     let is_sampled = report.fits.iter().any(|fit| fit.sampled.is_some());
     if is_sampled {
-        let column = |title| Column::numbers(title).unit("%").group("sampled forces").priority(First);
+        let column = |title| Column::numbers(title).unit("%").group("sampled forces");
         columns.extend(["fitted", "held out"].map(column));
     }
     let row = |fit: &FitRecord| {
         let share = |value| Cell::number(Some(value), Fixed(4));
-        let time = Cell::number(Some(1e6 * fit.seconds_per_element), Fixed(2));
         let mut row = vec![
             Cell::from(&*fit.name),
             Cell::from(&*fit.status),
-            fit.springs.into(),
-            fit.negative_springs.into(),
             share(fit.relative_frobenius.mean),
             share(fit.relative_frobenius.max),
             share(fit.relative_spectral.mean),
             share(fit.relative_spectral.max),
-            if fit.reused_elements > 0 { time.marked("*") } else { time },
+            Cell::number(Some(1e6 * fit.seconds_per_element), Fixed(2)),
             Cell::number(Some(1e3 * fit.seconds), Significant(3)),
         ];
         if is_sampled {
@@ -77,20 +72,8 @@ fn fits(report: &Report) -> Table {
         }
         row
     };
-    let title = "Networks and the matrices of their elements";
-    Table::new("fits", title, columns, report.fits.iter().map(row)).with_notes(standing)
-}
-
-/// That all networks are to be trusted.
-fn standing(report: &Report) -> Option<String> {
-    let all = |status: &str| report.fits.iter().all(|fit| fit.status == status);
-    let words = [("stable", "All networks are stable."), ("converged", "All networks have converged.")];
-    words.into_iter().find(|(status, _)| all(status)).map(|(_, words)| words.to_string())
-}
-
-/// What errors under a load are relative to, unless it is the finite elements of the mesh.
-fn measured<'a>(report: &'a Report, load: &LoadRecord) -> Option<&'a MeasuredRecord> {
-    report.measured.iter().find(|known| known.load == load.name)
+    let title = "Matrices of the elements, and what the fits took";
+    Table::new("fits", title, columns, report.fits.iter().map(row))
 }
 
 fn errors(report: &Report) -> Table {
@@ -99,12 +82,11 @@ fn errors(report: &Report) -> Table {
     let is_read = |load: usize| report.gauge.get(load).is_some_and(Option::is_some);
     let mut columns = vec![Column::words("fit")];
     for (i, load) in loads.iter().enumerate() {
-        let standard = measured(report, load).map_or("", |known| known.standard.heading());
+        let standard = measured(report, &load.name).map_or("", |known| known.standard.heading());
         let column = |title| Column::numbers(title).unit("%").group(format!("{}{standard}", load.name));
-        columns.extend(["e_rms", "e_max"].map(|title| column(title).priority(First)));
-        columns.extend(["e_tip", "e_energy"].map(column));
+        columns.extend(["e_rms", "e_max", "e_tip", "e_energy"].map(column));
         if is_read(i) {
-            let gauge = |title| Column::numbers(title).group(format!("{}, gauge", load.name)).priority(First);
+            let gauge = |title| Column::numbers(title).group(format!("{}, gauge", load.name));
             columns.extend([gauge("E").unit("Pa"), gauge("ν")]);
         }
     }
@@ -127,7 +109,7 @@ fn errors(report: &Report) -> Table {
     let mut rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
     if !report.measured.is_empty() && !rows.is_empty() {
         let of_body = |(i, load): (usize, &LoadRecord)| {
-            let known = measured(report, load);
+            let known = measured(report, &load.name);
             let mut cells = known.map_or_else(
                 || errors([Some(0.0); 4]),
                 |known| errors([known.fem_e_rms, known.fem_e_max, known.fem_e_tip, known.fem_e_energy]),

@@ -1,5 +1,6 @@
 //! What a reader must know of sheets that bend.
 
+use super::note::{Note, Weight};
 use crate::model::hinge_flexure;
 use crate::study::{FitOutcome, Outcome, extent};
 use nalgebra::Matrix3;
@@ -8,25 +9,26 @@ use nalgebra::Matrix3;
 const THICK: f64 = 0.1;
 
 /// That the sheet is thick, and how hinges bend.
-pub(super) fn sheet_notes(outcome: &Outcome) -> Vec<String> {
+pub(super) fn sheet_notes(outcome: &Outcome) -> Vec<Note> {
     thick(outcome).into_iter().chain(flexure(outcome)).collect()
 }
 
 /// That the theory of thin plates leaves out what a thick sheet does.
-fn thick(outcome: &Outcome) -> Option<String> {
+fn thick(outcome: &Outcome) -> Option<Note> {
     let directors = outcome.mesh.directors.as_ref()?;
     let thickness = (12.0 * directors.gyration.iter().copied().fold(0.0, f64::max)).sqrt();
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     (thickness > THICK * size).then(|| {
-        format!(
+        let words = format!(
             "the sheet is {thickness:.3e} m thick and extends over {size:.3e} m: the theory of thin plates leaves out shear across the thickness, which counts beyond a \
              tenth of the extent; cells that fill the body know it"
-        )
+        );
+        Note::of_body(Weight::Reference, words)
     })
 }
 
 /// How a sheet with hinges bends, beside the plate.
-fn flexure(outcome: &Outcome) -> Vec<String> {
+fn flexure(outcome: &Outcome) -> Vec<Note> {
     let note = |fit: &FitOutcome| {
         let hinged = hinge_flexure(&outcome.mesh, &fit.network)?;
         let plate = Matrix3::from_row_slice(&outcome.material.moduli().uniform()?.entries(2).0);
@@ -36,11 +38,10 @@ fn flexure(outcome: &Outcome) -> Vec<String> {
             let [xx, yy, xy] = [d[(0, 0)], d[(1, 1)], d[(2, 2)]];
             format!("D_xx = {xx:.3e}, D_yy = {yy:.3e}, D_xy = {xy:.3e} N·m and a Poisson's ratio of {ratio:.3}")
         };
-        let name = &fit.fit.name;
         let [own, asked] = [words(&hinged), words(&plate)];
-        Some(format!(
-            "{name}: the hinges bend as a plate with {own} on average; the plate has {asked}, as springs on directors do"
-        ))
+        let words = format!("the hinges bend as a plate with {own} on average");
+        let note = Note::of_model(Weight::Model, &fit.fit.name, words);
+        Some(note.advice(format!("; the plate has {asked}, as springs on directors do")))
     };
     outcome.fits.iter().filter_map(note).collect()
 }

@@ -72,13 +72,14 @@ pub(super) fn size(extent: &[f64]) -> String {
     format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
 }
 
-/// One row per fit, and what each network is as a material; then, where they were asked for, natural frequencies and motions, one row per model.
+/// The tables of a run. Where a page has an overview alone, see [`set_page`](super::set_page), it is one row for each fit; then, where they were
+/// asked for, natural frequencies and motions, one row for each model.
 pub fn tables(outcome: &Outcome) -> String {
     let mut tables = Table::all(&Report::of(outcome));
     let mut sentences: Vec<String> =
         largest(outcome).into_iter().chain(pressures(outcome)).chain(gauge(outcome)).collect();
-    if let Some(errors) = tables.iter_mut().find(|table| table.name == "errors") {
-        errors.notes.append(&mut sentences);
+    if let Some(first) = tables.first_mut() {
+        first.notes.append(&mut sentences);
     }
     run_text(&tables) + &sentences.iter().map(|sentence| sentence.clone() + "\n").collect::<String>()
 }

@@ -15,15 +15,19 @@ function material(report) {
     : `E = ${withUnit(report.young, "Pa")}, ν = ${report.poisson}`;
 }
 
+// More notes are folded: the dearest come first.
+const MOST_NOTES = 8;
+
 function showNotes(record) {
-  const { report, view } = record;
-  const groups = [["Notes", report.notes], ["Left out, because the scene does not ask for it", report.left_out], ["Not drawn", view.left_out]];
+  const { report, view, notes } = record;
   const section = byId("notes");
-  for (const [title, lines] of groups.filter(([, lines]) => lines.length)) {
-    const list = element("ul", {}, ...lines.map((line) => element("li", {}, line)));
-    section.append(element("details", { open: lines.length <= 6 }, element("summary", {}, `${title} (${lines.length})`), list));
-    section.hidden = false;
-  }
+  const list = (lines) => element("ul", {}, ...lines.map((line) => element("li", {}, line)));
+  const folded = (title, lines) => element("details", {}, element("summary", {}, `${title} (${lines.length})`), list(lines));
+  const groups = [["More notes", notes.slice(MOST_NOTES)], ["Left out, because the scene does not ask for it", report.left_out], ["Not drawn", view.left_out]];
+  const found = groups.filter(([, lines]) => lines.length).map(([title, lines]) => folded(title, lines));
+  if (notes.length) found.unshift(list(notes.slice(0, MOST_NOTES)));
+  section.append(...found);
+  section.hidden = !found.length;
 }
 
 function missing(place, text) {

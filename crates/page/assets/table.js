@@ -31,8 +31,13 @@ function sortable(table) {
   return element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": table.title }, grid, ...notes);
 }
 
-function showTables(record) {
-  byId("tables").append(...record.tables.map(sortable));
-  if (!record.tables.length) byId("tables").append(element("p", { class: "missing" }, "The run has no fits, so there is no table."));
-}
+// The first table has a row for each fit, and is shown; the others are folded, except where they are what the scene asks for.
+const SHOWN = ["overview", "frequencies", "motion"];
 
+function showTables(record) {
+  const tables = byId("tables");
+  const shown = ({ name }) => SHOWN.includes(name);
+  tables.append(...record.tables.filter(shown).map(sortable));
+  for (const table of record.tables.filter((table) => !shown(table))) tables.append(element("details", {}, element("summary", {}, table.title), sortable(table)));
+  if (!record.tables.length) tables.append(element("p", { class: "missing" }, "The run has no fits, so there is no table."));
+}

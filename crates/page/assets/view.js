@@ -7,6 +7,9 @@ const SLOW = 0.1;
 /** Points that are drawn as dots. */
 const MOST_DOTS = 5000;
 
+/** A view of fewer pixels across has its bar of colours below the body. */
+const NARROW = 520;
+
 class View {
   constructor(body, state, pick) {
     Object.assign(this, { body, state, pick, plot: byId("view") });
@@ -31,6 +34,18 @@ class View {
       if (name === "network") this.pick({ spring: this.drawn[Math.floor(point.pointNumber / 3)] });
       else if (name === "points") this.pick({ point: point.pointNumber });
     });
+  }
+
+  /** Whether there is no room for the bar of colours beside the body, as on a telephone. */
+  get isNarrow() {
+    return this.plot.clientWidth < NARROW;
+  }
+
+  /** Where the bar of colours stands: beside the body or below it. */
+  barPlace(text) {
+    return this.isNarrow
+      ? { orientation: "h", title: { text, side: "top" }, len: 0.9, x: 0.5, xanchor: "center", y: 0, yanchor: "bottom", ypad: 2 }
+      : { title: { text, side: "right" }, len: 0.75, x: 1, xpad: 6 };
   }
 
   /** What draws in space; none where the browser cannot. */
@@ -112,7 +127,7 @@ class View {
       });
       found.push({
         type: "scatter3d", mode: "lines", meta: "network", x: xs, y: ys, z: zs, showlegend: false, hoverinfo: "none", connectgaps: false,
-        line: { width: this.drawn.length > 20000 ? 1.5 : 3, color: colors, ...scale, colorbar: { title: { text: scale.title, side: "right" }, thickness: 12, len: 0.75, x: 1, xpad: 6, exponentformat: "power", tickfont: { color: theme.color("ink") } } },
+        line: { width: this.drawn.length > 20000 ? 1.5 : 3, color: colors, ...scale, colorbar: { ...this.barPlace(scale.title), thickness: 12, exponentformat: "power", tickfont: { color: theme.color("ink") } } },
       });
     }
     if (state.layers.points && body.count <= MOST_DOTS) {
@@ -155,7 +170,7 @@ class View {
       ...layout({ margin: { l: 0, r: 0, t: 0, b: 0 } }),
       showlegend: false,
       uirevision: "view",
-      scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: size * ratio[0], y: size * ratio[1], z: size * ratio[2] }, camera: structuredClone(this.plot.layout?.scene?.camera ?? this.home), dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
+      scene: { domain: { y: [this.isNarrow ? 0.16 : 0, 1] }, xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: "manual", aspectratio: { x: size * ratio[0], y: size * ratio[1], z: size * ratio[2] }, camera: structuredClone(this.plot.layout?.scene?.camera ?? this.home), dragmode: body.view.dimension === 3 ? "orbit" : "pan", uirevision: "view" },
     };
   }
 

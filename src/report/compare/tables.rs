@@ -3,6 +3,7 @@
 use super::pairs::Pair;
 use super::summary::{CaseSummary, MethodSummary, Object, Summary, Told};
 use crate::report::table::Digits::{self, Fixed, Significant};
+use crate::report::table::Priority::First;
 use crate::report::table::{Cell, Column, Table};
 use crate::study::statistics::Verdict;
 use crate::text::printable;
@@ -154,20 +155,21 @@ fn cases(summary: &Summary) -> Table {
     let has_gap = methods().any(|m| m.values.contains_key("gap"));
     let is_copied = methods().any(|m| m.copied > 0);
     let is_refused = methods().any(|m| m.refused.is_some()) || summary.cases.iter().any(|case| case.error.is_some());
-    let mut columns: Vec<Column> = keys.iter().map(|key| Column::words(*key)).collect();
-    columns.extend([Column::words("fit"), Column::words("solver")]);
+    let mut columns: Vec<Column> = keys.iter().map(|key| Column::words(*key).priority(First)).collect();
+    columns.extend([Column::words("fit").priority(First), Column::words("solver")]);
     for (_, heading, unit, _) in &times {
-        columns.extend(["median", "least"].map(|title| Column::numbers(title).unit(unit).group(*heading)));
+        let column = |title| Column::numbers(title).unit(unit).group(*heading);
+        columns.extend([column("median").priority(First), column("least")]);
     }
     for told in &told {
         let column = |title| Column::numbers(title).unit(told.unit).group(told.heading);
-        columns.extend(["median", "mean", "max"].map(column));
+        columns.extend([column("median").priority(First), column("mean"), column("max")]);
     }
     columns.extend(has_gap.then(|| Column::numbers("gap max")));
-    columns.extend(has_negative.then(|| Column::numbers("k < 0").unit("%")));
+    columns.extend(has_negative.then(|| Column::numbers("k < 0").unit("%").priority(First)));
     columns.extend(figures.iter().map(|(_, heading, unit, ..)| Column::numbers(*heading).unit(unit)));
     columns.extend(is_copied.then(|| Column::numbers("copied")));
-    columns.extend(is_refused.then(|| Column::sentences("why not")));
+    columns.extend(is_refused.then(|| Column::sentences("why not").priority(First)));
     let mut rows = Vec::new();
     for case in &summary.cases {
         let best = Best::of(case);
@@ -269,16 +271,16 @@ pub(super) fn plain(value: &Value) -> String {
 fn pairs(pairs: &[Pair]) -> Table {
     let columns = vec![
         Column::words("quantity"),
-        Column::words("first"),
-        Column::words("second"),
+        Column::words("first").priority(First),
+        Column::words("second").priority(First),
         Column::numbers("pairs"),
         Column::numbers("first wins"),
         Column::numbers("second wins"),
-        Column::numbers("median").group("first / second"),
+        Column::numbers("median").group("first / second").priority(First),
         Column::numbers("from").group("first / second"),
         Column::numbers("to").group("first / second"),
-        Column::numbers("p"),
-        Column::words("better"),
+        Column::numbers("p").priority(First),
+        Column::words("better").priority(First),
     ];
     let row = |pair: &Pair| {
         let number = |value: f64| Cell::number(Some(value), Significant(4));

@@ -129,10 +129,7 @@ impl<'a> NetworkFile<'a> {
                 law: outcome.law.clone(),
             })
         });
-        let fit = self.study.map(|(outcome, fit)| {
-            let record = FitRecord::of(fit, self.mesh.cell_count(), outcome.material.thicknesses().uniform().copied());
-            summary(&record)
-        });
+        let fit = self.study.map(|(outcome, fit)| summary(&FitRecord::of(outcome, fit)));
         ProvenanceRecord {
             program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
             command: outcome.and_then(|outcome| outcome.command.as_deref().map(line)),

@@ -12,6 +12,7 @@ pub use record::{
 };
 
 use super::json::Report;
+use super::notes::groups;
 use super::table::Table;
 use crate::material::State;
 use crate::study::{MotionOutcome, Outcome};
@@ -48,6 +49,7 @@ impl PageRecord {
                 State::PlaneStrain { .. } => "plane strain",
             }
             .into(),
+            notes: groups(outcome),
             tables: Table::all(&report),
             report,
             view: ViewRecord::of(outcome),

@@ -18,6 +18,8 @@ pub struct PageRecord {
     pub state: String,
     /// The keys of `report.json`.
     pub report: Report,
+    /// What a reader must know, the dearest first: one sentence for all models that it concerns.
+    pub notes: Vec<String>,
     /// The tables of the report.
     pub tables: Vec<Table>,
     /// The body and its networks as pictures.

@@ -25,9 +25,9 @@ pub struct Column {
 /// Where the terminal has a column; all other writers have all columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(in crate::report) enum Priority {
-    /// The first table of a run has it.
+    /// The terminal has it.
     First,
-    /// Its own table has it.
+    /// The terminal has it where more is asked for, and in tables that are printed by themselves.
     #[default]
     Second,
     /// The terminal leaves it out.

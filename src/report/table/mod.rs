@@ -12,7 +12,7 @@ pub use column::Column;
 pub(super) use column::Priority;
 pub(super) use csv::csv;
 pub(super) use terminal::run_text;
-pub use terminal::set_page_width;
+pub use terminal::{Detail, set_page};
 pub use typeset::Markup;
 pub(super) use typeset::markdown_body;
 

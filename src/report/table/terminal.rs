@@ -6,7 +6,7 @@ use crate::text::{printable, printable_lines};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, TableComponent};
 use std::ops::RangeInclusive;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// A column of the terminal: the heading, to which side entries are aligned, and the entries.
 #[derive(Debug, Clone)]
@@ -25,14 +25,27 @@ enum Alignment {
 }
 
 /// Columns of the page that tables are fitted to; no table is broken unless a program sets it.
-static PAGE: AtomicUsize = AtomicUsize::new(usize::MAX);
+static WIDTH: AtomicUsize = AtomicUsize::new(usize::MAX);
+
+/// Whether tables have their first columns alone.
+static IS_OVERVIEW: AtomicBool = AtomicBool::new(false);
 
 /// The unit stands in the same line as the heading if both are no wider than this, or than the cells.
 const NARROW: usize = 12;
 
-/// Fits all tables from now on to a page of that many columns: a table that is wider goes on below, with its first column again.
-pub fn set_page_width(columns: usize) {
-    PAGE.store(columns, Ordering::Relaxed);
+/// How much of a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// The columns that all readers want.
+    Overview,
+    /// All columns that fit a terminal.
+    All,
+}
+
+/// Sets the page of all tables from now on. A table that is wider than so many columns goes on below, with its first column again.
+pub fn set_page(columns: usize, detail: Detail) {
+    WIDTH.store(columns, Ordering::Relaxed);
+    IS_OVERVIEW.store(detail == Detail::Overview, Ordering::Relaxed);
 }
 
 impl Table {
@@ -43,41 +56,36 @@ impl Table {
 
     /// The columns, on the page that is set, and the notes.
     pub fn text(&self) -> String {
-        let page = PAGE.load(Ordering::Relaxed);
-        within(strips(self, Priority::First..=Priority::Second), page) + &notes(self)
+        let overview = strips(self, Priority::First..=last());
+        let strips = if overview.is_empty() { strips(self, Priority::First..=Priority::Second) } else { overview };
+        within(strips, WIDTH.load(Ordering::Relaxed)) + &notes(self)
     }
 }
 
-/// The tables of a run: the first columns of tables with a row for each fit beside each other, then what else each table has.
+/// The last priority that the page has.
+fn last() -> Priority {
+    if IS_OVERVIEW.load(Ordering::Relaxed) { Priority::First } else { Priority::Second }
+}
+
+/// The tables of a run. On a page with an overview, a table without first columns is left out.
 pub(in crate::report) fn run_text(tables: &[Table]) -> String {
-    let page = PAGE.load(Ordering::Relaxed);
-    let mut first: Vec<Strip> = Vec::new();
-    let mut below = String::new();
-    for table in tables {
-        let beside = strips(table, Priority::First..=Priority::First);
-        beside_each_other(&mut first, beside);
-        let own = strips(table, Priority::Second..=Priority::Second);
-        if !own.is_empty() {
-            below += &format!("\n{}\n{}", ascii(&table.title), within(own, page));
+    let page = WIDTH.load(Ordering::Relaxed);
+    let mut text = String::new();
+    for (place, table) in tables.iter().enumerate() {
+        let strips = strips(table, Priority::First..=last());
+        if strips.is_empty() && last() == Priority::First {
+            continue;
         }
-        below += &notes(table);
+        // The first table follows the summary of what was modelled.
+        if place > 0 {
+            text += &format!("\n{}\n", ascii(&table.title));
+        }
+        if !strips.is_empty() {
+            text += &within(strips, page);
+        }
+        text += &notes(table);
     }
-    within(first, page) + &below
-}
-
-/// Puts the columns of a table beside those of others with the same first rows; what has more rows names them.
-fn beside_each_other(first: &mut Vec<Strip>, mut beside: Vec<Strip>) {
-    if first.is_empty() || beside.is_empty() {
-        first.extend(beside);
-        return;
-    }
-    let names = beside.remove(0);
-    if names.entries.len() > first[0].entries.len() {
-        first[0].entries = names.entries;
-    }
-    first.extend(beside);
-    let rows = first[0].entries.len();
-    first.iter_mut().for_each(|strip| strip.entries.resize(rows, String::new()));
+    text
 }
 
 fn notes(table: &Table) -> String {

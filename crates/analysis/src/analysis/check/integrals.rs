@@ -53,7 +53,7 @@ fn loads(element: &Element) -> Property {
     worst = worst.max(difference(&products(&own), &products(&fine)));
     let points = |integrand| element.integration_table(integrand).points();
     let finding = format!(
-        "loads of degree {LOAD} at {} points, masses at {}, largest error {worst:.1e}",
+        "loads of degree {LOAD} at {} points, masses at {}, error {worst:.1e}",
         points(Integrand::Load(LOAD)),
         points(Integrand::Mass)
     );

@@ -91,7 +91,7 @@ fn patch(element: &Element) -> Property {
     let worst = shapes(element).iter().map(|x| patch_defect(element, x)).fold(0.0, f64::max);
     // A product of rational functions has no exact rule.
     let allowed = if element.is_polynomial() { 1e-11 } else { 1e-6 };
-    let finding = format!("forces of uniform stress against tractions on the sides: largest defect {worst:.1e}");
+    let finding = format!("uniform stress against tractions of sides, defect {worst:.1e}");
     Property::new("patch test", worst < allowed, finding).with(worst)
 }
 

@@ -110,7 +110,7 @@ fn formula(element: &Element, springs: &Springs) -> Property {
     let name = "fits by the formula";
     match difference_from_formula(element, springs) {
         Ok(Some(worst)) => {
-            let finding = format!("networks of every weight, largest difference {worst:.1e} of R under the weight");
+            let finding = format!("networks of every weight, difference {worst:.1e} of weighted R");
             Property::new(name, worst <= FORMULA, finding).with(worst)
         }
         // The energy that the relative error is relative to vanishes in a spurious mode.

@@ -44,7 +44,12 @@ def settle(advance, energy, damp, periods):
 
 def taken(net, arguments):
     """The forces [points, 3], N, of the load that --load names, and the other arguments."""
+    if {"-h", "--help"} & set(arguments):
+        print(__doc__)
+        sys.exit()
     forces = np.zeros((len(net["points"]), 3))
+    if arguments[-1:] == ["--rest"]:
+        sys.exit("--rest: expected a file for the positions, found none")
     if "--load" not in arguments:
         return forces, arguments
     place = arguments.index("--load")
@@ -57,6 +62,14 @@ def taken(net, arguments):
     own = net["load_of"] == number
     forces[net["load_points"][own]] = net["load_forces"][own]
     return forces, arguments[:place] + arguments[place + 2 :]
+
+
+def seconds(given, usual):
+    """The time of a motion, s."""
+    try:
+        return float(given[0]) if given else usual
+    except ValueError:
+        sys.exit(f"expected --rest FILE, --load NAME or the seconds of a motion, found {given[0]!r}: --help has all")
 
 
 def inverted(net, x):
@@ -115,11 +128,11 @@ def advance(x, v, applied=0.0):
     return x + step * v, v
 
 
-def move(seconds, applied=0.0):
+def move(duration, applied=0.0):
     """The positions at each frame."""
     x, v = points, np.zeros_like(points)
     frames, count = [points], 0
-    for frame in range(1, round(seconds * rate) + 1):
+    for frame in range(1, round(duration * rate) + 1):
         while count * step < frame / rate:
             x, v = advance(x, v, applied)
             count += 1
@@ -193,7 +206,7 @@ if __name__ == "__main__":
     if bpy.app.background:
         bpy.ops.wm.read_factory_settings(use_empty=True)
     is_rest = given[:1] == ["--rest"]
-    frames = [points, come_to_rest(applied)] if is_rest else move(float((given or [1])[0]), applied)
+    frames = [points, come_to_rest(applied)] if is_rest else move(seconds(given, 1.0), applied)
     made = objects()
     keep(made, frames)
     x = shown(made[0], len(frames))

@@ -46,7 +46,12 @@ def settle(advance, energy, damp, periods):
 
 def taken(net, arguments):
     """The forces [points, 3], N, of the load that --load names, and the other arguments."""
+    if {"-h", "--help"} & set(arguments):
+        print(__doc__)
+        sys.exit()
     forces = np.zeros((len(net["points"]), 3))
+    if arguments[-1:] == ["--rest"]:
+        sys.exit("--rest: expected a file for the positions, found none")
     if "--load" not in arguments:
         return forces, arguments
     place = arguments.index("--load")
@@ -59,6 +64,14 @@ def taken(net, arguments):
     own = net["load_of"] == number
     forces[net["load_points"][own]] = net["load_forces"][own]
     return forces, arguments[:place] + arguments[place + 2 :]
+
+
+def seconds(given, usual):
+    """The time of a motion, s."""
+    try:
+        return float(given[0]) if given else usual
+    except ValueError:
+        sys.exit(f"expected --rest FILE, --load NAME or the seconds of a motion, found {given[0]!r}: --help has all")
 
 
 def inverted(net, x):
@@ -245,7 +258,7 @@ if __name__ == "__main__":
     else:
         m = model()
         d = start(m, forces)
-        for _ in range(round(float((given or [2])[0]) / step)):
+        for _ in range(round(seconds(given, 2.0) / step)):
             mujoco.mj_step(m, d)
         x = positions(m, d)
         moved = np.linalg.norm(x - points, axis=1)

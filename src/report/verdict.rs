@@ -1,0 +1,40 @@
+//! What a reader must know first of a network, in a few words.
+
+use super::linear_theory::distrust;
+use super::materials::{difference, is_material};
+use crate::study::{FitOutcome, Outcome, locks_at};
+
+/// A network or the finite elements whose cells lock.
+const LOCKS: &str = "locks";
+
+/// The dearest that is true of a network: that no figure is to be trusted, that it does not stand or has no equilibrium, that cells are inverted,
+/// that constants are not the optimum, that it locks, that it is not the material; otherwise its status.
+pub(super) fn verdict(outcome: &Outcome, fit: &FitOutcome) -> String {
+    let status = fit.status();
+    if distrust(outcome).is_some() {
+        "not trusted".into()
+    } else if !["fitted", "stable", "converged"].contains(&status) {
+        status.into()
+    } else if fit.loads.iter().any(|load| load.followed.is_some_and(|followed| followed.inverted > 0)) {
+        "inverted cells".into()
+    } else if fit.unreached > 0 {
+        "not the optimum".into()
+    } else if fit.kind.exact().is_some_and(|exact| exact.locking.is_some()) {
+        LOCKS.into()
+    } else if !is_material(outcome, fit) {
+        match difference(fit) {
+            Some(percent) => format!("not the material, {percent} %"),
+            None => "not the material".into(),
+        }
+    } else {
+        status.into()
+    }
+}
+
+/// What a reader must know first of the finite elements of the mesh; empty if they are right.
+pub(super) fn finite_elements_verdict(outcome: &Outcome) -> String {
+    if distrust(outcome).is_some() {
+        return "not trusted".into();
+    }
+    locks_at(&outcome.mesh, &outcome.material).map_or(String::new(), |_| LOCKS.into())
+}
