@@ -221,7 +221,9 @@ impl Terminal {
     /// # Errors
     /// Standard output cannot be written.
     pub fn written(&mut self, paths: &[PathBuf]) -> Result<()> {
-        let is_listed = |files: &[PathBuf]| files.len() <= FEW_FILES || self.detail() == Detail::All;
+        // Programs read what stands beside a document.
+        let is_listed =
+            |files: &[PathBuf]| files.len() <= FEW_FILES || self.is_document || self.detail() == Detail::All;
         let mut lines = Vec::new();
         for files in paths.chunk_by(|a, b| a.parent() == b.parent()) {
             if is_listed(files) {

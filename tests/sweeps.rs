@@ -385,3 +385,22 @@ fn a_sweep_is_drawn_over_its_key() {
     assert!(words.contains("--of: expected a key with several numbers: material.poisson, material.young"), "{words}");
     assert!(refused(folder, "plot . --figure sweep").contains("has no studies"));
 }
+
+/// The page has the figure and the table, and one of others is not replaced.
+#[test]
+fn a_sweep_writes_its_page_where_it_is_asked_for() {
+    let folder = folder_with("[sweep.over]\nmaterial.poisson = [0.1, 0.3]\n");
+    let folder = folder.path();
+    let told = done(folder, "sweep s.toml --report --out o");
+    assert!(told.contains("sweep.html"), "{told}");
+    let page = read(folder, "o/sweep.html");
+    assert!(page.contains("<svg") && page.contains("material.poisson") && page.ends_with("</html>\n"), "{page}");
+    // Its own page is replaced.
+    done(folder, "sweep s.toml --report --resume --out o");
+    fs::create_dir(folder.join("other")).unwrap();
+    fs::write(folder.join("other/sweep.html"), "<!DOCTYPE html><p>mine").unwrap();
+    let told = refused(folder, "sweep s.toml --report --out other");
+    assert!(told.contains("sweep.html") && told.contains("not a page of this program"), "{told}");
+    assert_eq!(read(folder, "other/sweep.html"), "<!DOCTYPE html><p>mine");
+    done(folder, "sweep s.toml --out other");
+}

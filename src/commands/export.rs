@@ -60,7 +60,7 @@ impl Export {
         warnings.extend(target.at_rest(&network, gravity.as_deref()).map_err(of_network)?);
         let files = with_warnings(files, &warnings);
         let written = write_files(&files, &folder, &inputs)?;
-        terminal.print(&summary(&network))?;
+        terminal.print(&terminal.within_page(&summary(&network)))?;
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
         }

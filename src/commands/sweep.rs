@@ -33,6 +33,9 @@ pub struct Sweep {
     /// List the studies, and stop
     #[arg(long)]
     explain: bool,
+    /// Write a page as well, OUT/sweep.html: errors over the first key with several numbers, and the table
+    #[arg(long, help_heading = "Output")]
+    report: bool,
     /// Folder of the lines and the table [default: out/sweep-NAME]
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
@@ -68,6 +71,10 @@ impl Sweep {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("sweep-{stem}")));
         let name = shard.file_name("table", "csv");
         report::check_study_table(&folder.join(&name), std::slice::from_ref(&self.scene))?;
+        let page = self.report.then(|| folder.join(shard.file_name("sweep", "html")));
+        if let Some(page) = &page {
+            report::check_study_page(page, std::slice::from_ref(&self.scene))?;
+        }
         let mut lines = StudyLines::open(&folder, shard, self.resume, &StudyRecord::sums(&sweep))?;
         let own: HashSet<&str> =
             (0..marks.len()).filter(|place| shard.has(*place)).map(|place| marks[place].as_str()).collect();
@@ -111,7 +118,12 @@ impl Sweep {
                 records.len()
             ));
         }
-        terminal.written(&[lines.path().to_path_buf(), path])?;
+        let mut written = vec![lines.path().to_path_buf(), path];
+        if let Some(page) = page {
+            write_whole(&page, report::studies_page(&title, &found(), &folder).as_bytes())?;
+            written.push(page);
+        }
+        terminal.written(&written)?;
         Ok(ExitCode::SUCCESS)
     }
 

@@ -1,6 +1,7 @@
 //! A calibration as tables, as JSON and as CSV.
 
 use super::table::{Column, Table, csv};
+use super::tables_page::tables_page;
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
@@ -10,7 +11,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 /// The files that [`write_calibration`] may write.
-pub const CALIBRATION_FILES: [&str; 3] = ["report.json", "moduli.csv", "young.csv"];
+pub const CALIBRATION_FILES: [&str; 4] = ["report.json", "calibration.html", "moduli.csv", "young.csv"];
 
 /// The moduli of the regions, what the loads have left, and the correlations.
 pub fn calibration_tables(outcome: &CalibrationOutcome) -> Vec<Table> {
@@ -150,14 +151,16 @@ fn csv_rows(region: &CalibratedRegion) -> Vec<Vec<String>> {
     all.into_iter().map(row).collect()
 }
 
-/// Writes `report.json`, and the moduli of regions or cells as CSV; returns the paths.
+/// Writes `report.json`, a page with the tables, and the moduli of regions or cells as CSV; returns the paths.
 ///
 /// # Errors
 /// A file cannot be written, and the folder is as it was.
 pub fn write_calibration(outcome: &CalibrationOutcome, edition: Edition) -> Result<Vec<PathBuf>> {
-    let [report, regions, cells] = CALIBRATION_FILES;
+    let [report, page, regions, cells] = CALIBRATION_FILES;
     let json = serde_json::to_string_pretty(outcome).expect("numbers and texts are JSON");
-    let mut files = vec![(report, json + "\n")];
+    let about = concat!("Calibration by springfit ", env!("CARGO_PKG_VERSION"));
+    let html = tables_page(&outcome.scene, about, [], &calibration_tables(outcome), &outcome.notes);
+    let mut files = vec![(report, json + "\n"), (page, html)];
     if !outcome.regions.is_empty() {
         let header = ["region", "modulus", "value", "low", "high", "deviation", "mesh_deviation"];
         files.push((regions, csv(&header, &outcome.regions.iter().flat_map(csv_rows).collect::<Vec<_>>())));

@@ -52,6 +52,7 @@ mod study_table;
 mod summary;
 mod surface;
 mod table;
+mod tables_page;
 mod verdict;
 
 pub use calibration::{CALIBRATION_FILES, calibration_tables, calibration_text, write_calibration};
@@ -98,7 +99,9 @@ pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stab
 pub use stretches::{STRETCHES_FILES, stretches_tables, write_stretches};
 pub use study_lines::{Line, StudyLines};
 pub use study_record::StudyRecord;
-pub use study_table::{StudyTable, check_study_table, planned_table, studies_table, studies_text};
+pub use study_table::{
+    StudyTable, check_study_page, check_study_table, planned_table, studies_page, studies_table, studies_text,
+};
 pub use summary::{summary, tables};
 pub use table::{Cell, Column, Detail, Markup, Table, set_page};
 

@@ -1,11 +1,14 @@
 //! The table of a sweep: a row for each study, fit and load.
 
+use super::figure::{Columns, RunFolder, swept_chart};
 use super::study_record::StudyRecord;
 use super::table::{Cell, Column, Digits, Table, csv};
+use super::tables_page;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{check_apart, check_file, check_folder};
 use crate::solve::Standing;
 use crate::study::{Study, standing_word};
+use crate::text::printable_lines;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
@@ -80,6 +83,19 @@ impl StudyTable {
 /// # Errors
 /// It cannot be written; it is one of the inputs; or there is a file that does not begin as a table of a sweep does.
 pub fn check_study_table(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+    check_own(path, inputs, BEGINNING, "the table of a sweep")
+}
+
+/// Checks that the page of a sweep can be written at `path`, before the work.
+///
+/// # Errors
+/// As [`check_study_table`].
+pub fn check_study_page(path: &Path, inputs: &[PathBuf]) -> Result<()> {
+    check_own(path, inputs, tables_page::BEGINNING.as_bytes(), "a page of this program")
+}
+
+/// Checks that a file may be written that is not there or begins as ours do.
+fn check_own(path: &Path, inputs: &[PathBuf], own: &[u8], what: &str) -> Result<()> {
     check_folder(path.parent().unwrap_or(Path::new("")))?;
     check_apart(&[path.to_path_buf()], inputs)?;
     if path.symlink_metadata().is_err() {
@@ -87,13 +103,21 @@ pub fn check_study_table(path: &Path, inputs: &[PathBuf]) -> Result<()> {
     }
     check_file(path)?;
     let mut beginning = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(BEGINNING.len() as u64).read_to_end(&mut beginning));
+    let read = File::open(path).and_then(|file| file.take(own.len() as u64).read_to_end(&mut beginning));
     read.map_err(|e| Error::io("cannot be read", e).in_file(path))?;
-    if beginning == BEGINNING {
+    if beginning == own {
         return Ok(());
     }
-    let problem = "would be replaced, and is not the table of a sweep: move it away, or choose another folder";
+    let problem = format!("would be replaced, and is not {what}: move it away, or choose another folder");
     Err(Error::new(problem).of_kind(ErrorKind::Io).in_file(path))
+}
+
+/// The page of the studies in a folder: errors over the first key that has several numbers, if there is one, and the table.
+pub fn studies_page(title: &str, table: &Table, folder: &Path) -> String {
+    let figure = swept_chart(&RunFolder::at(folder), None).and_then(|chart| chart.svg(Columns::Two)).ok();
+    let about = concat!("Sweep by springfit ", env!("CARGO_PKG_VERSION"));
+    printable_lines(&tables_page::tables_page(title, about, figure.as_deref(), std::slice::from_ref(table), &[]))
+        .into_owned()
 }
 
 /// The cells of one study: for each fit and load, or with the error alone.

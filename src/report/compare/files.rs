@@ -1,7 +1,6 @@
 //! The files of a comparison.
 
 use super::figures::{all, comparison_chart};
-use super::page::page;
 use super::summary::{Summary, VERSION, machine};
 use super::tables::compare_tables;
 use super::values::long_table;
@@ -10,6 +9,7 @@ use crate::file::{Edition, read_text, write_whole};
 use crate::report::figure::Columns;
 use crate::report::study_lines::{Line, mark_of};
 use crate::report::table::Markup;
+use crate::report::tables_page::tables_page;
 use crate::study::CaseRecord;
 use crate::text::printable_lines;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,9 @@ pub fn write_comparison(
             figures.push((format!("{name}.svg"), svg));
         }
     }
-    texts.push(("compare.html".into(), page(summary, &figures)));
+    let about = format!("springfit {}, {}", summary.version, summary.machine);
+    let drawn = figures.iter().map(|(_, svg)| svg.as_str());
+    texts.push(("compare.html".into(), tables_page(&summary.title, &about, drawn, &tables, &[])));
     texts.extend(figures);
     if lines {
         texts.push((CASES.into(), records.iter().map(Line::line).collect()));

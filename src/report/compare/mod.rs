@@ -2,7 +2,6 @@
 
 mod figures;
 mod files;
-mod page;
 mod pairs;
 mod parquet;
 mod summary;

@@ -78,7 +78,9 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
         Err(error) if error.kind() == ErrorKind::Limit => return Err(error.in_file(scene.path())),
         held => held.is_ok(),
     };
-    let whole = scene.law().is_none() && held;
+    // A fit to the whole object does not know the directors of a sheet.
+    let is_sheet = mesh.directors.is_some();
+    let whole = scene.law().is_none() && held && !is_sheet;
     let law = scene.laws(&mesh, material)?;
     let mut all_fits = Vec::new();
     let all = optional.then_some(Some(every));
