@@ -50,8 +50,11 @@ struct Stage {
 
 /// The time between two lines of progress.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
-/// A stage states the remaining time after it has run this long.
+/// A stage states the remaining time after it has run this long and so many parts in a hundred are done, or after the longer time: the first parts
+/// are seldom like the others.
 const TRIAL: Duration = Duration::from_secs(1);
+const ENOUGH: usize = 5;
+const LONG_TRIAL: Duration = Duration::from_secs(6);
 /// A stage that will take longer says so.
 const LONG: Duration = Duration::from_secs(10);
 /// Columns of a page where there is no terminal, and the least that tables are fitted to.
@@ -80,7 +83,8 @@ impl Stage {
     fn left(&self, done: usize, total: usize) -> Option<Duration> {
         let elapsed = self.start.elapsed();
         let (made, left) = (done.checked_sub(self.first)?, total.saturating_sub(done));
-        (made > 0 && elapsed > TRIAL)
+        let is_enough = 100 * made >= ENOUGH * total || elapsed > LONG_TRIAL;
+        (made > 0 && elapsed > TRIAL && is_enough)
             .then(|| Duration::try_from_secs_f64(elapsed.as_secs_f64() * left as f64 / made as f64).ok())
             .flatten()
     }

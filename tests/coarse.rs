@@ -376,7 +376,7 @@ fn keys_that_a_fit_of_moduli_cannot_serve_are_errors() {
         (
             "hex8",
             "other_supports = [[\"xmin\", \"xmin\"]]",
-            "other_supports[0]: expected groups that are held, each once",
+            "other_supports[0]: expected groups that are held or conditions, each once",
         ),
         ("hex8", "validate_supports = [[]]", "validate_supports[0]: expected groups that are held"),
         ("tet4", "unknowns = \"region-young\"\nvolume = \"patches\"", "volume: expected \"points\" or \"cells\""),

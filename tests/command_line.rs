@@ -3,6 +3,7 @@
 use serde_json::Value;
 use springfit::element::SHIPPED;
 use springfit::fit::published::Method;
+use springfit::study::{Forecast, Scene, run};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -338,6 +339,27 @@ fn an_explanation_does_nothing() {
     let mut left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     left.sort();
     assert_eq!(left, ["m.msh", "s.toml"]);
+}
+
+/// What a fit to the whole object takes is a multiple of the cells' fits: it is counted, with what the finer body takes. The time of one run says how
+/// well; the factor leaves room for what else the machine does.
+#[test]
+fn fits_to_the_whole_object_are_expected() {
+    let scene = "[mesh]\nbox = { element = \"tet4\", size = [0.2, 0.05, 0.05], cells = [8, 2, 2] }\n[material]\nyoung = 1e4\n\
+                 poisson = 0.3\n[reference]\nfrom = \"quadratic\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\n\
+                 group = \"xmax\"\ntraction = [10, 0, 0]\n[[fit]]\nname = \"springs\"\nobjective = \"whole\"\nstart = \"divergence\"\n\
+                 springs = [\"all + volume\"]\n[[fit]]\nname = \"smoothed\"\nobjective = \"exact\"\nshear = \"edges\"\n";
+    let scene = Scene::parse(scene, Path::new("bar.toml")).unwrap();
+    let forecast = Forecast::of(&scene).unwrap();
+    assert_eq!(forecast.unknown().count(), 0, "{forecast:?}");
+    assert_eq!(forecast.stages[2].name, "finite elements of the finer body", "{forecast:?}");
+    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let seconds = outcome.fits[0].seconds;
+    let expected = forecast.stages[0].seconds.unwrap() + forecast.stages[2].seconds.unwrap();
+    assert!(
+        expected > seconds / 6.0 && expected < 6.0 * seconds,
+        "{expected} s were expected, and it took {seconds} s"
+    );
 }
 
 /// Scenes of each kind can be explained: large deformation, motion, membranes, whole objects.

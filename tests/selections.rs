@@ -140,3 +140,54 @@ fn finer_meshes_have_the_parts_of_the_coarse_one() {
     let quadratic = Element::load("tet10").unwrap();
     assert_eq!(quadratic.nodes(), 10);
 }
+
+/// A fit to the whole object under these supports, beside a finer body.
+fn whole(keys: &str) -> springfit::error::Result<Outcome> {
+    let text = format!(
+        "[mesh]\nscale = \"cm\"\nbox = {{ element = \"tet4\", size = [5, 2, 2], cells = [5, 2, 2] }}\n\
+         [material]\nyoung = 5e3\npoisson = 0.3\n[reference]\nrefine = 1\n[[fix]]\ngroup = \"xmin\"\n\
+         [[fit]]\nobjective = \"whole\"\nstart = \"exact\"\niterations = 2\n{keys}"
+    );
+    run(&Scene::parse(&text, Path::new("bar.toml"))?, &mut |_| {})
+}
+
+/// Median and largest error of each model under each support.
+fn held_out(keys: &str) -> Vec<[f64; 2]> {
+    let outcome = whole(keys).unwrap();
+    let all = &outcome.fits[0].kind.whole().unwrap().held_out;
+    all.iter().flat_map(|held| held.models.iter().map(|m| [m.median.unwrap(), m.worst.unwrap()])).collect()
+}
+
+#[test]
+fn a_list_of_supports_has_groups_or_conditions() {
+    let keys = |held: &str, chosen: &str, others: &str| {
+        format!("supports = [[{held}]]\nvalidate_supports = [[{chosen}]]\nother_supports = [[{others}]]\n")
+    };
+    let groups = held_out(&keys("\"xmin\"", "\"xmin\", \"xmax\"", "\"ymin\""));
+    assert!(groups.len() == 3 * 6 && groups[0][0] > 0.01, "{groups:?}");
+    // The points of the mesh of the scene decide, so that what a finer mesh has between them changes nothing.
+    for (low, high, side) in [("x < 1e-6", "x > 0.0499", "y < 1e-6"), ("x < 0.0099", "x > 0.041", "y < 0.0099")] {
+        let [low, high, side] = [low, high, side].map(|condition| format!("\"{condition}\""));
+        let found = held_out(&keys(&low, &format!("\"xmin\", {high}"), &side));
+        for (a, b) in groups.iter().flatten().zip(found.iter().flatten()) {
+            assert!((a - b).abs() <= 1e-6 * a.abs().max(1e-3), "{low}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn what_no_list_of_supports_can_hold_is_an_error() {
+    for (keys, words) in [
+        ("supports = [[\"xmim\"]]", "supports[0]: expected groups of the mesh (body, xmax, xmin"),
+        ("supports = [[\"x < 0.01 &&\"]]", "fit[0].supports[0]: "),
+        (
+            "supports = [[\"x < -1\"]]",
+            "supports[0]: expected points to hold, found none with \"x < -1\": the body extends",
+        ),
+        ("other_supports = [[\"x > -1\"]]", "other_supports[0]: expected groups that leave points free to move"),
+        ("supports = [[\"x < 1e-6 && y < 1e-6\"]]", "supports[0]: expected groups that hold every body"),
+    ] {
+        let found = whole(keys).err().unwrap().to_string();
+        assert!(found.contains(words), "{keys}: {found}");
+    }
+}

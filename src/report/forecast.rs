@@ -31,8 +31,13 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
         .iter()
         .map(|stage| vec![stage.name.clone(), words(stage.seconds, time_in_words), words(stage.bytes, memory_in_words)])
         .collect();
-    rows.push(vec!["all".into(), time_in_words(forecast.seconds()), memory_in_words(forecast.bytes())]);
-    let unknown = if forecast.unknown().next().is_some() { "; \"all\" has the stages whose time is known" } else { "" };
+    let unknown = match forecast.unknown().count() {
+        0 => "",
+        1 => "; a stage comes on top whose time is not known before it begins",
+        _ => "; stages come on top whose time is not known before they begin",
+    };
+    let all = if unknown.is_empty() { "all" } else { "all that is known" };
+    rows.push(vec![all.into(), time_in_words(forecast.seconds()), memory_in_words(forecast.bytes())]);
     let gap = if stages.is_empty() { "" } else { "\n" };
     format!(
         "{text}{gap}{}\nTimes and memory are estimates for this machine{unknown}. Nothing was run.\n",

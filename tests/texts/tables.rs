@@ -107,7 +107,8 @@ fn a_first_scene_has_each_text_in_its_place() {
         assert!(is_unit || read["mesh"]["scale"].as_str() == Some(&text[..]));
         let keys: Vec<&str> = read.keys().map(String::as_str).collect();
         assert!(
-            keys.iter().all(|key| ["title", "mesh", "material", "fit", "fix", "load", "output"].contains(key)),
+            keys.iter()
+                .all(|key| ["title", "mesh", "material", "fit", "reference", "fix", "load", "output"].contains(key)),
             "{keys:?}"
         );
         // A group that no scene can name is not named.

@@ -1,12 +1,13 @@
 //! Tables of figures on the pages, measured again.
 //!
 //! A page has a table between `<!-- table NAME -->` and `<!-- end -->`. `SPRINGFIT_WRITE_BOOK=1 cargo test --release book -- --include-ignored`
-//! writes all tables anew.
+//! writes all tables anew, and `SPRINGFIT_TABLE=NAME` besides one alone.
 
 mod angles;
 mod bodies;
 mod cantilevers;
 mod choice;
+mod coarse;
 mod forgetful;
 mod large;
 mod lattices;
@@ -49,7 +50,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 22] = [
+const MAKERS: [Maker; 24] = [
     ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
@@ -62,6 +63,8 @@ const MAKERS: [Maker; 22] = [
     ("large-tet", large::tetrahedra, true, Kept::Roughly),
     ("large-hex", large::hexahedra, true, Kept::Roughly),
     ("whole", whole::table, true, Kept::Roughly),
+    ("coarse", coarse::supports, true, Kept::Roughly),
+    ("programs", coarse::programs, true, Kept::Roughly),
     ("frequencies", motion::frequencies, false, Kept::ToRounding),
     ("membrane", motion::membrane, false, Kept::ToRounding),
     ("paper-1", paper::first, true, Kept::Roughly),
@@ -109,12 +112,14 @@ fn markdown(header: &[&str], rows: &[Vec<String>]) -> String {
 
 fn check(is_slow: bool) {
     let writes = std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some();
+    // One table alone, by its name.
+    let only = std::env::var("SPRINGFIT_TABLE").ok();
     let mut wrong = Vec::new();
     for page in pages() {
         for (name, text) in page.tables() {
             let maker = MAKERS.iter().find(|(known, ..)| *known == name);
             let (_, make, slow, kept) = maker.unwrap_or_else(|| panic!("{}: nothing makes {name}", page.name()));
-            if *slow != is_slow {
+            if *slow != is_slow || only.as_ref().is_some_and(|only| *only != name) {
                 continue;
             }
             let made = make();

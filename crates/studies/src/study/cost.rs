@@ -1,4 +1,4 @@
-//! What the loads of a scene take, by counts that forecasts and the choice of a reference share.
+//! What the loads of a scene take, by counts and rates that forecasts and the choice of a reference share.
 
 use crate::mesh::{CellBlock, Mesh};
 
@@ -6,6 +6,20 @@ use crate::mesh::{CellBlock, Mesh};
 pub const COMPARISONS: f64 = 45.0;
 /// Solutions of one load, with their refinement.
 pub const REFINEMENTS: f64 = 3.0;
+
+/// Sparse factors reach this share of the rate of a dense factor; a solution reads [`SOLUTIONS`] entries of a factor in a second. Both are
+/// measured on bodies of 10 000 to 100 000 unknowns.
+pub const SPARSE: f64 = 0.8;
+pub const SOLUTIONS: f64 = 1e9;
+/// Work that is not measured at this rate takes no time.
+pub const SLOWEST_RATE: f64 = 1e8;
+/// Seconds for each unknown of a body solved by iterations: to assemble a model, build its levels and prove that it is stable, and for
+/// each load, side by side with others. Measured on a million and on sixty thousand unknowns.
+pub const COMPARED: f64 = 4e-5;
+pub const ITERATED: f64 = 2e-6;
+/// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
+pub const ASSEMBLY: f64 = 6e-8;
+pub const BYTES: f64 = 70.0;
 
 /// Entries of the stiffnesses of all cells.
 pub fn entries(mesh: &Mesh) -> f64 {

@@ -1,7 +1,11 @@
 //! What a scene will take, before it is run: its sizes, and estimates of time and memory.
 
+mod whole;
+
 use super::body::{Case, LargeBody, load_cases};
-use super::cost::{COMPARISONS, REFINEMENTS, entries};
+use super::cost::{
+    ASSEMBLY, BYTES, COMPARED, COMPARISONS, ITERATED, REFINEMENTS, SLOWEST_RATE, SOLUTIONS, SPARSE, entries,
+};
 use super::fits::{FitLimit, NamedFit, Reference};
 use super::fitting::fit_mesh;
 use super::scene::Scene;
@@ -23,21 +27,12 @@ const TRIAL: f64 = 0.02;
 const SHORT: f64 = 0.2;
 /// Cells that one thread fits at a time.
 const CHUNK: usize = 512;
-/// Sparse factors reach this share of the rate of a dense factor; a solution reads [`SOLUTIONS`] entries of a factor in a second. Both are
-/// measured on bodies of 10 000 to 100 000 unknowns.
-const SPARSE: f64 = 0.8;
-const SOLUTIONS: f64 = 1e9;
-/// Work that is not measured at this rate takes no time.
-const SLOWEST_RATE: f64 = 1e8;
 /// Newton's iterations of a step of the load, as most take.
 const ITERATIONS: f64 = 6.0;
-/// Seconds for each unknown of a body solved by iterations: to assemble a model, build its levels and prove that it is stable, and for
-/// each load, side by side with others. Measured on a million and on sixty thousand unknowns.
-const COMPARED: f64 = 4e-5;
-const ITERATED: f64 = 2e-6;
-/// Seconds and bytes for each entry of the stiffnesses of all cells, while they are assembled.
-const ASSEMBLY: f64 = 6e-8;
-const BYTES: f64 = 70.0;
+/// Loads that fits to the whole object ask the finer body for, about, by which the way to solve its equations is chosen.
+const ASKED: usize = 75;
+/// The solutions of a network in such a fit under a support are as dear as this many loads.
+const ASKED_OF_NETWORK: usize = 200;
 /// Bytes of a spring of a network, and of what its fit holds at the same time.
 const SPRING: f64 = 100.0;
 
@@ -97,15 +92,32 @@ impl Forecast {
         let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
         let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
         forecast.unknowns -= held;
+        let finer = scene.reference().filter(|entry| !entry.is_of_cells());
+        let iterates = energy.is_none() && scene.solver().iterates(mesh, cases.len());
+        let is_linear = energy.is_none();
+        if is_linear && !scene.solver().iterates(mesh, ASKED_OF_NETWORK) {
+            forecast.add_whole(mesh, scene.fits(), finer.is_some())?;
+        }
         let later = [
             (scene.motion().is_some(), "motion"),
             (scene.output().frequencies > 0, "natural frequencies"),
             (scene.output().moduli, "moduli of the networks"),
         ];
+        if let Some(entry) = finer {
+            // What is wrong with the finer mesh is reported where it is solved.
+            let fine = entry.build(scene.path(), mesh).ok().filter(|_| is_linear);
+            let of = |fine: &Mesh| {
+                let solver = scene.solver().suited(fine, &scene.material_of(fine)?.moduli());
+                let recipes = scene.fits().iter().filter_map(|fit| fit.recipe.whole());
+                whole::of_finer((fine, solver.iterates(fine, ASKED)), cases.len(), recipes)
+            };
+            let found = fine.as_ref().map(of).transpose()?;
+            let (seconds, bytes) = found.map(|[seconds, bytes]| (seconds, bytes)).unzip();
+            forecast.stages.push(ExpectedStage { name: "finite elements of the finer body".into(), seconds, bytes });
+        }
         if cases.is_empty() && !later.iter().any(|(asked, _)| *asked) {
             return Ok(forecast);
         }
-        let iterates = energy.is_none() && scene.solver().iterates(mesh, cases.len());
         let (seconds, bytes) = if iterates {
             let models = 1.0 + scene.fits().len() as f64;
             let each = COMPARED + ITERATED * cases.len() as f64;
@@ -162,6 +174,24 @@ impl Forecast {
         }
     }
 
+    /// Gives fits to the whole object their times, at small deformation, with factors and without an engine: those of others are not known.
+    ///
+    /// # Errors
+    /// An analysis does not fit into memory.
+    fn add_whole(&mut self, mesh: &Mesh, fits: &[NamedFit], is_finer: bool) -> Result<()> {
+        for (stage, fit) in self.stages.iter_mut().zip(fits) {
+            let Some(recipe) =
+                fit.recipe.whole().filter(|recipe| recipe.engine.is_none() && !recipe.is_of_few_moduli())
+            else {
+                continue;
+            };
+            let found = whole::of_fit(recipe, mesh, is_finer)?;
+            (stage.seconds, stage.bytes) = (Some(found.seconds), Some(found.bytes));
+            self.network_entries = self.network_entries.max(found.entries);
+        }
+        Ok(())
+    }
+
     /// The time of all stages whose time is known, s.
     pub fn seconds(&self) -> f64 {
         self.stages.iter().filter_map(|stage| stage.seconds).sum()
@@ -197,7 +227,9 @@ impl Forecast {
 fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &NamedFit) -> Option<[f64; 3]> {
     let kind = fit.recipe.kind();
     let of_loads = fit.recipe.sampled().is_some_and(|recipe| recipe.has_states());
-    if of_loads || (kind.cell_method().is_none() && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
+    // Springs on edges and patches are of as many cells as lie around them.
+    let is_sum = kind.cell_method().is_some() || fit.recipe.is_exact_without_bound();
+    if of_loads || (!is_sum && (fit.recipe.whole().is_some() || fit.recipe.sampled().is_none())) {
         return None;
     }
     // Factors for an engine are found from the whole body.

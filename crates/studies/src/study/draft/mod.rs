@@ -16,6 +16,8 @@ pub use material::DraftMaterial;
 
 /// Groups that are listed at most.
 const LISTED: usize = 40;
+/// The largest mesh whose draft asks for quadratic elements beside it, which take several times the memory.
+const MOST_COMPARED: usize = 10_000;
 /// Poisson's ratio from which on linear cells lock.
 const LOCKS: f64 = 0.4;
 
@@ -104,6 +106,16 @@ pub fn draft(
             line(&format!("{key:<9} = {:<13} # {words}{end}", quoted(value)));
         });
     }
+    let with_volume = positive(mesh);
+    if let Some((objective, springs)) = with_volume {
+        line("[[fit]]");
+        line("name        = \"positive\"   # none pulls at rest: MuJoCo, Newton and Jolt hold them");
+        line(&format!(
+            "objective   = {:<12} # springs with the lengths of the mesh, and volume springs",
+            quoted(objective)
+        ));
+        line(&format!("springs     = {springs}\nnonnegative = true\n"));
+    }
     line("[[fit]]");
     line("name        = \"classical springs, k >= 0\"");
     line("objective   = \"offdiag\"   # springs alone; `springfit fit --help` lists the objectives");
@@ -111,6 +123,22 @@ pub fn draft(
     let names = mesh.blocks.first().map(|block| block.element.springs.iter().map(|group| quoted(&group.name)));
     let names = names.into_iter().flatten().collect::<Vec<_>>().join(", ");
     line(&format!("# springs = [{names}]   # spring groups; those that are not optional if absent\n"));
+    if let Some((objective, springs)) = with_volume {
+        // From Poisson's ratio 0.4 on a run chooses what errors are relative to.
+        let is_given = poisson < LOCKS && mesh.point_count() <= MOST_COMPARED && mesh.elevated().is_ok();
+        if is_given {
+            line("[reference]              # errors are relative to");
+            line("from = \"quadratic\"       # quadratic elements on the same cells, which bend and shear better\n");
+        }
+        line("# One object under the supports below errs less if it is fitted as a whole to quadratic elements:");
+        if !is_given {
+            line("# [reference]\n# from = \"quadratic\"");
+        }
+        line(&format!(
+            "# [[fit]]\n# name      = \"calibrated\"\n# objective = \"whole\"\n# start     = {}\n# springs   = {springs}\n",
+            quoted(objective)
+        ));
+    }
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
     conditions(mesh, longest, young(mesh, material, scale)).iter().for_each(|written| line(written));
     line("\n[output]");
@@ -166,6 +194,24 @@ impl Fit {
             }
             (false, _) => vec![exact("exact", &[])],
         }
+    }
+}
+
+/// The objective and the groups of the fit with volume springs that *How to choose* has for programs without negative constants and with the
+/// lengths of the mesh: on solid and plane bodies of linear simplices, or of linear hexahedra and quadrilaterals.
+fn positive(mesh: &Mesh) -> Option<(&'static str, &'static str)> {
+    let all = |holds: &dyn Fn(&CellBlock) -> bool| mesh.blocks.iter().all(holds);
+    let is_of =
+        |words: &'static str| move |block: &CellBlock| block.element.select_groups(Some(&[words.to_string()])).is_ok();
+    let is_full = mesh.cell_dimension() == mesh.dimension && mesh.cell_dimension() > 1;
+    if !is_full || !all(&|block| block.element.has_corners_alone()) || !all(&is_of("all + volume")) {
+        return None;
+    }
+    let is_bricks = |block: &CellBlock| block.element.nodes() == 1 << block.element.dimension();
+    match (all(&|block| block.element.cell.is_simplex()), all(&is_bricks)) {
+        (true, _) => Some(("divergence", "[\"all + volume\"]")),
+        (false, true) => Some(("modal", "[\"all + volume\"]")),
+        (false, false) => None,
     }
 }
 

@@ -34,5 +34,5 @@ pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome};
 pub use whole::{
     Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, MadeLoads, ModelError,
     ModelFrequencies, ModuliSearch, RESERVED, RegionFactors, ScaledLoad, Sharing, Start, SupportFrequencies,
-    SupportPart, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad,
+    SupportPart, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, held_conditions,
 };

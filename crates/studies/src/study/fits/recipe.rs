@@ -49,6 +49,11 @@ impl Recipe {
         if let Recipe::Whole(recipe) = self { Some(recipe) } else { None }
     }
 
+    /// Whether it is an exact network that may have negative constants: the springs of each part of the body are found by themselves.
+    pub fn is_exact_without_bound(&self) -> bool {
+        matches!(self, Recipe::Exact(recipe) if recipe.positive.is_none())
+    }
+
     /// The published method, if it is one.
     pub fn published(&self) -> Option<Method> {
         if let Recipe::Published(method) = self { Some(*method) } else { None }

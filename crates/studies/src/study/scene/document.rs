@@ -24,7 +24,7 @@ use crate::mesh::{Mesh, Selection};
 use crate::model::{Action, Component};
 use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::assumed;
-use crate::study::fits::{NamedFit, RESERVED, law_at};
+use crate::study::fits::{NamedFit, RESERVED, held_conditions, law_at};
 use crate::study::sweep::SweepEntry;
 use crate::text::printable;
 use std::path::{Path, PathBuf};
@@ -275,12 +275,13 @@ impl Scene {
         let held = self.supports.iter().map(|hold| (hold.part.clone(), false));
         let of_material = self.material_parts().into_iter().map(|(_, part)| (part, true));
         let d = mesh.dimension;
+        let of_fits = held_conditions(mesh, self.fits.iter().filter_map(|fit| fit.recipe.whole()));
         let conditions =
             held.chain(loaded).chain(of_material).filter_map(|(part, asks_cells)| match part.selection(d) {
                 Ok(Selection::Where(condition)) => Some((condition, asks_cells)),
                 Ok(Selection::Group(_) | Selection::Everything) | Err(_) => None,
             });
-        mesh.choose(conditions);
+        mesh.choose(conditions.chain(of_fits.into_iter().map(|condition| (condition, false))));
     }
 
     /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.

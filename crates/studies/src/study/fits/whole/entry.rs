@@ -70,13 +70,16 @@ pub struct WholeEntry {
     /// belongs to made loads and a material with a law.
     #[schemars(extend("x-default" = "0.3, with a law"))]
     pub stretch: Option<f64>,
-    /// Made loads are fitted under these supports, each a list of groups that are held, such as `[["left"], ["left", "right"]]`.
+    /// Made loads are fitted under these supports, each a list of groups that are held, or of conditions on x, y and z in m, such as
+    /// `[["left"], ["x < 0.01", "right"]]`.
     #[schemars(extend("x-default" = "that of `[[fix]]`"))]
     pub supports: Option<Vec<Vec<String>>>,
-    /// Made loads that choose ρ have these supports, each a list of groups that are held; the key belongs to `validate = "made"`.
+    /// Made loads that choose ρ have these supports, each a list of groups that are held, or of conditions; the key belongs to
+    /// `validate = "made"`.
     #[schemars(extend("x-default" = "`supports`"))]
     pub validate_supports: Option<Vec<Vec<String>>>,
-    /// Made loads with these supports, each a list of groups that are held, neither are fitted nor choose ρ; their errors are reported.
+    /// Made loads with these supports, each a list of groups that are held, or of conditions, neither are fitted nor choose ρ; their errors are
+    /// reported.
     pub other_supports: Option<Vec<Vec<String>>>,
     /// Springs for the shear modulus of the start `exact` measure the deformation in each cell, or on the domain of each edge. With `edges`
     /// the unknowns of `moduli` are those of the domain of each edge.
@@ -289,17 +292,17 @@ impl WholeEntry {
     }
 }
 
-/// The given lists of groups.
+/// The given lists of groups or conditions.
 ///
 /// # Errors
 /// There is no list, a list has no group or one twice, or two lists have the same groups.
 fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<Vec<String>>> {
     match supports {
-        Some([]) => Err(Error::expected(key, "lists of groups that are held", "none")),
+        Some([]) => Err(Error::expected(key, "lists of groups that are held, or of conditions", "none")),
         Some(supports) => {
             for (i, groups) in supports.iter().enumerate() {
                 let wrong = |found: String| {
-                    Err(Error::expected(format!("{key}[{i}]"), "groups that are held, each once", found))
+                    Err(Error::expected(format!("{key}[{i}]"), "groups that are held or conditions, each once", found))
                 };
                 if groups.is_empty() {
                     return wrong("none".into());

@@ -1,9 +1,9 @@
 //! The masses of a whole-object fit, and the natural frequencies that they give.
 
 use super::body::WholeBody;
+use super::held::Held;
 use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies, SupportPart};
 use super::recipe::WholeRecipe;
-use super::targets::Held;
 use crate::error::{Error, Result};
 use crate::model::{ConsistentMasses, Lumping, Moments, Network, lumped_masses};
 use crate::solve::{Equations, Masses};

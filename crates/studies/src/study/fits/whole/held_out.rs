@@ -1,10 +1,10 @@
 //! The errors of a whole-object fit under loads that it has not seen, beside those of finite elements with the same mesh.
 
 use super::body::WholeBody;
+use super::held::Held;
 use super::made_loads::MadeLoads;
 use super::outcome::{HeldOut, ModelError, WorseLoad};
 use super::recipe::WholeRecipe;
-use super::targets::Held;
 use crate::engine::{Setting, Truncated, TruncatedModel};
 use crate::error::{ErrorKind, Result};
 use crate::fit::{ShearSprings, VolumeSprings};

@@ -12,6 +12,7 @@ mod finer_steps;
 mod fitting;
 mod found_moduli;
 mod frequencies;
+mod held;
 mod held_out;
 mod identity;
 mod made_loads;
@@ -27,6 +28,7 @@ mod targets;
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
 pub use finer::{Answers, Finer, RegionFactors};
+pub use held::held_conditions;
 pub use made_loads::{MadeLoads, ScaledLoad};
 pub use moduli::{FoundModuli, FoundModulus, ModuliSearch};
 pub use outcome::{

@@ -29,8 +29,8 @@ pub struct WholeRecipe {
     pub masses: usize,
     /// The seed of the random loads.
     pub seed: u64,
-    /// The supports under which made loads are fitted, each by the names of the groups that are held; that of the scene if
-    /// empty.
+    /// The supports under which made loads are fitted, each by the names of the groups that are held or by conditions; that
+    /// of the scene if empty.
     pub supports: Vec<Vec<String>>,
     /// The stretch that made loads cause at large deformation; `None` stands for 0.3.
     pub stretch: Option<f64>,
@@ -148,6 +148,11 @@ impl WholeRecipe {
     /// Whether the unknowns are moduli of the body or of its regions.
     pub fn is_of_few_moduli(&self) -> bool {
         self.unknowns.moduli().is_some_and(|sharing| sharing != ModuliSharing::Element)
+    }
+
+    /// The groups and conditions of all lists of supports.
+    pub fn held(&self) -> impl Iterator<Item = &String> {
+        [&self.supports, &self.validation_supports, &self.other_supports].into_iter().flatten().flatten()
     }
 
     /// Whether loads are made from the mesh, for the fit or to choose ρ.

@@ -28,7 +28,7 @@ pub struct WholeRecord {
     pub masses: usize,
     /// The random loads have this seed.
     pub seed: u64,
-    /// Made loads are fitted under these supports, each a list of groups; the list is empty for that of the scene.
+    /// Made loads are fitted under these supports, each a list of groups or conditions; the list is empty for that of the scene.
     pub supports: Vec<Vec<String>>,
     /// Loads that choose the regularization have these supports; the list is empty for those of the fit.
     pub validate_supports: Vec<Vec<String>>,

@@ -3,9 +3,10 @@
 //! Theory: page *Whole-object fits* of the book.
 
 use super::body::WholeBody;
+use super::held::Held;
 use super::made_loads::MadeLoads;
 use super::recipe::{STRETCH, WholeRecipe};
-use super::targets::{Held, Loads};
+use super::targets::Loads;
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Body;
 use crate::study::progress::{Event, Progress};

@@ -2,13 +2,13 @@
 
 use super::body::WholeBody;
 use super::finer::Answers;
+use super::held::{Held, held_by};
 use super::made_loads::MadeLoads;
 use super::outcome::SupportPart;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
-use crate::model::{Support, unheld_bodies};
-use crate::named::unknown;
+use crate::model::Support;
 use crate::study::progress::Progress;
 use crate::whole::{
     NodalLoad, PRESSURE, Pressure, Target, Validation, Wanted, Weighing, WholeSettings, made_loads, random_loads,
@@ -27,22 +27,6 @@ const BOUNDED: f64 = 1e8;
 
 /// Makes loads from a mesh and its support. Those that are drawn at random are others with each seed.
 pub(super) type Loads<'a> = dyn Fn(&Mesh, &Support, u64) -> Vec<NodalLoad> + 'a;
-
-/// A support under which loads are made from the mesh.
-pub(super) struct Held {
-    /// The groups that are held; empty for the `[[fix]]` of the scene.
-    pub groups: Vec<String>,
-    pub support: Support,
-    /// The finer mesh, if there is one, has this support.
-    pub fine: Option<Support>,
-}
-
-impl Held {
-    /// The support in words.
-    pub fn words(&self) -> String {
-        if self.groups.is_empty() { "[[fix]]".into() } else { self.groups.join(", ") }
-    }
-}
 
 impl WholeBody<'_> {
     /// The targets of a fit.
@@ -283,29 +267,4 @@ fn weigh_by_compliance(trained: &mut [Target]) {
             target.weight = weight;
         }
     }
-}
-
-/// The support that holds these groups of points.
-///
-/// # Errors
-/// There is no such group, or a body is not held.
-fn held_by(mesh: &Mesh, groups: &[String]) -> Result<Support> {
-    let mut support = Support::free(mesh);
-    let directions: Vec<usize> = (0..mesh.dimension).collect();
-    for name in groups {
-        let known = mesh.groups.keys().map(String::as_str);
-        let group = mesh.groups.get(name).ok_or_else(|| {
-            let expected = format!("groups of the mesh ({})", known.clone().collect::<Vec<_>>().join(", "));
-            unknown(expected, known.clone(), name)
-        })?;
-        support.fix(&group.points, &directions, mesh.dimension);
-    }
-    if support.prescribed.iter().all(Option::is_some) {
-        return Err(Error::new("expected groups that leave points free to move, found all points held"));
-    }
-    if let Some(body) = unheld_bodies(mesh, &support).first() {
-        let found = format!("{} rigid motions left to one of {} points", body.motions, body.points);
-        return Err(Error::new(format!("expected groups that hold every body, found {found}")));
-    }
-    Ok(support)
 }
