@@ -34,7 +34,7 @@ fn every_command_that_prints_tables_typesets_them() {
         (&["sweep", &scene, "--set", sweep], 1),
         (&["sweep", &scene, "--set", sweep, "--explain"], 1),
         (&["run", &scene], 5),
-        (&["fit", &mesh, "--young", "10kPa", "--poisson", "0.3", "-o", "springs.json"], 2),
+        (&["fit", &mesh, "--young", "10kPa", "--poisson", "0.3", "-o", "springs.json"], 3),
         (&["paper", "--only", "figure 9"], 1),
     ];
     for (arguments, tables) in commands {

@@ -61,7 +61,10 @@ pub(super) fn overview(report: &Report) -> Table {
         rows.push(std::iter::once(Cell::from(BODY)).chain(shown.iter().map(|shown| shown.of_body.clone())).collect());
     }
     let columns = std::iter::once(Column::words("fit")).chain(shown.into_iter().map(|shown| shown.column)).collect();
-    let title = "Networks; e_max is the largest error of a point, in percent of the largest displacement";
+    let title = match loads(report) {
+        [] => "Networks",
+        _ => "Networks; e_max is the largest error of a point, in percent of the largest displacement",
+    };
     Table::new("overview", title, columns, rows)
 }
 
