@@ -86,6 +86,7 @@ const FEW: usize = 20_000;
 const EXAMPLES: &str = "\
 Examples:
   springfit fit organ.msh --young 10kPa --poisson 0.45 -o springs.vtu
+  springfit fit organ.msh --young 10kPa --poisson 0.45 --shear edges --volume patches -o k.json
   springfit fit organ.msh --young 10kPa --poisson 0.3 --objective divergence -o springs.json
   springfit fit organ.msh --scale mm --young 10kPa --poisson 0.3 -o springs.csv --explain
 

@@ -109,7 +109,11 @@ pub fn draft(
     let with_volume = positive(mesh);
     if let Some((objective, springs)) = with_volume {
         line("[[fit]]");
-        line("name        = \"positive\"   # none pulls at rest: MuJoCo, Newton and Jolt hold them");
+        let words = match objective {
+            "divergence" => "none pulls at rest: MuJoCo, Newton and Jolt hold them",
+            _ => "none pulls at rest; exports divide what its cells contain",
+        };
+        line(&format!("name        = \"positive\"   # {words}"));
         line(&format!(
             "objective   = {:<12} # springs with the lengths of the mesh, and volume springs",
             quoted(objective)
