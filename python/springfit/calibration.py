@@ -43,6 +43,10 @@ class Modulus:
     deviation: float | None
     mesh_deviation: float | None
 
+    def __float__(self) -> float:
+        """The value, so that ``sf.Material(region.young, region.poisson)`` is the material that was found."""
+        return float(self.value)
+
     @classmethod
     def _of(cls, record: "dict[str, Any]") -> "Modulus":
         ends = record["interval"]

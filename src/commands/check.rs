@@ -61,7 +61,11 @@ impl Check {
             terminal,
             || inspections.to_vec(),
             || vec![report::check_table(&inspections)],
-            || format!("{} of {} files pass\n", inspections.len() - failed, inspections.len()),
+            || {
+                let failing = inspections.iter().filter(|i| !i.passes).map(|i| i.file.as_str()).collect::<Vec<_>>();
+                let which = if failing.is_empty() { String::new() } else { format!("; not {}", failing.join(", ")) };
+                format!("{} of {} files pass{which}\n", inspections.len() - failed, inspections.len())
+            },
         )?;
         Ok(if inspections.iter().all(|i| i.passes) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }

@@ -246,7 +246,7 @@ impl Compare {
             records.iter().flat_map(|record| &record.methods).filter(|method| method.refused.is_some()).count();
         if refused > 0 {
             terminal.note(&format!(
-                "{refused} times a fit has no figures on a case; the column \"why not\" of comparison.csv says why"
+                "{refused} of the figures of fits on cases are missing; the column \"why not\" of comparison.csv says why"
             ));
         }
         // The folder has many files: those that one opens first.

@@ -3,7 +3,7 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::report::{Columns, Cost, Figure, Markup, PictureFormat, RunFolder, Table};
+use springfit::report::{Columns, Cost, Figure, Markup, PictureFormat, RunFolder, Table, folder_tables};
 use springfit::{check_apart, check_file, write_whole};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,7 +20,7 @@ pub struct Plot {
     /// Typeset the tables of the run
     #[arg(long, value_enum)]
     table: Option<Markup>,
-    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: fits, errors, materials, times, costs, whole, frequencies, motion
+    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: overview, fits, errors, materials, times, costs, whole, frequencies, motion; of a comparison: comparison, objects, pairs, ranks
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
     /// The load of the figure deformation, whose fit is --of [default: the first]
@@ -85,12 +85,12 @@ impl Plot {
     }
 
     fn tables(&self, run: &RunFolder, markup: Markup) -> Result<String> {
-        let tables = Table::all(&run.report()?);
+        let tables = folder_tables(run)?;
         let chosen: Vec<&Table> =
             tables.iter().filter(|table| self.of.as_ref().is_none_or(|name| table.name == *name)).collect();
         if let (Some(name), true) = (&self.of, chosen.is_empty()) {
             let names: Vec<&str> = tables.iter().map(|table| table.name.as_str()).collect();
-            return Err(Error::expected("--of", format!("a table of the run: {}", names.join(", ")), name));
+            return Err(Error::expected("--of", format!("one of the tables {}", names.join(", ")), name));
         }
         Ok(chosen.iter().map(|table| markup.table(table)).collect::<Vec<_>>().join("\n"))
     }

@@ -86,7 +86,7 @@ pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_table, write_paper};
 pub use pictures::{displacement_grid, network_grid};
-pub use plots::{Figure, Picture};
+pub use plots::{Figure, Picture, folder_tables};
 pub use quality::mesh_notes;
 pub use referee::{
     EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,

@@ -223,3 +223,21 @@ fn motion(report: &Report) -> Result<Chart> {
         series,
     })
 }
+
+/// The tables of the run or of the comparison in a folder.
+///
+/// # Errors
+/// The folder has neither, or the tables are those of a sweep, which its command makes.
+pub fn folder_tables(run: &RunFolder) -> Result<Vec<Table>> {
+    let folder = run.file("");
+    if run.file(CASES).is_file() {
+        let records = read_cases(&folder)?;
+        return Ok(compare_tables(&summarized("", &records)));
+    }
+    let is_report = run.file("report.json").is_file();
+    if !is_report && files_in(&folder, "jsonl").is_ok_and(|files| !files.is_empty()) {
+        let words = "has the studies of a sweep, whose table is table.csv: springfit sweep SCENE --resume --table latex typesets it";
+        return Err(Error::new(words).in_file(&folder));
+    }
+    Ok(Table::all(&run.report()?))
+}

@@ -24,7 +24,8 @@ const FAULTS: usize = 10;
 /// How networks stand whose errors mean little.
 const UNSTABLE: [Standing; 3] = [Standing::Soft, Standing::Indefinite, Standing::Singular];
 /// The columns after the values that are set, in this order where there are any; the others follow by name.
-const LEADING: [&str; 9] = ["error", "fit", "load", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
+const LEADING: [&str; 10] =
+    ["error", "fit", "load", "reference", "e_rms", "e_max", "e_tip", "e_energy", "springs", "status"];
 /// What the report says of the whole body that a row has as well.
 const OF_BODY: [&str; 2] = ["nodes", "elements"];
 
@@ -120,6 +121,13 @@ pub fn studies_page(title: &str, table: &Table, folder: &Path) -> String {
         .into_owned()
 }
 
+/// What errors under a load are relative to: the finite elements of the mesh, or a measurement or finer solution.
+fn reference(report: &Value, load: &Value) -> Value {
+    let measured = report["measured"].as_array().into_iter().flatten();
+    let standard = measured.filter(|known| known["load"] == *load).map(|known| known["standard"].clone()).next();
+    standard.unwrap_or_else(|| "cells".into())
+}
+
 /// The cells of one study: for each fit and load, or with the error alone.
 fn rows_of(record: &StudyRecord) -> Vec<BTreeMap<String, Value>> {
     let Some(report) = &record.report else {
@@ -139,6 +147,7 @@ fn rows_of(record: &StudyRecord) -> Vec<BTreeMap<String, Value>> {
             leaves("", load, &mut row);
             row.remove("name");
             row.insert("load".into(), load["name"].clone());
+            row.insert("reference".into(), reference(report, &load["name"]));
             row
         }));
         if rows.len() == before {
@@ -238,7 +247,22 @@ pub fn studies_table<'a>(
         .filter_map(|(place, _, record)| Some(format!("study {} failed: {}", place + 1, record.error.as_ref()?)))
         .collect();
     let more = failed.len().saturating_sub(FAULTS);
-    let notes = is_marked.then(|| mark.to_string()).into_iter().chain(failed.into_iter().take(FAULTS));
+    let references: BTreeSet<String> = done
+        .iter()
+        .filter_map(|(.., record)| record.report.as_ref())
+        .flat_map(|report| {
+            let loads = report["fits"][0]["loads"].as_array().into_iter().flatten();
+            loads.map(|load| reference(report, &load["name"]).to_string())
+        })
+        .collect();
+    let mixed = (references.len() > 1).then(|| {
+        let known = references.iter().map(|word| word.trim_matches('"')).collect::<Vec<_>>().join(", ");
+        format!(
+            "errors of these studies are relative to different solutions ({known}), as the column reference of table.csv says: they are not to be \
+             compared; from in [reference] sets one for all"
+        )
+    });
+    let notes = mixed.into_iter().chain(is_marked.then(|| mark.to_string())).chain(failed.into_iter().take(FAULTS));
     let notes: Vec<String> = notes.chain((more > 0).then(|| format!("and {more} more failed"))).collect();
     Table::new("sweep", format!("{title}: largest e_rms under any load"), columns, rows).with_notes(notes)
 }

@@ -3,6 +3,7 @@
 use crate::study::statistics::{Interval, Paired, Verdict, adjust, mean_ranks, median, ratio_interval};
 use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Two times tie if they differ by less than this factor: other work on the machine changes them by as much.
@@ -93,17 +94,51 @@ pub fn pairs(records: &[CaseRecord]) -> Vec<Pair> {
 
 fn of_values(records: &[CaseRecord], quantity: &str, (first, second): (&str, &str)) -> Option<Paired> {
     let (mut a, mut b) = (Vec::new(), Vec::new());
-    for record in records {
-        let lists = [first, second].map(|fit| method(record, fit).and_then(|method| method.values.get(quantity)));
-        let [Some(one), Some(other)] = lists else { continue };
-        for pair in one.iter().zip(other) {
-            if let (Some(one), Some(other)) = pair {
-                a.push(one.max(ROUNDING));
-                b.push(other.max(ROUNDING));
+    for same in of_same_shapes(records) {
+        let lists = |record: &&CaseRecord| {
+            let [one, other] = [first, second].map(|fit| Some(method(record, fit)?.values.get(quantity)?.clone()));
+            Some([one?, other?])
+        };
+        let lists: Vec<[Vec<Option<f64>>; 2]> = same.iter().filter_map(lists).collect();
+        // A shape counts where both methods have a figure in each of its cases.
+        let [one, other] = [0, 1].map(|of| means(lists.iter().map(|pair| &pair[of])));
+        for (one, other) in one.into_iter().zip(other) {
+            if let (Some(one), Some(other)) = (one, other) {
+                a.push(one);
+                b.push(other);
             }
         }
     }
     Paired::of(&a, &b)
+}
+
+/// The cases in groups that have the same shapes: those of one element that differ in Poisson's ratio alone. What is found on the same shape at
+/// several ratios is nearly the same, and no independent figure.
+pub fn of_same_shapes<'a>(records: impl IntoIterator<Item = &'a CaseRecord>) -> Vec<Vec<&'a CaseRecord>> {
+    let mut groups: Vec<(BTreeMap<String, Value>, Vec<&CaseRecord>)> = Vec::new();
+    for record in records {
+        let mut settings = record.settings.clone();
+        if settings.contains_key("seed") {
+            settings.remove("poisson");
+        }
+        match groups.iter_mut().find(|(known, _)| *known == settings) {
+            Some((_, group)) => group.push(record),
+            None => groups.push((settings, vec![record])),
+        }
+    }
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+/// The geometric mean of the figures of each shape over all cases; none where a case has no figure.
+pub fn means<'a>(cases: impl IntoIterator<Item = &'a Vec<Option<f64>>>) -> Vec<Option<f64>> {
+    let cases: Vec<_> = cases.into_iter().collect();
+    let shapes = cases.iter().map(|case| case.len()).max().unwrap_or(0);
+    let mean = |shape: usize| {
+        let logarithms = cases.iter().map(|case| Some(case.get(shape).copied().flatten()?.max(ROUNDING).ln()));
+        let sum: f64 = logarithms.sum::<Option<f64>>()?;
+        Some((sum / cases.len() as f64).exp())
+    };
+    (0..shapes).map(mean).collect()
 }
 
 /// The times of two methods. On each case the medians are apart where the interval of their ratio does not have 1 and they differ by more

@@ -1,6 +1,6 @@
 //! The summary of a comparison: quantiles of every figure, and intervals of their medians.
 
-use super::pairs::{Pair, Rank, fits, method as method_of, pairs, ranks};
+use super::pairs::{Pair, Rank, fits, means, method as method_of, of_same_shapes, pairs, ranks};
 use crate::study::statistics::{Interval, Quantiles, median, median_interval};
 use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
@@ -35,7 +35,7 @@ pub struct Object {
     pub fit: String,
     /// The quantity that errors are of.
     pub quantity: String,
-    /// The errors of all its shapes, loads or stretches.
+    /// The errors of all its shapes, loads or stretches; of a shape at several Poisson's ratios the geometric mean.
     pub error: Option<Told>,
     /// The median over its cases of the median processor time to fit an element, s.
     pub seconds: Option<f64>,
@@ -133,8 +133,11 @@ fn objects(records: &[CaseRecord]) -> Vec<Object> {
         let quantity = ["spectral", "e_rms"].iter().find(has).copied().unwrap_or("e_rms");
         for fit in fits(records) {
             let methods: Vec<&MethodRecord> = own.iter().filter_map(|record| method_of(record, fit)).collect();
+            let of_shapes = |same: Vec<&CaseRecord>| {
+                means(same.into_iter().filter_map(|record| method_of(record, fit)?.values.get(quantity)))
+            };
             let errors: Vec<f64> =
-                methods.iter().filter_map(|m| m.values.get(quantity)).flatten().copied().flatten().collect();
+                of_same_shapes(own.iter().copied()).into_iter().flat_map(of_shapes).flatten().collect();
             let times: Vec<f64> = methods.iter().filter_map(|m| Some(median(m.times.get("fit")?))).collect();
             if methods.is_empty() {
                 continue;

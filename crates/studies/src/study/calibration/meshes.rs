@@ -53,7 +53,13 @@ pub(super) fn level<'a>(
     }
     let outside = |e: Error| match e.kind() {
         ErrorKind::Unsupported => e.under("measured"),
-        _ => Error::expected("measured", "places in the body", e.problem().replace("of the other mesh", "of the mesh")),
+        _ => Error::at(
+            "measured",
+            format!(
+                "{}: is the unit of the places that of the scene, m?",
+                e.problem().replace("of the other mesh", "of the mesh")
+            ),
+        ),
     };
     let places = Embedding::of(&observed.places, &mesh).map_err(outside)?;
     if first.is_none() {

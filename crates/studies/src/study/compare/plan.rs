@@ -198,6 +198,17 @@ fn expect_file(key: &str, path: &Path) -> Result<()> {
 
 /// The cases of all elements.
 fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
+    if entry.elements.is_empty() {
+        let given = [
+            ("poisson", entry.poisson.is_some()),
+            ("plane", entry.plane.is_some()),
+            ("shapes", entry.shapes.is_some()),
+        ];
+        let belongs =
+            "belongs to elements, found without them: a scene has its own, and [compare] takes several scenes";
+        let without = given.into_iter().find(|(_, is_given)| *is_given);
+        return without.map_or(Ok(Vec::new()), |(key, _)| Err(Error::at(key, belongs)));
+    }
     for (place, name) in entry.elements.iter().enumerate().filter(|(_, name)| name.ends_with(".toml")) {
         expect_file(&format!("elements[{place}]"), &folder.join(name))?;
     }
