@@ -2,13 +2,13 @@
 
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
-use crate::material::{CellMap, State};
+use crate::material::{CellMap, RelaxationTerm, State};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Network, Support};
 use crate::network::{
     DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, ListedRecord, Lists, LoadErrorsRecord, MaterialDataRecord,
     NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord,
-    TimedForceRecord, TimedPullRecord,
+    RelaxationRecord, TimedForceRecord, TimedPullRecord,
 };
 use crate::number::finite;
 use crate::report::fit_record::FitRecord;
@@ -239,6 +239,17 @@ fn drive(motion: &MotionOutcome) -> DriveRecord {
                 axis: pull.axis,
                 displacement: pull.curve.clone(),
                 points: pull.points.clone(),
+            })
+            .collect(),
+        relaxation: motion
+            .relaxation
+            .iter()
+            .map(|&(region, RelaxationTerm { shear, bulk, time, yield_stress })| RelaxationRecord {
+                region,
+                shear,
+                bulk,
+                time,
+                yield_stress,
             })
             .collect(),
     }

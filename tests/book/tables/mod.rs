@@ -7,6 +7,7 @@ mod angles;
 mod bodies;
 mod cantilevers;
 mod choice;
+mod creep;
 mod forgetful;
 mod large;
 mod lattices;
@@ -49,7 +50,10 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 22] = [
+const MAKERS: [Maker; 25] = [
+    ("creep bar", creep::bar, false, Kept::Roughly),
+    ("creep yield", creep::yielding, false, Kept::Roughly),
+    ("creep kidney", creep::kidney_let_go, true, Kept::ToRounding),
     ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
