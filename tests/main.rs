@@ -4,6 +4,7 @@ mod anisotropy;
 mod arrays;
 mod bad_input;
 mod book;
+mod branches;
 mod cases;
 mod catalogue;
 mod check;

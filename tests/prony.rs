@@ -30,7 +30,10 @@ fn material(d: usize) -> MaterialMap {
 }
 
 fn series(terms: &[[f64; 3]]) -> Relaxation {
-    Relaxation::new(terms.iter().map(|&[shear, bulk, time]| RelaxationTerm { shear, bulk, time }).collect()).unwrap()
+    Relaxation::new(
+        terms.iter().map(|&[shear, bulk, time]| RelaxationTerm { shear, bulk, time, yield_stress: None }).collect(),
+    )
+    .unwrap()
 }
 
 fn branches(mesh: &Mesh, form: BranchForm, terms: &[[f64; 3]]) -> Memory {
@@ -373,6 +376,13 @@ pub fn creep_error(step: f64) -> f64 {
     );
     let outcome = outcome(&bar("{ shear = 0.6, time = 2 }", "[[fit]]\nobjective = \"exact\"\n", &motion));
     error_of_creep(&outcome.motion.unwrap().models[0], [0.6, 0.0])
+}
+
+/// The errors of creep at a hundredth of τ of the finite elements, of the exact network and of the smoothed one, with these shares.
+pub fn creep_errors([g, k]: [f64; 2]) -> Vec<f64> {
+    let pull = "duration = 5\nstep = 0.02\nevery = 0.5\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
+    let outcome = outcome(&bar(&format!("{{ shear = {g:?}, bulk = {k:?}, time = 2 }}"), EXACT, pull));
+    outcome.motion.unwrap().models.iter().map(|model| error_of_creep(model, [g, k])).collect()
 }
 
 /// Creep under a force that acts at once: `ε = σ (J_G/3 + J_K/9)`, with the compliances

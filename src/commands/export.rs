@@ -5,7 +5,7 @@ use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::{Error, Result};
-use springfit::export::{target_list, target_named, with_warnings, write_files};
+use springfit::export::{target_list, target_named, used_gravity, with_warnings, write_files};
 use springfit::report::{NetworkFile, NetworkRecord, read_network};
 use springfit::study::{Controls, run_with};
 use springfit::unknown;
@@ -60,7 +60,7 @@ impl Export {
         warnings.extend(target.at_rest(&network, gravity.as_deref()).map_err(of_network)?);
         let files = with_warnings(files, &warnings);
         let written = write_files(&files, &folder, &inputs)?;
-        terminal.print(&terminal.within_page(&summary(&network)))?;
+        terminal.print(&terminal.within_page(&summary(&network, gravity.as_deref())))?;
         if network.held.is_empty() {
             terminal.note("no point is held: under gravity the body falls; [[fix]] in a scene holds points");
         }
@@ -118,13 +118,17 @@ impl Export {
 }
 
 /// One line about a network.
-fn summary(network: &NetworkRecord) -> String {
+fn summary(network: &NetworkRecord, gravity: Option<&[f64]>) -> String {
+    let gravity = used_gravity(network, gravity);
+    let gravity = gravity.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let gravity = format!("; gravity {gravity} m/s²");
     let (points, springs) = (network.points.len(), network.springs.len());
     let step = network.largest_step.map_or(String::new(), |step| format!(", longest explicit step {step:.2e} s"));
     let name = network.provenance.fit.as_ref().map_or("network", |fit| &fit.name);
     let material = network.provenance.material.as_ref();
     let material = material.map_or(String::new(), |m| format!("; E = {} Pa, nu = {}", m.young, m.poisson));
-    format!("{name}: {points} points, {springs} springs, {} points held{step}{material}\n", network.held.len())
+    let held = network.held.len();
+    format!("{name}: {points} points, {springs} springs, {held} points held{step}{material}{gravity}\n")
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>> {

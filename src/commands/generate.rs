@@ -28,6 +28,9 @@ pub struct Generate {
     /// Spring groups to use, separated by commas [default: all that are not optional] (not with exact)
     #[arg(long, value_delimiter = ',')]
     springs: Option<Vec<String>>,
+    /// Also write a branch whose stress relaxes, and a step of it (exact only)
+    #[arg(long)]
+    relaxing: bool,
     /// Where the code goes [default: standard output]
     #[arg(short, long, help_heading = "Output")]
     output: Option<PathBuf>,
@@ -39,6 +42,7 @@ Examples:
   springfit generate hex8 --objective offdiag --language rust -o hex8_offdiag.rs
   springfit generate tri3 --objective modal --springs edge,bulk --language python
   springfit generate tet4 --language wgsl -o tet4_exact.wgsl
+  springfit generate tet4 --relaxing -o tet4_relaxing.h
 
 The file needs no other. Its functions give the moduli from Young's modulus and Poisson's ratio,
 the spring constants from the positions of the nodes and the moduli, and the energy and the
@@ -75,6 +79,10 @@ impl Generate {
         let element = Element::load(&self.element)?;
         let program =
             Program::new(&element, self.springs.as_deref(), recipe).map_err(|e| e.placed(|e| self.of_option(e)))?;
+        let program = match self.relaxing {
+            true => program.with_branch(&element, recipe).map_err(Error::of_option)?,
+            false => program,
+        };
         let text = program.print(language).map_err(Error::of_option)?;
         match &self.output {
             Some(path) => springfit::write_whole(path, text.as_bytes())?,

@@ -28,6 +28,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[],
+    relaxes: false,
     stands: Stands::Network,
     write,
 };

@@ -334,6 +334,11 @@ fn free_points(network: &NetworkRecord) -> usize {
     network.points.len() - held
 }
 
+/// The gravity that is exported, m/s², `[dimension]`: that which is asked for, that of the network, or 9.81 m/s² against the last axis.
+pub fn used_gravity(network: &NetworkRecord, asked: Option<&[f64]>) -> Vec<f64> {
+    spatial(asked, network)[..network.dimension].to_vec()
+}
+
 /// The gravity that is asked for, that of the network, or 9.81 m/s² against the last axis; with z = 0 in the plane.
 pub(super) fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> [f64; 3] {
     let usual = if network.dimension == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };

@@ -31,6 +31,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::Jolt],
+    relaxes: false,
     stands: Stands::Network,
     write,
 };

@@ -28,6 +28,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: &[],
+    relaxes: false,
     stands: Stands::Network,
     write,
 };

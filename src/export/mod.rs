@@ -22,7 +22,7 @@ mod target;
 mod vtu;
 mod xpbd;
 
-pub use job::{Hinges, Holds, Job, Tension};
+pub use job::{Hinges, Holds, Job, Tension, used_gravity};
 pub use target::{Content, NamedFile, Target, with_warnings, write_files};
 
 use crate::error::Result;

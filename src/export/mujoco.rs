@@ -28,6 +28,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: false,
     engines: &[],
+    relaxes: false,
     stands: Stands::SquaredLengths,
     write,
 };

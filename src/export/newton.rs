@@ -33,6 +33,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::NewtonXpbd, Engine::NewtonVbd],
+    relaxes: false,
     stands: Stands::Network,
     write,
 };

@@ -16,6 +16,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: EVERY_ENGINE,
+    relaxes: true,
     stands: Stands::Network,
     write,
 };
@@ -27,7 +28,11 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     let parts = Parts::of(&network)?;
     check_parts(&parts)?;
     network_npz(&network, &parts, &mut bytes).expect("a Vec grows");
-    Ok(vec![("network.npz", Content::Bytes(bytes.into_inner()))])
+    let mut files = vec![("network.npz", Content::Bytes(bytes.into_inner()))];
+    if network.motion.as_ref().is_some_and(|motion| !motion.relaxation.is_empty()) {
+        files.push(("run.py", Content::Bytes(include_bytes!("../../exports/relaxing.py").to_vec())));
+    }
+    Ok(files)
 }
 
 /// The arrays of a job, with its gravity.

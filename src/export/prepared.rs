@@ -2,11 +2,12 @@
 //!
 //! Page of the book: *Networks in other programs*.
 
+use super::job::spatial;
 use super::rest::support;
 use super::target::Target;
 use crate::dynamics::largest_square;
 use crate::error::Result;
-use crate::report::{NetworkRecord, Parts};
+use crate::report::{NetworkRecord, NodalLoadRecord, Parts};
 
 impl Target {
     /// The network that is written, and a sentence on each way in which it is another one than that of the fit.
@@ -25,6 +26,7 @@ impl Target {
             hinged.largest_step = Parts::of(&hinged).ok().and_then(|parts| longest_step(&hinged, &parts));
             prepared = hinged;
         }
+        sentences.extend(take_gravity(&mut prepared, gravity));
         if let Some((divided, changed)) = self.divided(&prepared, gravity)? {
             sentences.push(changed);
             prepared = divided;
@@ -32,6 +34,42 @@ impl Target {
         Ok((prepared, sentences))
     }
 }
+
+/// Takes gravity out of the loads, since a program has its own on all points; what is left of a load acts beside it. Returns a sentence on each
+/// load whose gravity is another one.
+fn take_gravity(network: &mut NetworkRecord, asked: Option<&[f64]>) -> Vec<String> {
+    let own = spatial(asked, network);
+    let masses = network.masses.clone().unwrap_or_default();
+    let pure: Vec<NodalLoadRecord> = network.loads.iter().filter(|load| load.is_gravity).cloned().collect();
+    let mut sentences = Vec::new();
+    let words = |g: &[f64]| g.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    for load in &mut network.loads {
+        let Some(gravity) = load.gravity.take() else { continue };
+        if gravity.iter().zip(&own).any(|(a, b)| a != b) {
+            let [asked, used] = [words(&gravity), words(&own[..gravity.len()])];
+            sentences.push(format!(
+                "the gravity of the load \"{}\" is {asked} m/s², and that of the export {used}: --gravity \"{asked}\" takes the other",
+                load.name
+            ));
+        }
+        // Elements share their weight out in another way than masses do.
+        let of_elements = pure.iter().find(|other| other.gravity.as_ref() == Some(&gravity));
+        let largest = load.forces.iter().flat_map(|force| &force.force).fold(0.0, |most: f64, f| most.max(f.abs()));
+        for force in &mut load.forces {
+            let weight = match of_elements {
+                Some(other) => other.forces.iter().find(|own| own.point == force.point).map(|own| own.force.clone()),
+                None => masses.get(force.point).map(|mass| gravity.iter().map(|g| mass * g).collect()),
+            };
+            force.force.iter_mut().zip(weight.unwrap_or_default()).for_each(|(f, weight)| *f -= weight);
+        }
+        load.forces.retain(|force| force.force.iter().any(|f| f.abs() > ROUNDING * largest));
+    }
+    network.loads.retain(|load| !load.is_gravity);
+    sentences
+}
+
+/// What is left of a force without gravity is rounding below this share of the largest.
+const ROUNDING: f64 = 1e-9;
 
 /// `2/ω` of the fastest motion at rest of a network with these springs, s; `None` without masses.
 pub(super) fn longest_step(network: &NetworkRecord, parts: &Parts) -> Option<f64> {

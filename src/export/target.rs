@@ -102,6 +102,8 @@ pub struct Target {
     pub(super) divides: bool,
     /// The engines whose constants it takes. Those of solved equations go to each program.
     pub(super) engines: &'static [Engine],
+    /// Whether stress that relaxes is in its files, or nothing moves in them.
+    pub(super) relaxes: bool,
     /// Up to which deformation it moves the network.
     pub(super) stands: Stands,
     pub(super) write: Writer,
@@ -116,6 +118,7 @@ impl Target {
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
         gravity.map_or(Ok(()), |asked| self.check_gravity(network, asked))?;
         self.check_engine(network)?;
+        self.check_relaxation(network)?;
         check_numbers(network, gravity)?;
         (self.write)(network, gravity)
     }
@@ -130,6 +133,19 @@ impl Target {
             return Err(Error::expected("--gravity", expected, asked.len()));
         }
         Ok(())
+    }
+
+    /// That stress which relaxes goes where it is held: anywhere else the body would keep the stiffness that it has against a sudden strain.
+    fn check_relaxation(&self, network: &NetworkRecord) -> Result<()> {
+        let terms = network.motion.as_ref().map_or(0, |motion| motion.relaxation.len());
+        if self.relaxes || terms == 0 {
+            return Ok(());
+        }
+        let expected = "a network whose stress does not relax (npz holds one, and springfit generate --relaxing writes a step of it)";
+        let found = format!(
+            "one that relaxes in {terms} terms; without [material.relaxation] it keeps the stiffness against a sudden strain"
+        );
+        Err(Error::expected("motion.relaxation", expected, found).of_kind(ErrorKind::Unsupported))
     }
 
     /// That constants which belong to the settings of an engine go to this engine: anywhere else the body has another stiffness.

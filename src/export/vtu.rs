@@ -17,6 +17,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: EVERY_ENGINE,
+    relaxes: true,
     stands: Stands::Still,
     write,
 };

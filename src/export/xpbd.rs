@@ -30,6 +30,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::Xpbd],
+    relaxes: false,
     stands: Stands::Truncated,
     write,
 };

@@ -1,13 +1,15 @@
 //! Figures for a paper, from the folder of a run, a comparison, a sweep or a convergence study.
 
-use super::compare::{CASES, Drawn, comparison_chart, read_cases};
+use super::compare::{CASES, Drawn, compare_tables, comparison_chart, read_cases, summarized};
 use super::figure::{
     Axis, CONVERGENCE_TABLE, Chart, Columns, Cost, Deformation, Moduli, RunFolder, Series, Shape, convergence_chart,
     precision_chart, swept_chart,
 };
 use crate::error::{Error, Result};
+use crate::file::files_in;
 use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
+use crate::report::table::Table;
 use crate::study::BODY;
 use clap::ValueEnum;
 

@@ -493,6 +493,29 @@ measured = { frequency = [0.1, 1.0, 10.0], storage = [1.0, 2.0, 3.0], loss = [0.
 objective = "exact"
 "#;
 
+/// Cubes that flow beyond a yield stress.
+pub const YIELDING: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+law = "stable-neo-hookean"
+[material.relaxation]
+terms = [{ shear = 0.4, time = 0.5, yield = 30.0 }]
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+quasi-static = true
+duration = 1.0
+step = 0.5
+[[motion.force]]
+group = "zmax"
+force = ["10*t", 0, 0]
+"#;
+
 /// With finite elements that follow a law in motion, explicitly.
 pub const EXPLICIT: &str = r#"
 [mesh]
@@ -552,7 +575,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 20] = [
+pub const ALL: [(&str, &str); 21] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -572,6 +595,7 @@ pub const ALL: [(&str, &str); 20] = [
     ("explicit", EXPLICIT),
     ("creep", CREEP),
     ("relaxed", RELAXED),
+    ("yielding", YIELDING),
     ("dynamic", DYNAMIC),
 ];
 

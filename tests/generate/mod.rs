@@ -1,6 +1,7 @@
 //! Generated code is compiled and run, and compared with the library: constants, rest measures, energies and forces of random
 //! cells with random moduli, for every shipped element and objective.
 
+mod branch;
 mod case;
 mod example;
 mod programs;

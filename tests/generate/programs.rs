@@ -18,7 +18,7 @@ pub struct Outcome {
 }
 
 /// Runs a command in the folder; none if the program is not there.
-fn run(folder: &Path, program: &str, arguments: &[&str]) -> Option<Output> {
+pub fn run(folder: &Path, program: &str, arguments: &[&str]) -> Option<Output> {
     let output = Command::new(program).args(arguments).current_dir(folder).output().ok()?;
     let message = String::from_utf8_lossy(&output.stderr);
     let first: Vec<&str> = message.lines().take(20).collect();
@@ -49,7 +49,7 @@ fn read(cases: &[Case], output: &Output) -> Vec<Outcome> {
     outcomes
 }
 
-fn list(numbers: &[f64]) -> String {
+pub fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|x| word(*x)).collect::<Vec<_>>().join(", ")
 }
 

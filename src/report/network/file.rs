@@ -2,13 +2,13 @@
 
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
-use crate::material::{CellMap, State};
+use crate::material::{CellMap, RelaxationTerm, State};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Network, Support};
 use crate::network::{
     DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, ListedRecord, Lists, LoadErrorsRecord, MaterialDataRecord,
     NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord,
-    TimedForceRecord, TimedPullRecord,
+    RelaxationRecord, TimedForceRecord, TimedPullRecord,
 };
 use crate::number::finite;
 use crate::report::fit_record::FitRecord;
@@ -81,7 +81,10 @@ impl<'a> NetworkFile<'a> {
         let d = mesh.dimension;
         let outcome = self.study.map(|(outcome, _)| outcome);
         let motion = outcome.and_then(|outcome| outcome.motion.as_ref());
-        let gravity = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
+        // That of the motion, or of the first load that has one.
+        let of_motion = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
+        let of_loads = || outcome?.loads.iter().find_map(|load| load.gravity.as_ref());
+        let gravity = of_motion.or_else(of_loads);
         NetworkRecord {
             format: FORMAT.into(),
             version: NETWORK_VERSION,
@@ -205,6 +208,8 @@ fn nodal_load(load: &BodyLoad, d: usize) -> NodalLoadRecord {
     NodalLoadRecord {
         name: load.name.clone(),
         forces: acting.map(|(point, force)| NodalForceRecord { point, force: force.to_vec() }).collect(),
+        gravity: load.gravity.clone(),
+        is_gravity: load.is_gravity,
         held: held(&load.support, d),
     }
 }
@@ -236,6 +241,17 @@ fn drive(motion: &MotionOutcome) -> DriveRecord {
                 axis: pull.axis,
                 displacement: pull.curve.clone(),
                 points: pull.points.clone(),
+            })
+            .collect(),
+        relaxation: motion
+            .relaxation
+            .iter()
+            .map(|&(region, RelaxationTerm { shear, bulk, time, yield_stress })| RelaxationRecord {
+                region,
+                shear,
+                bulk,
+                time,
+                yield_stress,
             })
             .collect(),
     }

@@ -8,6 +8,7 @@ mod bodies;
 mod cantilevers;
 mod choice;
 mod coarse;
+mod creep;
 mod forgetful;
 mod large;
 mod lattices;
@@ -50,7 +51,10 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 24] = [
+const MAKERS: [Maker; 27] = [
+    ("creep bar", creep::bar, false, Kept::Roughly),
+    ("creep yield", creep::yielding, false, Kept::Roughly),
+    ("creep kidney", creep::kidney_let_go, true, Kept::ToRounding),
     ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),

@@ -31,7 +31,9 @@ pub use drive::{Curve, Drive};
 pub use integrator::Integrator;
 pub use ledger::{Account, EnergyBalance};
 pub use limit::{largest_square, largest_square_of_blocks};
-pub use memory::{BranchForm, Decay, LargeMemory, LinearMemory, Memory, RelaxingPart};
+pub use memory::{
+    BranchForm, BranchTerm, Decay, ExplicitMemory, FlowMemory, LargeMemory, LinearMemory, Memory, RelaxingPart,
+};
 pub use motion::{Motion, Options};
 pub use settle::{Step, StepOutcome};
 pub use simulation::Simulation;

@@ -30,6 +30,8 @@ pub(super) struct Resistance<'a> {
     /// The largest coordinate, m.
     pub extent: f64,
     x: Vec<f64>,
+    /// The sum of the squares of the elastic forces before those of relaxing stress are added, N².
+    pub apart: f64,
 }
 
 impl<'a> Resistance<'a> {
@@ -52,6 +54,7 @@ impl<'a> Resistance<'a> {
             held: motion.held(),
             extent: motion.points.iter().fold(0.0, |extent, x| extent.max(x.abs())),
             x: motion.points.to_vec(),
+            apart: 0.0,
         };
         resistance.direct(&vec![0.0; motion.points.len()], true);
         Ok(resistance)
@@ -86,6 +89,11 @@ impl<'a> Resistance<'a> {
     /// Forgets everything that was before the displacements u; false if there is no response.
     pub fn reset(&mut self, u: &[f64]) -> bool {
         self.memory.as_mut().is_none_or(|memory| memory.reset(u))
+    }
+
+    /// Prepares the memory for explicit steps of this length, s.
+    pub fn expect_explicit(&mut self, step: f64) {
+        self.memory = self.memory.take().map(|memory| memory.for_explicit(step));
     }
 
     /// Sets the length of the step at whose end forces are computed, s; zero for the present ones.
@@ -136,8 +144,8 @@ impl<'a> Resistance<'a> {
                 self.model.forces(&self.x, force)
             }
         };
-        let is_remembered = |force: &mut [f64]| match &self.memory {
-            Some(memory) => memory.add(u, force, None).is_some(),
+        let mut is_remembered = |force: &mut [f64]| match &mut self.memory {
+            Some(memory) => memory.pull(u, force),
             None => true,
         };
         is_known && is_remembered(force) && pass::all(force, f64::is_finite)
@@ -153,6 +161,7 @@ impl<'a> Resistance<'a> {
             false => self.model.refill(&self.x, force, elastic)?,
         };
         if let Some(memory) = &self.memory {
+            self.apart = force.iter().map(|f| f * f).sum();
             energy += memory.add(u, force, Some(remembered))?;
         }
         (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)

@@ -130,8 +130,8 @@ impl Trial {
             work += parts[0] * target.delta[dof];
         }
         if c2 == 0.0 {
-            // Without inertia and loads what acts are the forces of held points.
-            acting[1] = self.force.iter().map(|f| f * f).sum();
+            // Without inertia and loads what acts are the forces of held points, and stress that relaxes against what is elastic.
+            acting[1] = self.force.iter().map(|f| f * f).sum::<f64>().max(resistance.apart);
         }
         let drag: f64 = target.velocity.iter().zip(&self.viscous).map(|(v, f)| v * f).sum();
         let acting: f64 = acting.iter().map(|square| square.sqrt()).sum();

@@ -5,11 +5,13 @@
 use super::domains::edge_domains;
 use super::simplices::linear_simplices;
 use super::system::each_cell;
+use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::ShearSprings;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use nalgebra::{Matrix3, Vector3};
+use std::sync::Arc;
 
 /// The material points of a body of isotropic solid cells, or in plane strain.
 #[derive(Debug, Clone)]
@@ -23,6 +25,12 @@ pub struct MaterialPoints {
     gradients: Vec<Vector3<f64>>,
     /// The shear modulus times the volume at rest, J.
     weights: Vec<f64>,
+    /// The shear modulus, Pa.
+    moduli: Vec<f64>,
+    /// The region of the body, as the material numbers them.
+    regions: Vec<usize>,
+    /// The points of cells whose shape functions are those of one element, in their order: the element, and the number of its cells.
+    elements: Vec<(Arc<Element>, usize)>,
 }
 
 /// A material point.
@@ -34,6 +42,10 @@ pub struct MaterialPoint<'a> {
     pub gradients: &'a [Vector3<f64>],
     /// `μ V₀`, J.
     pub weight: f64,
+    /// μ, Pa.
+    pub modulus: f64,
+    /// The number of its region.
+    pub region: usize,
 }
 
 impl MaterialPoints {
@@ -54,32 +66,47 @@ impl MaterialPoints {
             nodes: Vec::new(),
             gradients: Vec::new(),
             weights: Vec::new(),
+            moduli: Vec::new(),
+            regions: Vec::new(),
+            elements: Vec::new(),
         };
         match shear {
-            ShearSprings::Cells => each_cell(mesh, |index, nodes, geometry| {
-                let mu = materials.at(index.block, index.cell).moduli().mu;
-                let points = geometry.gradients.chunks_exact(nodes.len() * d).zip(&geometry.volumes);
-                points.for_each(|(gradients, volume)| all.add(nodes, gradients, mu * volume));
-            }),
+            ShearSprings::Cells => {
+                each_cell(mesh, |index, nodes, geometry| {
+                    let mu = materials.at(index.block, index.cell).moduli().mu;
+                    let region = *material.region().at(index.block, index.cell);
+                    let points = geometry.gradients.chunks_exact(nodes.len() * d).zip(&geometry.volumes);
+                    points.for_each(|(gradients, volume)| all.add(nodes, gradients, mu, *volume, region));
+                });
+                all.elements = mesh.blocks.iter().map(|block| (block.element.clone(), block.cells().len())).collect();
+            }
             ShearSprings::Edges => {
                 let block = linear_simplices(mesh, "shear", "\"cells\": edges", shear.name())?;
                 for domain in edge_domains(mesh, block, material) {
                     let mu: f64 =
                         domain.cells.iter().map(|(cell, share)| share * materials.at(0, *cell).moduli().mu).sum();
-                    all.add(&domain.nodes, &domain.table.gradients, mu * domain.table.weights[0]);
+                    let region = domain.cells.first().map_or(0, |(cell, _)| *material.region().at(0, *cell));
+                    all.add(&domain.nodes, &domain.table.gradients, mu, domain.table.weights[0], region);
                 }
             }
         }
         Ok(all)
     }
 
-    fn add(&mut self, nodes: &[usize], gradients: &[f64], weight: f64) {
+    fn add(&mut self, nodes: &[usize], gradients: &[f64], modulus: f64, volume: f64, region: usize) {
         let d = self.dimension;
         self.nodes.extend_from_slice(nodes);
         self.gradients
             .extend(gradients.chunks_exact(d).map(|g| Vector3::from_fn(|k, _| if k < d { g[k] } else { 0.0 })));
         self.starts.push(self.nodes.len());
-        self.weights.push(weight);
+        self.weights.push(modulus * volume);
+        self.moduli.push(modulus);
+        self.regions.push(region);
+    }
+
+    /// The elements whose shape functions the points of cells have, in their order, each with the number of its cells; none for domains of edges.
+    pub(crate) fn elements(&self) -> &[(Arc<Element>, usize)] {
+        &self.elements
     }
 
     /// The number of points.
@@ -94,10 +121,13 @@ impl MaterialPoints {
 
     /// The points, in their order.
     pub fn each(&self) -> impl Iterator<Item = MaterialPoint<'_>> {
-        self.starts.windows(2).zip(&self.weights).map(|(at, weight)| MaterialPoint {
+        let numbers = self.weights.iter().zip(&self.moduli).zip(&self.regions);
+        self.starts.windows(2).zip(numbers).map(|(at, ((weight, modulus), region))| MaterialPoint {
             nodes: &self.nodes[at[0]..at[1]],
             gradients: &self.gradients[at[0]..at[1]],
             weight: *weight,
+            modulus: *modulus,
+            region: *region,
         })
     }
 }

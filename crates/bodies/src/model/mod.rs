@@ -70,7 +70,7 @@ pub(crate) use numbering::{dofs, places};
 pub(crate) use parts::{PartVectors, Places};
 pub use patches::patch_springs;
 pub use plate::{BendingSprings, plate_springs};
-pub(crate) use prepared::origin;
+pub(crate) use prepared::{BranchRule, Branches, origin};
 pub use prepared::{Precision, PreparedNetwork};
 pub use pressed::PressedFaces;
 pub use pressure::smoothed_pressure;

@@ -153,6 +153,24 @@ pub fn forces() -> Vec<String> {
     vec!["The forces of the network of the cell on its nodes at x in N, [nodes x dimension].".into()]
 }
 
+/// What is said of the function of a branch at rest.
+pub fn branch() -> Vec<String> {
+    vec![
+        "A branch whose stress relaxes with one time tau: springs between the same nodes, with the shear modulus mu".into(),
+        "of the branch. The network beside it has what is left of mu. For steps of the length h, with e = exp(-h/tau),".into(),
+        "mean is (1 - e) tau/h. This writes the sizes of the quadrature points and the constants of the shape at rest x.".into(),
+    ]
+}
+
+/// What is said of the function of a step of a branch.
+pub fn relax() -> Vec<String> {
+    vec![
+        "A step of the branch that ends with the nodes at x: its forces on them in N, and its constants for the next"
+            .into(),
+        "step, which relax towards those of the present shape. left is e, and taken is mean (1 - e).".into(),
+    ]
+}
+
 /// The nodes of every spring with the name of its group; none for a spring on the whole cell.
 fn nodes_of(springs: &Springs) -> Vec<(&str, Vec<usize>)> {
     let pairs = springs.pairs().iter().map(|pair| pair.to_vec());

@@ -61,6 +61,29 @@ impl Program {
         Ok(Program { prefix, heading, functions })
     }
 
+    /// The same file with a branch beside the network whose stress relaxes at large deformation: its constants at rest, and a step of it.
+    ///
+    /// # Errors
+    /// The recipe is no exact network.
+    pub fn with_branch(mut self, element: &Element, recipe: Recipe) -> Result<Program> {
+        if !matches!(recipe, Recipe::Exact(_)) {
+            let expected = "the objective \"exact\": a branch whose stress relaxes is an exact network";
+            let found = format!("\"{}\"", recipe.name());
+            return Err(Error::expected("relaxing", expected, found).of_kind(ErrorKind::Unsupported));
+        }
+        let springs = recipe.springs(element, None)?;
+        let plan = Plan::of(element, &springs);
+        let named = |end: &str| format!("{}_{end}", self.prefix);
+        let cell = Cell::new(element, &springs, plan);
+        cell::branch(&cell);
+        let first = cell.body.finish(named("branch"), listing::branch(), code::Result::Status);
+        let cell = Cell::new(element, &springs, plan);
+        cell::relax(&cell);
+        let step = cell.body.finish(named("relax"), listing::relax(), code::Result::Status);
+        self.functions.extend([first, step]);
+        Ok(self)
+    }
+
     /// The file in a language.
     ///
     /// # Errors

@@ -46,6 +46,26 @@ impl<T: Clone + PartialEq> CellMap<T> {
         }
     }
 
+    /// The values of another kind that follow from these and from others.
+    ///
+    /// # Errors
+    /// This returns the errors of `of`.
+    pub fn try_zip<V: Clone + PartialEq, U: Clone + PartialEq>(
+        &self,
+        other: &CellMap<V>,
+        of: impl Fn(&T, &V) -> Result<U>,
+    ) -> Result<CellMap<U>> {
+        let blocks = match (self, other) {
+            (CellMap::Uniform(a), CellMap::Uniform(b)) => return of(a, b).map(CellMap::Uniform),
+            (CellMap::Each(blocks), _) => blocks.iter().map(Vec::len).collect::<Vec<_>>(),
+            (_, CellMap::Each(blocks)) => blocks.iter().map(Vec::len).collect(),
+        };
+        let block = |(block, cells): (usize, usize)| -> Result<Vec<U>> {
+            (0..cells).map(|cell| of(self.at(block, cell), other.at(block, cell))).collect()
+        };
+        Ok(CellMap::of_blocks(blocks.into_iter().enumerate().map(block).collect::<Result<_>>()?))
+    }
+
     /// Converts the values to those of another kind that follow from them, by a function that cannot fail.
     pub fn map<U: Clone + PartialEq>(&self, of: impl Fn(&T) -> U) -> CellMap<U> {
         match self {

@@ -30,6 +30,28 @@ impl EnergyMap {
         Ok(EnergyMap { laws: laws?.into(), of: self.of.clone() })
     }
 
+    /// The body with another law in place of each, by the region of its cells.
+    ///
+    /// # Errors
+    /// This returns the errors of `of`.
+    pub fn try_map_in(
+        &self,
+        region: &CellMap<usize>,
+        of: impl Fn(usize, &Energy, State) -> Result<Energy>,
+    ) -> Result<EnergyMap> {
+        let both = self.of.try_zip(region, |law, region| Ok((*law, *region)))?;
+        let mut known: Vec<(usize, usize)> = both.values().copied().collect();
+        known.sort_unstable();
+        known.dedup();
+        let law = |&(law, region): &(usize, usize)| -> Result<(Energy, State)> {
+            let (energy, state) = &self.laws[law];
+            Ok((of(region, energy, *state)?, *state))
+        };
+        let laws: Result<Vec<_>> = known.iter().map(law).collect();
+        let of = both.map(|pair| known.binary_search(pair).unwrap_or(0));
+        Ok(EnergyMap { laws: laws?.into(), of })
+    }
+
     /// The laws, each once.
     pub fn laws(&self) -> impl Iterator<Item = &Energy> {
         self.laws.iter().map(|(energy, _)| energy)

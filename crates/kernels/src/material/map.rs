@@ -208,6 +208,16 @@ impl MaterialMap {
         Ok(MaterialMap { materials: Some(materials), moduli, ..self.clone() })
     }
 
+    /// The body with another isotropic material in place of each, by its region.
+    ///
+    /// # Errors
+    /// Some cell is anisotropic, or this returns the errors of `of`.
+    pub fn of_isotropic_in(&self, of: impl Fn(usize, Material) -> Result<Material>) -> Result<MaterialMap> {
+        let materials = self.materials()?.try_zip(&self.region, |material, region| of(*region, *material))?;
+        let moduli = materials.map(|material| Hooke::Isotropic(material.moduli()));
+        Ok(MaterialMap { materials: Some(materials), moduli, ..self.clone() })
+    }
+
     /// The linear law of each cell, see [`Material::moduli`].
     pub fn moduli(&self) -> CellMap<Hooke> {
         self.moduli.clone()

@@ -21,7 +21,7 @@ pub use energy::{Energy, schema};
 pub use energy_map::EnergyMap;
 pub use hooke::{Hooke, Stiffness, strains, voigt};
 pub use map::{LinearMaterial, MaterialMap};
-pub use relaxation::{Relaxation, RelaxationTerm, expect_strains, with_moduli};
+pub use relaxation::{Relaxation, RelaxationTerm, expect_strains, relaxed_material, with_moduli};
 pub use response::Tangent;
 pub use springfit_shipped::MATERIALS as SHIPPED;
 

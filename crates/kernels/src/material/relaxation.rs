@@ -15,6 +15,8 @@ pub struct RelaxationTerm {
     pub bulk: f64,
     /// The relaxation time τ, s.
     pub time: f64,
+    /// The von Mises stress of the term up to which it does not flow, Pa; without one it always flows.
+    pub yield_stress: Option<f64>,
 }
 
 /// `μ(t) = μ (1 − Σ g_i (1 − e^(−t/τ_i)))`, `K(t) = K (1 − Σ k_i (1 − e^(−t/τ_i)))`, with the moduli μ and K of the material: those against a
@@ -48,6 +50,14 @@ impl Relaxation {
                 return Err(Error::expected(format!("terms[{i}]"), "a share of shear or bulk above 0", "none"));
             }
             range::positive("time", term.time, "s").map_err(under)?;
+            if let Some(stress) = term.yield_stress {
+                range::positive("yield", stress, "Pa").map_err(under)?;
+                if term.shear == 0.0 || term.bulk > 0.0 {
+                    let expected = "a term of shear alone, whose stress is compared with \"yield\"";
+                    let found = if term.shear == 0.0 { "none of shear" } else { "one of bulk too" };
+                    return Err(under(Error::expected("yield", expected, found)));
+                }
+            }
         }
         let relaxation = Relaxation { terms };
         for (key, sum) in ["shear", "bulk"].into_iter().zip(relaxation.sums()) {
@@ -73,6 +83,11 @@ impl Relaxation {
         self.terms.iter().all(|term| term.shear == term.bulk)
     }
 
+    /// The number of the first term that yields.
+    pub fn first_yield(&self) -> Option<usize> {
+        self.terms.iter().position(|term| term.yield_stress.is_some())
+    }
+
     /// The shortest relaxation time, s.
     pub fn shortest(&self) -> f64 {
         self.terms.iter().fold(f64::INFINITY, |least, term| least.min(term.time))
@@ -86,11 +101,11 @@ impl Relaxation {
         })
     }
 
-    /// The material in which all that relaxes has relaxed: `μ (1 − Σ g_i)` beside the whole bulk modulus.
+    /// Checks that a body can relax so at large deformation.
     ///
     /// # Errors
-    /// Bulk relaxes too, all of the shear modulus relaxes, the state is one without stress in some direction, or some cell is anisotropic.
-    pub fn rest_of(&self, material: &MaterialMap) -> Result<MaterialMap> {
+    /// Bulk relaxes too, or all of the shear modulus relaxes.
+    pub fn check_large(&self) -> Result<()> {
         let [shear, bulk] = self.sums();
         if bulk > 0.0 {
             let expected =
@@ -102,9 +117,21 @@ impl Relaxation {
                 "shares of shear that add up to less than 1 at large deformation: what is left holds the body together";
             return Err(Error::expected("terms", expected, shear).of_kind(ErrorKind::Unsupported));
         }
-        expect_strains(material)?;
-        material.of_isotropic(|material| with_moduli(material, 1.0 - shear, 1.0))
+        Ok(())
     }
+}
+
+/// The material in which all that relaxes has relaxed: `μ (1 − Σ g_i)` beside the whole bulk modulus, with the series of each region.
+///
+/// # Errors
+/// A region does not relax so, the state is one without stress in some direction, or some cell is anisotropic.
+pub fn relaxed_material(material: &MaterialMap, series: &[Option<Relaxation>]) -> Result<MaterialMap> {
+    series.iter().flatten().try_for_each(Relaxation::check_large)?;
+    expect_strains(material)?;
+    material.of_isotropic_in(|region, material| match series.get(region).and_then(Option::as_ref) {
+        Some(relaxation) => with_moduli(material, 1.0 - relaxation.sums()[0], 1.0),
+        None => Ok(material),
+    })
 }
 
 /// Checks that shear and bulk are apart: no direction is without stress, and every cell is isotropic.
@@ -112,7 +139,9 @@ impl Relaxation {
 /// # Errors
 /// They are not; the kind is `Unsupported`.
 pub fn expect_strains(material: &MaterialMap) -> Result<()> {
-    for own in material.materials()?.values() {
+    let isotropic =
+        |_| Error::expected("terms", "isotropic materials", "an anisotropic one").of_kind(ErrorKind::Unsupported);
+    for own in material.materials().map_err(isotropic)?.values() {
         let found = match own.state() {
             State::Solid | State::PlaneStrain { .. } => continue,
             State::PlaneStress { .. } => "plane stress, in which shear and bulk act together",

@@ -76,7 +76,7 @@ impl NetworkRecord {
         let loads = self.loads.iter().map(|load| {
             let force = |f: &NodalForceRecord| Some(NodalForceRecord { point: moved(f.point)?, ..f.clone() });
             let forces = load.forces.iter().filter_map(force).collect();
-            NodalLoadRecord { name: load.name.clone(), forces, held: held(&load.held) }
+            NodalLoadRecord { forces, held: held(&load.held), ..load.clone() }
         });
         // Nodes are the first points, and stay where they are; so cells and the surface name the same ones.
         Some(NetworkRecord {

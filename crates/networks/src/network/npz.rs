@@ -2,7 +2,7 @@
 
 use super::lists::ListedRecord;
 use super::parts::{ContentPart, Parts};
-use super::record::{HeldRecord, NetworkRecord};
+use super::record::{HeldRecord, NetworkRecord, RelaxationRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
 use crate::mesh::Mesh;
@@ -33,6 +33,7 @@ use zip::write::SimpleFileOptions;
 /// | `moved_of`, `moved_points`, `moved` | p, i32; p, i32; p × 3, f64 | each a point that is held under a load in another way than in `held`: the place of the load, the point, m; NaN where it is free |
 /// | `gravity` | 3, f64 | m/s²; zero where there is none |
 /// | `damping` | f64 | Rayleigh's α, 1/s |
+/// | `relaxation_region`, `relaxation_shear`, `relaxation_bulk`, `relaxation_time`, `relaxation_yield` | r, f64 each | the entry of `[[material]]`, NaN of all; shares of the moduli that relax; s; Pa, 0 without. Absent where nothing relaxes |
 /// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
 ///
 /// # Errors
@@ -118,6 +119,16 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
     let gravity = network.gravity.as_deref().unwrap_or_default();
     file.real("gravity", &[3], spatial(gravity))?;
     file.real("damping", &[], [network.damping.mass])?;
+    let relaxation = network.motion.as_ref().map_or(&[][..], |motion| &motion.relaxation);
+    if !relaxation.is_empty() {
+        let count = [relaxation.len()];
+        let region = |term: &RelaxationRecord| term.region.map_or(f64::NAN, |region| region as f64);
+        file.real("relaxation_region", &count, relaxation.iter().map(region))?;
+        file.real("relaxation_shear", &count, relaxation.iter().map(|term| term.shear))?;
+        file.real("relaxation_bulk", &count, relaxation.iter().map(|term| term.bulk))?;
+        file.real("relaxation_time", &count, relaxation.iter().map(|term| term.time))?;
+        file.real("relaxation_yield", &count, relaxation.iter().map(|term| term.yield_stress.unwrap_or(0.0)))?;
+    }
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
     Ok(file)
 }

@@ -178,6 +178,12 @@ pub struct NodalLoadRecord {
     pub name: String,
     /// Each entry is a force on a point.
     pub forces: Vec<NodalForceRecord>,
+    /// The forces have that of this acceleration of gravity in m/s² on the masses; it is null if there is none.
+    #[serde(default)]
+    pub gravity: Option<Vec<f64>>,
+    /// The load is gravity and nothing else.
+    #[serde(default)]
+    pub is_gravity: bool,
     /// Each entry is a point that is held under this load, with `[[fix]]` and prescribed displacements.
     pub held: Vec<HeldRecord>,
 }
@@ -226,6 +232,26 @@ pub struct DriveRecord {
     pub forces: Vec<TimedForceRecord>,
     /// Each entry is a prescribed displacement in time.
     pub pulls: Vec<TimedPullRecord>,
+    /// Each entry is a term in which stress relaxes: the constants are those against a sudden strain. The list is absent if it does not relax.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub relaxation: Vec<RelaxationRecord>,
+}
+
+/// A term of a Prony series, with which stress relaxes in the motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RelaxationRecord {
+    /// The term belongs to this entry of `[[material]]`, from 0; it is null where all relax alike.
+    pub region: Option<usize>,
+    /// This share of the shear modulus relaxes.
+    pub shear: f64,
+    /// This share of the bulk modulus relaxes.
+    pub bulk: f64,
+    /// The relaxation time is in s.
+    pub time: f64,
+    /// The term does not flow below this von Mises stress in Pa; it is null if it always flows.
+    #[serde(rename = "yield")]
+    pub yield_stress: Option<f64>,
 }
 
 /// A force over time in one direction.

@@ -29,6 +29,15 @@ impl Decay {
         -(-self.steps).exp_m1()
     }
 
+    /// `∫ E/τ dt` over the step, J, of a branch whose energy was `before` and is `after`, J, where its power is constant: `Ė = P − E/τ`. It is never
+    /// negative.
+    pub fn lost(&self, before: f64, after: f64) -> f64 {
+        match self.steps > 0.0 {
+            true => (after * (1.0 / self.mean - 1.0) + before * (1.0 - self.left / self.mean)).max(0.0),
+            false => 0.0,
+        }
+    }
+
     /// What a Maxwell element of unit stiffness dissipates over the step, by the squares of its stretch a at the start, of the change c, and by
     /// their product: `∫ s²/τ dt` of `s = a e^(−t/τ) + c (1 − e^(−t/τ))/x`. The form is never negative.
     pub fn dissipation(&self) -> [f64; 3] {

@@ -25,9 +25,9 @@ pub(super) struct Form {
 }
 
 /// The numbers of a symmetric tensor.
-const SYMMETRIC: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+pub(super) const SYMMETRIC: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 
-fn tensor(numbers: &[f64]) -> Matrix3<f64> {
+pub(super) fn tensor(numbers: &[f64]) -> Matrix3<f64> {
     let mut g = Matrix3::zeros();
     for ((k, l), number) in SYMMETRIC.into_iter().zip(numbers) {
         (g[(k, l)], g[(l, k)]) = (*number, *number);
@@ -55,16 +55,16 @@ impl Shape {
 }
 
 /// What a material point knows of the present shape.
-struct Present {
-    f: Matrix3<f64>,
+pub(super) struct Present {
+    pub f: Matrix3<f64>,
     /// `F⁻ᵀ`.
-    inverse: Matrix3<f64>,
+    pub inverse: Matrix3<f64>,
     /// `J^(2/3)`.
-    size: f64,
+    pub size: f64,
 }
 
 impl Present {
-    fn of(point: &MaterialPoint, x: &[f64], d: usize) -> Option<Present> {
+    pub fn of(point: &MaterialPoint, x: &[f64], d: usize) -> Option<Present> {
         let f = point.deformation(x, d);
         let [a, b, c] = [0, 1, 2].map(|k| f.column(k).into_owned());
         // The columns of J F⁻ᵀ are products of those of F.
@@ -76,6 +76,10 @@ impl Present {
 }
 
 impl Form {
+    pub fn points(&self) -> &MaterialPoints {
+        &self.points
+    }
+
     pub fn new(points: MaterialPoints, kind: BranchForm) -> Form {
         let mut edges: Vec<[usize; 2]> = Vec::new();
         let mut slots = Vec::new();
@@ -146,9 +150,16 @@ impl Form {
         places
     }
 
-    /// The energy with the state `numbers` and the factor c of the content at the positions x, J. Adds the forces, N, unless the list is
+    /// The energy with the state `numbers` and the factor c of the content of each point at the positions x, J. Adds the forces, N, unless the list is
     /// empty, and writes the entries of the tangent, N/m, unless that is. `None` where a point is inverted.
-    pub fn evaluate(&self, numbers: &[f64], c: f64, x: &[f64], force: &mut [f64], tangent: &mut [f64]) -> Option<f64> {
+    pub fn evaluate(
+        &self,
+        numbers: &[f64],
+        c: &dyn Fn(usize) -> f64,
+        x: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Option<f64> {
         let d = self.points.dimension;
         let (constants, own) = numbers.split_at(self.edges.len());
         let mut energy = 0.0;
@@ -175,7 +186,7 @@ impl Form {
         }
         for (i, point) in self.points.each().enumerate() {
             let Present { f, inverse, size } = Present::of(&point, x, d)?;
-            let weight = point.weight;
+            let (weight, c) = (point.weight, c(i));
             energy -= 1.5 * c * weight * size;
             let spatial = point.gradients.iter().map(|g| inverse * g);
             // F G of the tensor of the point.

@@ -3,7 +3,9 @@
 //! Theory: page *Springs that forget* of the book.
 
 use super::decay::Decay;
+use super::explicit::ExplicitMemory;
 use super::form::{BranchForm, Form};
+use super::term::BranchTerm;
 use crate::error::{Error, Result};
 use crate::material::Relaxation;
 use crate::model::{MaterialPoints, displaced};
@@ -63,6 +65,16 @@ impl LargeMemory {
         Ok(memory)
     }
 
+    /// The same memory for explicit steps of the length `step`, s.
+    pub(super) fn for_explicit(&self, step: f64) -> ExplicitMemory {
+        let points = self.form.points();
+        let regions = points.each().fold(0, |most, point| most.max(point.region + 1));
+        let term =
+            |(time, share): (&f64, &f64)| BranchTerm { time: *time, yield_stress: None, shares: vec![*share; regions] };
+        let terms: Vec<BranchTerm> = self.times.iter().zip(&self.shares).map(term).collect();
+        ExplicitMemory::new(points, &self.rest, &terms, step)
+    }
+
     pub(super) fn dofs(&self) -> usize {
         self.rest.len()
     }
@@ -105,24 +117,20 @@ impl LargeMemory {
 
     pub(super) fn add(&self, u: &[f64], force: &mut [f64], tangent: Option<&mut [f64]>) -> Option<f64> {
         let x = displaced(&self.rest, u);
-        self.form.evaluate(&self.during, self.content, &x, force, tangent.unwrap_or_default())
+        self.form.evaluate(&self.during, &|_| self.content, &x, force, tangent.unwrap_or_default())
     }
 
     pub(super) fn advance(&mut self, u: &[f64]) {
         // A step that was computed has a shape with a response.
         let Some(shape) = self.form.shape(&displaced(&self.rest, u)) else { return };
         for (term, state) in self.states.iter_mut().enumerate() {
-            let Decay { steps, left, mean } = self.decays[term];
+            let Decay { left, mean, .. } = self.decays[term];
             for ((g, before), after) in state.iter_mut().zip(&self.target).zip(&shape.target) {
                 *g = left * *g + (mean - left) * before + (1.0 - mean) * after;
             }
             // What is below zero is rounding.
             let energy = shape.energy(state).max(0.0);
-            if steps > 0.0 {
-                // ∫ E/τ dt where the power is constant: Ė = P − E/τ.
-                let lost = energy * (1.0 / mean - 1.0) + self.energies[term] * (1.0 - left / mean);
-                self.dissipated += self.shares[term] * lost.max(0.0);
-            }
+            self.dissipated += self.shares[term] * self.decays[term].lost(self.energies[term], energy);
             self.energies[term] = energy;
         }
         self.target = shape.target;
@@ -130,7 +138,7 @@ impl LargeMemory {
 
     pub(super) fn stored(&self, u: &[f64]) -> Option<f64> {
         // With no step prepared the state during it is the present one.
-        self.form.evaluate(&self.during, self.content, &displaced(&self.rest, u), &mut [], &mut [])
+        self.form.evaluate(&self.during, &|_| self.content, &displaced(&self.rest, u), &mut [], &mut [])
     }
 
     pub(super) fn dissipated(&self) -> f64 {

@@ -90,6 +90,11 @@ impl LinearMemory {
         self.displacement.len()
     }
 
+    /// The number of numbers that are remembered.
+    pub fn numbers(&self) -> usize {
+        self.displacement.len() * (1 + self.creep.len())
+    }
+
     pub(super) fn times(&self) -> &[f64] {
         &self.times
     }

@@ -6,14 +6,21 @@
 //! Theory: page *Springs that forget* of the book.
 
 mod decay;
+mod explicit;
+mod flow;
 mod form;
 mod large;
 mod linear;
+mod term;
+mod yielding;
 
 pub use decay::Decay;
+pub use explicit::ExplicitMemory;
+pub use flow::FlowMemory;
 pub use form::BranchForm;
 pub use large::LargeMemory;
 pub use linear::{LinearMemory, RelaxingPart};
+pub use term::BranchTerm;
 
 /// The memory of a model, beside its elastic forces.
 #[derive(Debug, Clone)]
@@ -22,6 +29,10 @@ pub enum Memory {
     Linear(LinearMemory),
     /// A model at large deformation has this memory.
     Large(Box<LargeMemory>),
+    /// A model at large deformation whose branches yield, or differ by region, has this memory.
+    Flow(Box<FlowMemory>),
+    /// A model at large deformation has this memory in explicit steps.
+    Explicit(Box<ExplicitMemory>),
 }
 
 impl Memory {
@@ -30,28 +41,56 @@ impl Memory {
         matches!(self, Memory::Linear(_))
     }
 
+    /// The memory for explicit steps of the length `step`, s: the same, and faster where it can be.
+    pub fn for_explicit(self, step: f64) -> Memory {
+        match &self {
+            Memory::Large(memory) => Memory::Explicit(Box::new(memory.for_explicit(step))),
+            Memory::Flow(memory) if memory.terms().iter().all(|term| term.yield_stress.is_none()) => {
+                let explicit = ExplicitMemory::new(memory.points(), memory.rest(), memory.terms(), step);
+                Memory::Explicit(Box::new(explicit))
+            }
+            Memory::Linear(_) | Memory::Flow(_) | Memory::Explicit(_) => self,
+        }
+    }
+
     /// The number of degrees of freedom.
     pub fn dofs(&self) -> usize {
         match self {
             Memory::Linear(memory) => memory.dofs(),
             Memory::Large(memory) => memory.dofs(),
+            Memory::Flow(memory) => memory.dofs(),
+            Memory::Explicit(memory) => memory.dofs(),
+        }
+    }
+
+    /// The number of numbers that are remembered from step to step.
+    pub fn numbers(&self) -> usize {
+        match self {
+            Memory::Linear(memory) => memory.numbers(),
+            Memory::Large(memory) => memory.numbers(),
+            Memory::Flow(memory) => memory.numbers(),
+            Memory::Explicit(memory) => memory.numbers(),
         }
     }
 
     /// The shortest relaxation time, s.
     pub fn shortest(&self) -> f64 {
-        let times = match self {
-            Memory::Linear(memory) => memory.times(),
-            Memory::Large(memory) => memory.times(),
-        };
-        times.iter().copied().fold(f64::INFINITY, f64::min)
+        let least = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
+        match self {
+            Memory::Linear(memory) => least(memory.times()),
+            Memory::Large(memory) => least(memory.times()),
+            Memory::Flow(memory) => least(&memory.terms().iter().map(|term| term.time).collect::<Vec<_>>()),
+            Memory::Explicit(memory) => least(memory.times()),
+        }
     }
 
-    /// The positions of the entries that it adds to the lower triangle of the tangent.
+    /// The positions of the entries that it adds to the lower triangle of the tangent; none in explicit steps, which have no tangent.
     pub fn places(&self) -> Vec<(usize, usize)> {
         match self {
             Memory::Linear(memory) => memory.places(),
             Memory::Large(memory) => memory.places(),
+            Memory::Flow(memory) => memory.places(),
+            Memory::Explicit(_) => Vec::new(),
         }
     }
 
@@ -63,6 +102,8 @@ impl Memory {
                 true
             }
             Memory::Large(memory) => memory.reset(u),
+            Memory::Flow(memory) => memory.reset(u),
+            Memory::Explicit(memory) => memory.reset(u),
         }
     }
 
@@ -71,11 +112,13 @@ impl Memory {
         match self {
             Memory::Linear(memory) => memory.prepare(step),
             Memory::Large(memory) => memory.prepare(step),
+            Memory::Flow(memory) => memory.prepare(step),
+            Memory::Explicit(memory) => memory.prepare(step),
         }
     }
 
     /// Adds the forces at the end of a step to the displacements u, N, and writes the entries of the tangent, N/m. Returns the potential of
-    /// these forces, J; `None` if there is no response.
+    /// these forces, J; `None` if there is no response, or if the memory is that of explicit steps.
     pub fn add(&self, u: &[f64], force: &mut [f64], tangent: Option<&mut [f64]>) -> Option<f64> {
         match self {
             Memory::Linear(memory) => {
@@ -83,6 +126,16 @@ impl Memory {
                 Some(0.0)
             }
             Memory::Large(memory) => memory.add(u, force, tangent),
+            Memory::Flow(memory) => memory.add(u, force, tangent),
+            Memory::Explicit(_) => None,
+        }
+    }
+
+    /// Adds the forces at the end of a step to the displacements u, N, to which [`Memory::advance`] then ends it; false if there is no response.
+    pub fn pull(&mut self, u: &[f64], force: &mut [f64]) -> bool {
+        match self {
+            Memory::Explicit(memory) => memory.pull(u, force),
+            Memory::Linear(_) | Memory::Large(_) | Memory::Flow(_) => self.add(u, force, None).is_some(),
         }
     }
 
@@ -91,6 +144,8 @@ impl Memory {
         match self {
             Memory::Linear(memory) => memory.advance(u),
             Memory::Large(memory) => memory.advance(u),
+            Memory::Flow(memory) => memory.advance(u),
+            Memory::Explicit(memory) => memory.advance(),
         }
         self.prepare(0.0);
     }
@@ -100,6 +155,8 @@ impl Memory {
         match self {
             Memory::Linear(memory) => Some(memory.stored(u)),
             Memory::Large(memory) => memory.stored(u),
+            Memory::Flow(memory) => memory.stored(u),
+            Memory::Explicit(memory) => Some(memory.stored()),
         }
     }
 
@@ -108,6 +165,8 @@ impl Memory {
         match self {
             Memory::Linear(memory) => memory.dissipated(),
             Memory::Large(memory) => memory.dissipated(),
+            Memory::Flow(memory) => memory.dissipated(),
+            Memory::Explicit(memory) => memory.dissipated(),
         }
     }
 }

@@ -66,7 +66,10 @@ impl<'a> Simulation<'a> {
         options.check()?;
         motion.check(&options)?;
         let is_implicit = options.integrator != Integrator::SymplecticEuler;
-        let resistance = Resistance::new(&motion, options.linear, is_implicit)?;
+        let mut resistance = Resistance::new(&motion, options.linear, is_implicit)?;
+        if !is_implicit {
+            resistance.expect_explicit(options.step);
+        }
         let dofs = motion.points.len();
         let equations = if is_implicit { Some(resistance.equations(&motion, options.solver)?) } else { None };
         let free = equations.as_ref().map_or(0, |equations| equations.order().len());

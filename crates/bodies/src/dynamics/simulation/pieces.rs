@@ -46,9 +46,10 @@ impl Simulation<'_> {
                 count *= 2;
                 continue;
             }
-            if step.outcome == StepOutcome::NoResponse {
+            if matches!(step.outcome, StepOutcome::NoResponse | StepOutcome::Stalled) {
+                // Where a piece is not solved, the step has no end.
                 self.restore(&before);
-                return step;
+                return Step { outcome: StepOutcome::NoResponse, ..step };
             }
             self.estimate = self.estimate.max(error);
             self.pieces = if error < SMALL * allowed { count / 2 } else { count };

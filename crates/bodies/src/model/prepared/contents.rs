@@ -136,7 +136,7 @@ pub fn is_measured_by_quadrature(spring: &MeasureSpring) -> bool {
 }
 
 /// What is done with a batch of cells.
-trait Visit {
+pub(super) trait Visit {
     /// `room` is memory for the positions of the nodes and the forces on them, `[nodes]` each.
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
@@ -149,7 +149,7 @@ trait Visit {
 
 impl Cells {
     /// Visits all cells, as many at a time as there are lanes.
-    fn visit<V: Visit>(&self, space: usize, visit: V) {
+    pub(super) fn visit<V: Visit>(&self, space: usize, visit: V) {
         match (self.dimension, space) {
             (1, 1) => widest(Batches::<V, 1, 1>(visit, self)),
             (1, 2) => widest(Batches::<V, 1, 2>(visit, self)),
@@ -162,7 +162,13 @@ impl Cells {
 
     /// The nodes of cell number `first + lane`; lanes beyond the last cell repeat the first.
     #[inline(always)]
-    fn gather<T: Packed, N: Coordinate>(&self, x: &[[N; 4]], nodes: &mut [[T; 3]], first: usize, count: usize) {
+    pub(super) fn gather<T: Packed, N: Coordinate>(
+        &self,
+        x: &[[N; 4]],
+        nodes: &mut [[T; 3]],
+        first: usize,
+        count: usize,
+    ) {
         for lane in 0..T::COUNT {
             let cell = first + if lane < count { lane } else { 0 };
             let rows = &self.rows[cell * self.nodes..(cell + 1) * self.nodes];
@@ -177,13 +183,13 @@ impl Cells {
 
     /// `∂N_a/∂ξ_l` at point q of the cells from `first`.
     #[inline(always)]
-    fn gradient<T: Packed, const D: usize>(&self, zero: &T, first: usize, [q, a, l]: [usize; 3]) -> T {
+    pub(super) fn gradient<T: Packed, const D: usize>(&self, zero: &T, first: usize, [q, a, l]: [usize; 3]) -> T {
         self.gradients.at(zero, first, [(q * self.nodes + a) * D + l, self.points * self.nodes * D])
     }
 
     /// `t_l` at point q of the cells from `first`, completed by axes.
     #[inline(always)]
-    fn tangents<T: Packed, const D: usize, const S: usize>(
+    pub(super) fn tangents<T: Packed, const D: usize, const S: usize>(
         &self,
         zero: T,
         first: usize,

@@ -1,14 +1,18 @@
 //! A network prepared for many evaluations of its forces, as a simulation requires: its points are in an order that
 //! keeps neighbours together, and its springs are sorted by kind.
 
+mod branches;
 mod contents;
 mod edges;
 mod laws;
 mod part;
+mod roots;
 mod simplices;
 mod sources;
 mod tables;
 mod tangents;
+
+pub(crate) use branches::{BranchRule, Branches};
 
 use super::network::Network;
 use super::numbering::places;

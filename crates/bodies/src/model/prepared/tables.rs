@@ -5,7 +5,7 @@ use crate::scalar::Packed;
 use std::collections::HashMap;
 
 /// Cells with as many nodes and points.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Cells {
     pub nodes: usize,
     pub dimension: usize,
@@ -18,7 +18,7 @@ pub struct Cells {
 }
 
 /// `∂N_a/∂ξ_l`, `[points × nodes × dimension]`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum Gradients {
     /// All cells share one table, `[points × nodes × dimension]`.
     Shared(Vec<f64>),
@@ -27,7 +27,7 @@ pub enum Gradients {
 }
 
 /// The most lanes of any vector; the others are divisors of it. Tables of fewer cells would leave lanes empty.
-const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 impl Gradients {
     /// The number at that place of the table, for the cells from `first`, a multiple of the lanes.
@@ -45,7 +45,7 @@ impl Gradients {
     }
 
     /// Appends the table of cell number `cell`, the last one so far.
-    fn push(&mut self, cell: usize, table: &[f64]) {
+    pub fn push(&mut self, cell: usize, table: &[f64]) {
         if let Gradients::Own(tables) = self {
             let first = cell / LANES * table.len() * LANES;
             tables.resize(first + table.len() * LANES, 0.0);
@@ -120,4 +120,10 @@ impl Tables {
         self.by_place.insert(table, index);
         index
     }
+}
+
+/// The gradients of a simplex whose tangents are the edges from its first node.
+pub fn simplex_gradients(d: usize) -> Vec<f64> {
+    let of = |a: usize, l: usize| if a == 0 { -1.0 } else { f64::from(u8::from(a == l + 1)) };
+    (0..=d).flat_map(|a| (0..d).map(move |l| of(a, l))).collect()
 }

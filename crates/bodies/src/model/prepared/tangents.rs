@@ -13,7 +13,7 @@ fn cross<T: Packed>(zero: &T, a: &[T; 3], b: &[T; 3]) -> [T; 3] {
 }
 
 #[inline(always)]
-fn dot<T: Packed>(a: &[T; 3], b: &[T; 3]) -> T {
+pub fn dot<T: Packed>(a: &[T; 3], b: &[T; 3]) -> T {
     (a[0].clone() * &b[0]).plus_product(&a[1], &b[1]).plus_product(&a[2], &b[2])
 }
 

@@ -1,6 +1,7 @@
 //! The computations of one cell, written as code: the geometry at its quadrature points by the kernel that computes it, its
 //! spring constants, and the response of its network.
 
+mod branch;
 mod content;
 mod exact;
 mod expression;
@@ -12,6 +13,7 @@ mod published;
 mod solve;
 mod tolerance;
 
+pub use branch::{branch, relax};
 pub use exact::exact;
 pub use least_squares::{LeastSquares, least_squares};
 pub use moduli::{State, moduli};

@@ -20,6 +20,10 @@ pub struct BodyLoad {
     pub support: Support,
     /// The nodal forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
+    /// The acceleration of gravity that is in these forces, m/s²; `None` if there is none.
+    pub gravity: Option<Vec<f64>>,
+    /// Whether the load is gravity and nothing else.
+    pub is_gravity: bool,
     /// The displacements of the finite elements, `[points · dimension]`, m, under the part of the load that was reached.
     pub fem: Vec<f64>,
     /// At large deformation, how the load was applied to the finite elements.

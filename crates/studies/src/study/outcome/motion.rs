@@ -1,6 +1,7 @@
 //! The results of the motion of a scene.
 
 use crate::dynamics::Account;
+use crate::material::RelaxationTerm;
 use crate::model::{Deformation, Support};
 use crate::study::scene::MotionRecipe;
 
@@ -20,6 +21,8 @@ pub struct MotionOutcome {
     pub forces: Vec<TimedForce>,
     /// The displacements over time.
     pub pulls: Vec<TimedPull>,
+    /// The terms in which stress relaxes, each with its region if regions relax unlike; none if it does not.
+    pub relaxation: Vec<(Option<usize>, RelaxationTerm)>,
     /// The finite elements, if they move, then the networks.
     pub models: Vec<ModelMotion>,
 }

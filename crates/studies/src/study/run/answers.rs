@@ -64,6 +64,8 @@ impl Answers {
             name: case.name.clone(),
             support: case.support.clone(),
             forces: forces(case, followed.as_ref(), &mesh),
+            gravity: scene.loads()[i].gravity(scene.loads()),
+            is_gravity: scene.loads()[i].key() == "gravity",
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
             measured: case.measured(&mesh, &fem, work),
             deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),

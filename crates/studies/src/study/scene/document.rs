@@ -137,7 +137,7 @@ impl Scene {
             return Err(Error::expected("material.density", "a number of kg/m³, for [motion] moves masses", "none"));
         }
         if let Some(motion) = &motion {
-            motion.check_relaxing(entry.material.first()).map_err(|e| e.under("motion"))?;
+            motion.check_relaxing(&entry.material).map_err(|e| e.under("motion"))?;
         }
         if entry.output.frequencies > 0 && !entry.material.has_density() {
             return Err(Error::expected("output.frequencies", "a density in [material]", "none"));

@@ -54,6 +54,22 @@ pub enum LoadKind {
 }
 
 impl LoadCase {
+    /// The acceleration of gravity that is in the load, m/s², `[dimension]`, by itself or as one of a sum of `all` loads; `None` if there is none.
+    pub fn gravity(&self, all: &[LoadCase]) -> Option<Vec<f64>> {
+        match &self.kind {
+            // An acceleration is the same everywhere.
+            LoadKind::Single { action: Action::Body(components), is_acceleration: true, .. } => {
+                Some(components.iter().map(|component| component.at(&[])).collect())
+            }
+            LoadKind::Single { .. } => None,
+            LoadKind::Sum(parts) => {
+                let found: Vec<Vec<f64>> = parts.iter().filter_map(|&part| all[part].gravity(all)).collect();
+                let sum = |k: usize| found.iter().map(|gravity| gravity[k]).sum();
+                found.first().map(|first| (0..first.len()).map(sum).collect())
+            }
+        }
+    }
+
     /// The key of what acts.
     pub fn key(&self) -> &'static str {
         match &self.kind {

@@ -101,8 +101,8 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_density")]
     #[schemars(schema_with = "distribution::density_schema")]
     pub density: Option<Distribution>,
-    /// Stress relaxes in a `[motion]`: the moduli are those against a sudden strain, and `relaxation` says what becomes of them. It is the
-    /// same in every entry of `[[material]]`.
+    /// Stress relaxes in a `[motion]`: the moduli are those against a sudden strain, and `relaxation` says what becomes of them. Without
+    /// a law it is the same in every entry of `[[material]]`.
     pub relaxation: Option<RelaxationEntry>,
     /// Loads are solved at large deformation with this law: the name of a shipped one, or a path relative to the scene that ends in
     /// `.toml`. It is there in every entry of `[[material]]` or in none.
@@ -385,7 +385,9 @@ impl MaterialEntries {
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
             same("bending", entry.bending == first.bending)?;
             same("flexural", entry.flexural == first.flexural)?;
-            same("relaxation", entry.relaxation == first.relaxation)?;
+            if entry.law.is_none() {
+                same("relaxation", entry.relaxation == first.relaxation)?;
+            }
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
-use super::material::MaterialEntry;
+use super::material::MaterialEntries;
 use super::part::Part;
 use crate::dynamics::Options;
 use crate::error::{Error, ErrorKind, Result};
@@ -101,8 +101,9 @@ impl MotionRecipe {
     ///
     /// # Errors
     /// Steps are divided and nothing relaxes; or springs would turn without a law, or be linear with one, or forces are in single precision.
-    pub(super) fn check_relaxing(&self, material: &MaterialEntry) -> Result<()> {
-        let (relaxes, has_law) = (material.relaxation.is_some(), material.law.is_some());
+    pub(super) fn check_relaxing(&self, material: &MaterialEntries) -> Result<()> {
+        let relaxes = material.all.iter().any(|entry| entry.relaxation.is_some());
+        let has_law = material.first().law.is_some();
         if !relaxes {
             return match self.options.error {
                 Some(_) => Err(Error::at("error", "belongs to a material with \"relaxation\", found one without")),
@@ -116,7 +117,8 @@ impl MotionRecipe {
                     "true with [material.relaxation] and no law: a history of tensions does not turn with the body"
                 }
             };
-            return Err(Error::expected("linear", expected, self.options.linear).of_kind(ErrorKind::Unsupported));
+            let found = if self.options.linear { "true" } else { "false, which is the default" };
+            return Err(Error::expected("linear", expected, found).of_kind(ErrorKind::Unsupported));
         }
         if self.precision == ForcePrecision::Single {
             let expected = "\"double\" with [material.relaxation]";

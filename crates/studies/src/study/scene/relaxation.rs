@@ -36,6 +36,11 @@ struct TermEntry {
     #[serde(deserialize_with = "value::time")]
     #[schemars(schema_with = "value::time_schema")]
     time: f64,
+    /// The term does not flow while the von Mises stress of the term is below this, in Pa; beyond it flows at the rate of what exceeds it. A term
+    /// with `yield` has no `bulk`, and the material a law.
+    #[serde(default, rename = "yield", deserialize_with = "value::optional_stress")]
+    #[schemars(schema_with = "value::stress_schema")]
+    yield_stress: Option<f64>,
 }
 
 /// Measured moduli, of a relaxation test or of a dynamic one.
@@ -93,7 +98,12 @@ impl RelaxationEntry {
             }
             return measured.series().map_err(|e| e.under("measured"));
         }
-        let term = |term: &TermEntry| RelaxationTerm { shear: term.shear, bulk: term.bulk, time: term.time };
+        let term = |term: &TermEntry| RelaxationTerm {
+            shear: term.shear,
+            bulk: term.bulk,
+            time: term.time,
+            yield_stress: term.yield_stress,
+        };
         Relaxation::new(self.terms.iter().map(term).collect())
     }
 }
@@ -103,7 +113,7 @@ impl MeasuredModuli {
         let of = choice("of", self.of.as_deref(), MeasuredPart::default(), MeasuredPart::named)?;
         let term = |&[shear, time]: &[f64; 2]| {
             let bulk = if of == MeasuredPart::All { shear } else { 0.0 };
-            RelaxationTerm { shear, bulk, time }
+            RelaxationTerm { shear, bulk, time, yield_stress: None }
         };
         let fitted = self.fit()?;
         if fitted.terms.is_empty() {

@@ -4,16 +4,24 @@ use super::document::Scene;
 use crate::material::Relaxation;
 
 impl Scene {
-    /// How the moduli relax, if they do, with the key that says so.
-    pub fn relaxation(&self) -> Option<(String, Relaxation)> {
-        // It has been checked.
-        let checked = self.material.first().relaxation.as_ref()?.check().ok()?;
-        Some((format!("{}.relaxation", self.material.key(0)), checked))
+    /// The key of the relaxation of a region.
+    pub fn relaxation_key(&self, region: usize) -> String {
+        format!("{}.relaxation", self.material.key(region))
+    }
+
+    /// How the moduli of each region relax, if they do in one, with the key of the first that says so.
+    pub fn relaxation(&self) -> Option<(String, Vec<Option<Relaxation>>)> {
+        // They have been checked.
+        let all = &self.material.all;
+        let series: Vec<Option<Relaxation>> =
+            all.iter().map(|entry| entry.relaxation.as_ref().and_then(|entry| entry.check().ok())).collect();
+        let first = series.iter().position(Option::is_some)?;
+        Some((format!("{}.relaxation", self.material.key(first)), series))
     }
 
     /// What must be known of the relaxation, if there is one.
     pub fn relaxation_note(&self) -> Option<String> {
-        let entry = self.material.first().relaxation.as_ref()?;
+        let entry = self.material.all.iter().find_map(|entry| entry.relaxation.as_ref())?;
         let fitted = entry.fitted().map_or(String::new(), |series| {
             let count = series.terms.len();
             format!(

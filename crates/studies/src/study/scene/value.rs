@@ -181,5 +181,6 @@ quantities! {
     area, optional_area, area_schema: Area,
     volume, optional_volume, volume_schema: Volume,
     time, optional_time, time_schema: Time,
+    stress, optional_stress, stress_schema: Pressure,
     mesh_unit, optional_mesh_unit, mesh_unit_schema: MeshUnit,
 }

@@ -155,6 +155,7 @@ pub fn move_models(
         support: planned.support.clone(),
         forces: planned.forces.clone(),
         pulls: planned.pulls.clone(),
+        relaxation: planned.relaxing.as_ref().map_or(Vec::new(), |relaxing| relaxing.terms()),
         models,
     })
 }

@@ -5,7 +5,7 @@ use super::motion::{Planned, move_models};
 use super::relaxing::Relaxing;
 use crate::dynamics::{Curve, Drive};
 use crate::error::{Error, Result};
-use crate::material::{CellMap, EnergyMap, MaterialMap};
+use crate::material::{CellMap, EnergyMap, MaterialMap, Relaxation};
 use crate::mesh::Mesh;
 use crate::model::{Action, Support, lumped_masses, nodal_forces};
 use crate::range;
@@ -43,6 +43,10 @@ impl TimePlan {
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
         let mut motion = scene.motion().map(plan).transpose()?;
         if let (Some(motion), Some((key, relaxation))) = (&mut motion, scene.relaxation()) {
+            for (region, series) in relaxation.iter().enumerate().filter(|_| laws.is_some()) {
+                let at = |e: Error| scene.at(&scene.relaxation_key(region), e);
+                series.iter().try_for_each(Relaxation::check_large).map_err(at)?;
+            }
             let relaxing = Relaxing::new(relaxation, material, laws, scene.fits(), held);
             motion.relaxing = Some(relaxing.map_err(|e| scene.at(&key, e))?);
         }

@@ -2,10 +2,13 @@
 //!
 //! Theory: page *Springs that forget* of the book.
 
-use crate::dynamics::{BranchForm, LargeMemory, LinearMemory, Memory, RelaxingPart};
+use crate::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, LinearMemory, Memory, RelaxingPart};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ShearSprings};
-use crate::material::{EnergyMap, Hooke, Material, MaterialMap, Moduli, Relaxation, expect_strains, with_moduli};
+use crate::material::{
+    EnergyMap, Hooke, Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, expect_strains, relaxed_material,
+    with_moduli,
+};
 use crate::mesh::Mesh;
 use crate::model::{
     Elastic, Entries, LinearElastic, MaterialPoints, Network, check_body, exact_network, finite_elements,
@@ -26,7 +29,8 @@ const LINEAR: f64 = 1e-9;
 /// A body that relaxes.
 #[derive(Debug, Clone)]
 pub struct Relaxing {
-    relaxation: Relaxation,
+    /// The series of each region; a linear body has the same in all.
+    series: Vec<Option<Relaxation>>,
     material: MaterialMap,
     /// The material and the laws in which all that relaxes has relaxed, at large deformation.
     rest: Option<(MaterialMap, EnergyMap)>,
@@ -40,13 +44,20 @@ impl Relaxing {
     /// # Errors
     /// The material or a law does not relax so, or a fit does not serve it. Keys are those of `[material.relaxation]`.
     pub fn new(
-        relaxation: Relaxation,
+        series: Vec<Option<Relaxation>>,
         material: &MaterialMap,
         laws: Option<&EnergyMap>,
         fits: &[NamedFit],
         held: Vec<bool>,
     ) -> Result<Relaxing> {
-        let rest = laws.map(|laws| rest_of(&relaxation, material, laws)).transpose()?;
+        let rest = laws.map(|laws| rest_of(&series, material, laws)).transpose()?;
+        let mut relaxing = Relaxing { series, material: material.clone(), rest, held };
+        let (relaxation, rest) = (relaxing.first().clone(), relaxing.rest.take());
+        if let (None, Some(term)) = (&rest, relaxation.first_yield()) {
+            let expected = "a material with a law: a branch that yields is not linear";
+            let error = Error::expected(format!("terms[{term}].yield"), expected, "none");
+            return Err(error.of_kind(ErrorKind::Unsupported));
+        }
         if rest.is_none() && !relaxation.is_alike() {
             expect_strains(material)?;
         }
@@ -70,12 +81,32 @@ impl Relaxing {
                 return Err(Error::expected("terms", expected, found).of_kind(ErrorKind::Unsupported));
             }
         }
-        Ok(Relaxing { relaxation, material: material.clone(), rest, held })
+        Ok(Relaxing { rest, ..relaxing })
+    }
+
+    /// The series of the first region that relaxes.
+    fn first(&self) -> &Relaxation {
+        self.series.iter().flatten().next().expect("a body that relaxes has a series")
+    }
+
+    fn is_uniform(&self) -> bool {
+        self.series.windows(2).all(|pair| pair[0] == pair[1])
+    }
+
+    /// The terms, each with its region if regions relax unlike.
+    pub fn terms(&self) -> Vec<(Option<usize>, RelaxationTerm)> {
+        if self.is_uniform() {
+            return self.first().terms().iter().map(|term| (None, *term)).collect();
+        }
+        let of = |(region, series): (usize, &Option<Relaxation>)| -> Vec<(Option<usize>, RelaxationTerm)> {
+            series.iter().flat_map(Relaxation::terms).map(|term| (Some(region), *term)).collect()
+        };
+        self.series.iter().enumerate().flat_map(of).collect()
     }
 
     /// The shortest relaxation time, s.
     pub fn shortest(&self) -> f64 {
-        self.relaxation.shortest()
+        self.series.iter().flatten().map(Relaxation::shortest).fold(f64::INFINITY, f64::min)
     }
 
     /// The laws of the finite elements in which all that relaxes has relaxed, at large deformation.
@@ -93,7 +124,7 @@ impl Relaxing {
         }
         check_body(mesh)?;
         let moduli = self.material.moduli();
-        if self.relaxation.is_alike() {
+        if self.first().is_alike() {
             return self.parts(mesh, vec![(finite_elements(mesh, moduli), true)]);
         }
         let split = |hooke: &Hooke, is_shear: bool| {
@@ -119,7 +150,7 @@ impl Relaxing {
             return Ok((Some(rest), self.branches(mesh, exact.shear, BranchForm::Edges)?));
         }
         let own = network.stiffness(&mesh.points);
-        if self.relaxation.is_alike() {
+        if self.first().is_alike() {
             return Ok((None, self.parts(mesh, vec![(own, true)])?));
         }
         let with = |shear: f64, bulk: f64| -> Result<Entries> {
@@ -136,7 +167,7 @@ impl Relaxing {
         let bulk = combined(&[(slope, &own), (-slope, &other)]);
         let shear = combined(&[(1.0 - slope, &own), (slope, &other)]);
         // Constants that may not be negative change as they do for the material where it has relaxed alone.
-        let [left, left_bulk] = self.relaxation.sums().map(|sum| (1.0 - sum).max(LEAST));
+        let [left, left_bulk] = self.first().sums().map(|sum| (1.0 - sum).max(LEAST));
         let relaxed = with(left, left_bulk)?;
         let bent = combined(&[(1.0, &relaxed), (-left, &shear), (-left_bulk, &bulk)]);
         let [off, bent, size] = [&curved, &bent, &own].map(|entries| size(mesh, entries));
@@ -152,12 +183,16 @@ impl Relaxing {
 
     fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
         let points = MaterialPoints::of(mesh, &self.material, shear)?;
-        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, &self.relaxation)?)))
+        if !self.is_uniform() || self.first().first_yield().is_some() {
+            let terms = BranchTerm::of(&self.series);
+            return Ok(Memory::Flow(Box::new(FlowMemory::new(points, &mesh.points, &terms)?)));
+        }
+        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, self.first())?)))
     }
 
     /// The memory of parts of a stiffness, each of shear or not.
     fn parts(&self, mesh: &Mesh, parts: Vec<(Entries, bool)>) -> Result<Memory> {
-        let terms = self.relaxation.terms();
+        let terms = self.first().terms();
         let part = |(entries, is_shear): (Entries, bool)| {
             let shares = terms.iter().map(|term| if is_shear { term.shear } else { term.bulk }).collect();
             RelaxingPart::new(&entries, mesh.points.len(), shares)
@@ -169,10 +204,15 @@ impl Relaxing {
 }
 
 /// The material and the laws in which all that relaxes has relaxed.
-fn rest_of(relaxation: &Relaxation, material: &MaterialMap, laws: &EnergyMap) -> Result<(MaterialMap, EnergyMap)> {
-    let rest = relaxation.rest_of(material)?;
-    let left = 1.0 - relaxation.sums()[0];
-    let laws = laws.try_map(|law, state| {
+fn rest_of(
+    series: &[Option<Relaxation>],
+    material: &MaterialMap,
+    laws: &EnergyMap,
+) -> Result<(MaterialMap, EnergyMap)> {
+    let rest = relaxed_material(material, series)?;
+    let laws = laws.try_map_in(material.region(), |region, law, state| {
+        let Some(relaxation) = series.get(region).and_then(Option::as_ref) else { return Ok(law.clone()) };
+        let left = 1.0 - relaxation.sums()[0];
         if law.has_fibres() || ExactEnergy::of_law(law) != Some(ExactEnergy::StableNeoHookean) {
             let expected = "the law \"stable-neo-hookean\" in a material that relaxes";
             return Err(
