@@ -385,9 +385,7 @@ impl MaterialEntries {
             same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
             same("bending", entry.bending == first.bending)?;
             same("flexural", entry.flexural == first.flexural)?;
-            if entry.law.is_none() {
-                same("relaxation", entry.relaxation == first.relaxation)?;
-            }
+            same("relaxation", entry.law.is_some() || entry.relaxation == first.relaxation)?;
             if entry.law.is_some() != first.law.is_some() {
                 let expected = "a law in every [[material]] or in none";
                 return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));
