@@ -15,6 +15,7 @@ mod norms;
 mod paper;
 mod readme;
 mod related;
+mod shells;
 mod stability;
 mod tensile;
 mod truths;
@@ -49,7 +50,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 22] = [
+const MAKERS: [Maker; 23] = [
     ("forgetful", forgetful::table, false, Kept::Roughly),
     ("norms", norms::table, false, Kept::ToRounding),
     ("readme", readme::table, false, Kept::ToRounding),
@@ -66,6 +67,7 @@ const MAKERS: [Maker; 22] = [
     ("membrane", motion::membrane, false, Kept::ToRounding),
     ("paper-1", paper::first, true, Kept::Roughly),
     ("paper-meshes", paper::meshes, false, Kept::ToRounding),
+    ("shells", shells::table, false, Kept::ToRounding),
     ("stability", stability::table, true, Kept::Magnitude),
     ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),
