@@ -517,4 +517,5 @@ fn scenes_have_strains_on_edges() {
     let scene = roof_scene(folder.path(), 4, "bending = \"plate\"", 1.0, "");
     let levels = converge(&scene, Some(2), &mut |_| {}).unwrap();
     assert_eq!(levels.loads[0].models.len(), 2);
+    assert!(levels.notes.iter().any(|note| note.contains("flat cells")), "{:?}", levels.notes);
 }

@@ -58,7 +58,7 @@ pub use domains::{edge_springs, has_edge_springs};
 pub use elastic::{Body, Elastic, inverted};
 pub use exact::exact_network;
 pub use fibres::{fibre_springs, fibre_springs_of_regions};
-pub use flexure::hinge_flexure;
+pub use flexure::{hinge_flexure, is_flat};
 pub(crate) use gradients::SpringGradients;
 pub use linear::LinearElastic;
 pub use load::{Action, Traction, boundary_forces, nodal_forces};
