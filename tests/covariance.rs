@@ -59,7 +59,8 @@ fn measured(springs: &Springs, s: usize) -> i32 {
             | SpringKind::Patch
             | SpringKind::Fibre
             | SpringKind::Bend
-            | SpringKind::Hinge => {
+            | SpringKind::Hinge
+            | SpringKind::Strain => {
                 unreachable!("no fit has them")
             }
         },

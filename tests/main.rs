@@ -106,6 +106,7 @@ mod selections;
 mod settings;
 mod shapes;
 mod shards;
+mod shells;
 mod sides;
 mod small_loads;
 mod smooth_fills;

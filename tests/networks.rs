@@ -70,6 +70,13 @@ fn measure(network: &NetworkRecord, spring: &SpringRecord, x: &[f64]) -> f64 {
             let values: Vec<f64> = spring.points.iter().flat_map(|p| at(*p)).copied().collect();
             Scope::new(&names).expression(measure.expression.as_ref().unwrap()).unwrap().evaluate(&values)
         }
+        MeasureKind::Squares => {
+            let square = |cell: &springfit::report::ShareRecord| {
+                let [a, b] = [0, 1].map(|i| at(spring.points[cell.nodes[i]]));
+                cell.share * a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+            };
+            measure.cells.iter().map(square).sum()
+        }
         MeasureKind::Turn => {
             let turn = |cell: &springfit::report::ShareRecord| {
                 let [apex, a, b, director] =

@@ -10,7 +10,7 @@ use springfit::material::{Material, State};
 use springfit::mesh::{BoxMesh, CellBlock, Mesh};
 use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
 use springfit::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
-use springfit::springs::{Law, Measure, Patch, Springs};
+use springfit::springs::{Law, Measure, Patch, Springs, Squares, Turns};
 use springfit::stiffness::Geometry;
 use std::sync::Arc;
 
@@ -207,6 +207,20 @@ fn springs_of_any_kind_are_kept() {
         let cells = (0..count).chain([0, 1]).map(|c| (cell(c).iter().map(place).collect(), share)).collect();
         let patch = Measure::Patch(Arc::new(Patch { element: element.clone(), cells }));
         network.others.push(spring(patch, points, 0.1));
+    }
+    // Squared distances in common with the next spring, of another pair, and of the whole list; turns of one triangle, of another, and of hinges.
+    for (pairs, weights) in [
+        ([[0, 1], [1, 2], [0, 2]], [1.0, -2.0, 0.5]),
+        ([[0, 1], [1, 2], [0, 2]], [0.3, 0.1, 0.7]),
+        ([[0, 1], [1, 2], [0, 3]], [0.3, 0.1, 0.7]),
+    ] {
+        let squares = Squares::new(pairs.iter().map(|pair| &pair[..]).zip(weights), 4).unwrap();
+        network.others.push(spring(Measure::Squares(Box::new(squares)), vec![4, 9, 2, 17], 0.3));
+    }
+    for points in [vec![0, 1, 4, 20, 11, 25], vec![0, 1, 4, 20, 11, 25], vec![3, 1, 4, 20, 11, 25]] {
+        let turns = Turns::of_triangle([0.4, -0.3, 1.2]);
+        network.others.push(spring(Measure::Turns(Box::new(turns)), points.clone(), 0.2));
+        network.others.push(spring(Measure::Turns(Box::new(Turns::of_hinge())), points[..4].to_vec(), 0.1));
     }
     check(&network, &mesh.points, &mut random, "all kinds");
     // Each kind by itself, so that one does not hide another.

@@ -207,6 +207,16 @@ impl MeasureRecords {
             found.cells = Some(cells.clone());
             return Ok(found);
         }
+        if let (SpringKind::Strain, Some(cells)) = (kind, &group.cells) {
+            let is_pair = |(nodes, _): &(Vec<usize>, f64)| nodes.len() == 2 && nodes.iter().all(|&a| a < n);
+            if cells.len() != count || !cells.iter().flatten().all(is_pair) {
+                let expected = format!("pairs of points for each of {count} springs");
+                return Err(invalid(py, &format!("{key}.cells"), &expected, cells.len()));
+            }
+            found.base = plain(MeasureKind::Squares);
+            found.cells = Some(cells.clone());
+            return Ok(found);
+        }
         if let Some(cells) = &group.cells {
             let expected =
                 || invalid(py, &format!("{key}.cells"), &format!("a list for each of {count} springs"), cells.len());

@@ -36,7 +36,7 @@ fn element_of(measure: &Measure) -> Option<&str> {
     match measure {
         Measure::Content(element) | Measure::PointContent(element, _) => Some(&element.name),
         Measure::Patch(patch) => Some(&patch.element.name),
-        Measure::Length | Measure::Span(_) | Measure::Function(_) | Measure::Turns(_) => None,
+        Measure::Length | Measure::Span(_) | Measure::Function(_) | Measure::Turns(_) | Measure::Squares(_) => None,
     }
 }
 
@@ -84,6 +84,7 @@ pub fn record<'py>(py: Python<'py>, springs: &[&MeasureSpring], d: usize) -> PyR
     let cells_of = |spring: &MeasureSpring| match &spring.measure {
         Measure::Patch(patch) => Some(patch.cells.clone()),
         Measure::Turns(turns) => Some(turns.iter().map(|(places, weight)| (places.to_vec(), weight)).collect()),
+        Measure::Squares(squares) => Some(squares.iter().map(|(places, weight)| (places.to_vec(), weight)).collect()),
         _ => None,
     };
     if cells_of(springs[0]).is_some() {

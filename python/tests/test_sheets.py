@@ -66,3 +66,35 @@ def test_directors_are_the_element_of_morley(poisson, shift):
     found = rows @ (stiffness @ rows.T)
     expected = plate.toarray()
     assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("bending", ["none", "plate"])
+def test_strains_on_edges_are_in_arrays(bending):
+    """Springs on strains from their arrays alone: sums of squared distances of pairs of points."""
+    points, cells = squares(4, 0.3)
+    roof = np.column_stack([points[:, 0], np.sin(points[:, 1]), np.cos(points[:, 1])])
+    net = sf.run({
+        "mesh": sf.Mesh(roof, {"tri3": cells}),
+        "material": {"young": 1e4, "poisson": 0.3, "thickness": 0.05, "bending": bending},
+        "fit": [{"objective": "exact", "shear": "edges"}],
+        "fix": [{"where": "x < 0.3"}],
+        "load": [{"where": "x > 0.9", "force": [0, 1, 0]}],
+    }).networks["exact edges"]
+    edges = {tuple(sorted(edge)) for cell in cells for edge in zip(cell, np.roll(cell, 1))}
+    (strains,) = [kind for kind in net.contents if kind["kind"] == "strain" and kind["points"].shape[1] == 4]
+    (rim,) = [kind for kind in net.contents if kind["kind"] == "strain" and kind["points"].shape[1] == 3]
+    assert len(strains["constants"]) + len(rim["constants"]) == 3 * len(edges)
+    assert strains["unit"] == "N*m" and min(strains["constants"].min(), rim["constants"].min()) > 0
+
+    rng = np.random.default_rng(4)
+    x = net.points + 0.1 * rng.uniform(-1, 1, net.points.shape)
+    membrane = sf.Network(net.points, [], [], contents=[strains, rim])
+    energy = 0.0
+    for kind in (strains, rim):
+        for row, pairs, constant, rest in zip(kind["points"], kind["cells"], kind["constants"], kind["rest"]):
+            c = sum(share * np.sum((x[row[b]] - x[row[a]]) ** 2) for (a, b), share in pairs)
+            energy += constant * (c - rest) ** 2 / 2
+    assert membrane.energy(x) == pytest.approx(energy, rel=1e-12)
+    step, v = 1e-6, rng.uniform(-1, 1, x.shape)
+    slope = (net.energy(x + step * v) - net.energy(x - step * v)) / (2 * step)
+    assert slope == pytest.approx(-np.sum(net.forces(x) * v), rel=1e-6)

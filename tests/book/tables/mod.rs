@@ -17,6 +17,7 @@ mod norms;
 mod paper;
 mod readme;
 mod related;
+mod shells;
 mod stability;
 mod tensile;
 mod truths;
@@ -51,7 +52,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 27] = [
+const MAKERS: [Maker; 28] = [
     ("creep bar", creep::bar, false, Kept::Roughly),
     ("creep yield", creep::yielding, false, Kept::Roughly),
     ("creep kidney", creep::kidney_let_go, true, Kept::ToRounding),
@@ -73,6 +74,7 @@ const MAKERS: [Maker; 27] = [
     ("membrane", motion::membrane, false, Kept::ToRounding),
     ("paper-1", paper::first, true, Kept::Roughly),
     ("paper-meshes", paper::meshes, false, Kept::ToRounding),
+    ("shells", shells::table, false, Kept::ToRounding),
     ("stability", stability::table, true, Kept::Magnitude),
     ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),

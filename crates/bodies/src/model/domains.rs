@@ -9,6 +9,7 @@
 use super::network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use super::shares::{LengthShare, SharedSpring};
 use super::simplices::linear_simplices;
+use super::strains::{check_strains, has_strains, strain_springs};
 use super::system::each_cell;
 use crate::element::{SpringKind, Tabulation};
 use crate::error::Result;
@@ -21,13 +22,16 @@ use std::sync::Arc;
 
 /// The springs of the domains of all edges: with `F = Σ_c s_c F_c/Σ_c s_c`, s_c the shares of the volumes of the cells at
 /// the edge, they have the energy `Σ_c s_c W(F)`. With `volume = "patches"` they lack the part of λ, which
-/// [`patch_springs`](super::patch_springs) add.
+/// [`patch_springs`](super::patch_springs) add. Surfaces of triangles in space have springs on the strains of the domains.
 ///
 /// # Errors
 /// The mesh has cells of several kinds, or cells other than triangles of three and tetrahedra of four nodes in a space
-/// of their own dimension; or the network has no such form (kind `Unsupported`).
+/// of their own dimension and triangles of three in space; or the network has no such form (kind `Unsupported`).
 pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFit) -> Result<Network> {
     let material = material.into();
+    if has_strains(mesh) {
+        return strain_springs(mesh, &material, fit);
+    }
     let (block, springs) = parts(mesh, &material, fit)?;
     let is_uniform = matches!(material.materials()?, CellMap::Uniform(_));
     let domains = edge_domains(mesh, block, &material);
@@ -88,7 +92,7 @@ pub(crate) fn network_of<'a>(
 
 /// Whether a body has [`edge_springs`]; no spring is computed.
 pub fn has_edge_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit) -> bool {
-    parts(mesh, material, fit).is_ok()
+    if has_strains(mesh) { check_strains(fit).is_ok() } else { parts(mesh, material, fit).is_ok() }
 }
 
 /// The cells of the mesh, and what their domains have in common.

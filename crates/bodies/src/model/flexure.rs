@@ -70,6 +70,11 @@ fn of_edge(mesh: &Mesh, axes: &[[f64; 3]; 3], [a, b]: [usize; 2], springs: &[&Me
     own - mixed * mixed.transpose() / of_director
 }
 
+/// Whether the nodes of a surface are in one plane.
+pub fn is_flat(mesh: &Mesh) -> bool {
+    plane(mesh).is_some()
+}
+
 /// Two axes in the plane of the nodes, and its normal; `None` if they are not in a plane.
 fn plane(mesh: &Mesh) -> Option<[[f64; 3]; 3]> {
     let nodes = mesh.blocks.first()?.cells().next()?;

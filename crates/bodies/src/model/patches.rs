@@ -58,6 +58,7 @@ pub fn patch_springs(
     let moduli = &material.materials()?.map(Material::moduli);
     let law = match fit.energy {
         ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. } => None,
+        ExactEnergy::StVenantKirchhoff => return Err(fit.energy.contents_alone()),
         ExactEnergy::NeoHookean => Some(Arc::new(Law::parse(NEO_HOOKEAN)?)),
     };
     let spring = |parts: &[Part]| {

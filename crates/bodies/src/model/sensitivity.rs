@@ -231,7 +231,12 @@ fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
     let of = |element: &Element| (element.dimension() == d).then_some(d);
     match &spring.measure {
         Measure::Content(element) | Measure::PointContent(element, _) => of(element),
-        Measure::Length | Measure::Span(_) | Measure::Patch(_) | Measure::Turns(_) | Measure::Function(_) => None,
+        Measure::Length
+        | Measure::Span(_)
+        | Measure::Patch(_)
+        | Measure::Turns(_)
+        | Measure::Squares(_)
+        | Measure::Function(_) => None,
     }
 }
 

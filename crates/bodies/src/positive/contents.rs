@@ -33,7 +33,9 @@ impl Contents {
             let tension = spring.tension(c);
             let is_content = match spring.measure {
                 Measure::Content(_) | Measure::PointContent(..) | Measure::Function(_) => true,
-                Measure::Length | Measure::Patch(_) | Measure::Span(_) | Measure::Turns(_) => false,
+                Measure::Length | Measure::Patch(_) | Measure::Span(_) | Measure::Turns(_) | Measure::Squares(_) => {
+                    false
+                }
             };
             if !is_content || tension >= 0.0 {
                 continue;

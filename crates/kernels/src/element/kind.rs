@@ -44,6 +44,9 @@ pub enum SpringKind {
     /// The turn of a triangle about one of its edges, from its plane to a director or to the apex of another triangle, in rad. For sheets that bend only.
     #[serde(skip)]
     Hinge,
+    /// A weighted sum of the squared distances of some pairs of points: a component of the strain of a surface at an edge. For exact networks only.
+    #[serde(skip)]
+    Strain,
 }
 
 crate::named!(SpringKind {
@@ -59,6 +62,7 @@ crate::named!(SpringKind {
     "fibre" => Fibre,
     "bend" => Bend,
     "hinge" => Hinge,
+    "strain" => Strain,
 });
 
 /// The longest list of nodes of a spring, that of the polygon of an area.
@@ -166,6 +170,15 @@ impl SpringKind {
             SpringKind::Hinge => Kind {
                 nodes: 4..=4,
                 least_dimension: 3,
+                content: None,
+                symmetry: Symmetry::Ordered,
+                in_element_files: false,
+                unit: "N*m",
+                formula: None,
+            },
+            SpringKind::Strain => Kind {
+                nodes: 3..=4,
+                least_dimension: 2,
                 content: None,
                 symmetry: Symmetry::Ordered,
                 in_element_files: false,

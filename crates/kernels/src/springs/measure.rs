@@ -2,6 +2,7 @@
 
 use super::content::Content;
 use super::patch::Patch;
+use super::squares::Squares;
 use super::turns::Turns;
 use crate::element::{Element, Formula, SpringKind, Tabulation, dot};
 use crate::error::{Error, ErrorKind, Result};
@@ -24,6 +25,8 @@ pub enum Measure {
     Patch(Arc<Patch>),
     /// A weighted sum of turns of triangles about their edges; behind a pointer, so that a measure is of two words.
     Turns(Box<Turns>),
+    /// A weighted sum of squared distances, behind a pointer as well.
+    Squares(Box<Squares>),
     /// A function of the coordinates of the points, in the order x₀, y₀, (z₀,) x₁, …
     Function(Arc<Expr>),
 }
@@ -93,6 +96,7 @@ impl Measure {
             Measure::Span(table) => Content::of_point(table, 0, x).jet(),
             Measure::Patch(patch) => patch.jet(x, dimension),
             Measure::Turns(turns) => turns.jet(x),
+            Measure::Squares(squares) => squares.jet(x, dimension),
             Measure::Function(function) => Jet::evaluate(function, x),
         }
     }
@@ -106,6 +110,7 @@ impl Measure {
             Measure::Span(table) => Content::of_point(table, 0, x).value(),
             Measure::Patch(patch) => patch.value(x, dimension),
             Measure::Turns(turns) => turns.value(x),
+            Measure::Squares(squares) => squares.value(x, dimension),
             Measure::Function(function) => function.evaluate(x),
         }
     }
@@ -120,6 +125,7 @@ impl Measure {
             Measure::Span(table) => Content::of_point(table, 0, x).gradient(),
             Measure::Patch(patch) => patch.gradient(x, dimension),
             Measure::Turns(turns) => turns.gradient(x),
+            Measure::Squares(squares) => squares.gradient(x, dimension),
         }
     }
 

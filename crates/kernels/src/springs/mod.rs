@@ -12,6 +12,7 @@ mod law;
 mod measure;
 mod patch;
 mod rational;
+mod squares;
 mod turns;
 mod vector;
 
@@ -20,6 +21,7 @@ pub(crate) use law::AskedResponse;
 pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
+pub use squares::Squares;
 pub use turns::{BEND_POINTS, HINGE_POINTS, Turns, turn_points};
 pub use vector::{cross, distance, dot, norm, unit};
 

@@ -30,7 +30,7 @@ impl<'a> Balance<'a> {
         }
         let measure = &self.network.measures[spring.measure];
         match (measure.kind, &measure.expression) {
-            (MeasureKind::Length | MeasureKind::Turn, _) => Ok(()),
+            (MeasureKind::Length | MeasureKind::Turn | MeasureKind::Squares, _) => Ok(()),
             (MeasureKind::Content, _) => measure.terms.iter().try_for_each(|term| {
                 let columns = term.gradients.iter().map(Vec::len).max().unwrap_or(0);
                 let column = |j: usize| term.gradients.iter().map(move |row| row.get(j).copied().unwrap_or(0.0));

@@ -58,7 +58,7 @@ impl Measures {
 fn identity(measure: &Measure) -> Option<Identity> {
     match measure {
         Measure::Turns(turns) if **turns == Turns::of_hinge() => Some(Identity::Hinge),
-        Measure::Length | Measure::Patch(_) | Measure::Turns(_) => None,
+        Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Squares(_) => None,
         Measure::Content(element) => Some(Identity::Cell(Arc::as_ptr(element) as usize)),
         Measure::PointContent(element, q) => Some(Identity::Point(Arc::as_ptr(element) as usize, *q)),
         Measure::Span(table) => Some(Identity::Shared(Arc::as_ptr(table) as usize)),
@@ -92,6 +92,10 @@ fn record(measure: &Measure, points: usize, dimension: usize) -> MeasureRecord {
         Measure::Turns(turns) => {
             let turn = |(places, share): ([usize; 4], f64)| ShareRecord { nodes: places.to_vec(), share };
             MeasureRecord { cells: turns.iter().map(turn).collect(), ..plain(MeasureKind::Turn) }
+        }
+        Measure::Squares(squares) => {
+            let square = |(places, share): ([usize; 2], f64)| ShareRecord { nodes: places.to_vec(), share };
+            MeasureRecord { cells: squares.iter().map(square).collect(), ..plain(MeasureKind::Squares) }
         }
         Measure::Function(function) => {
             let names = coordinate_names(points, dimension);

@@ -6,7 +6,7 @@ use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{CellBlock, Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
-use crate::springs::{Law, Measure, Patch, Turns};
+use crate::springs::{Law, Measure, Patch, Squares, Turns};
 use crate::symbolic::Scope;
 use smallvec::SmallVec;
 use std::collections::{BTreeMap, HashMap};
@@ -76,6 +76,7 @@ impl Measuring {
             }
             MeasureKind::Content => self.content(record, kind, points),
             MeasureKind::Turn => turns(record, points),
+            MeasureKind::Squares => squares(record, points),
         }
     }
 
@@ -141,6 +142,16 @@ fn turns(record: &MeasureRecord, points: usize) -> Result<Measure> {
         Error::expected("cells", expected, "others")
     })?;
     Ok(Measure::Turns(Box::new(turns)))
+}
+
+/// A weighted sum of squared distances.
+fn squares(record: &MeasureRecord, points: usize) -> Result<Measure> {
+    let listed = record.cells.iter().map(|cell| (&cell.nodes[..], cell.share));
+    let squares = Squares::new(listed, points).ok_or_else(|| {
+        let expected = format!("pairs of two different places below {points}");
+        Error::expected("cells", expected, "others")
+    })?;
+    Ok(Measure::Squares(Box::new(squares)))
 }
 
 fn are_same(own: &[TermRecord], given: &[TermRecord]) -> bool {

@@ -197,6 +197,9 @@ fn advice(spring: &SpringRecord, measure: &MeasureRecord, dimension: usize) -> &
         _ if measure.kind == MeasureKind::Turn => {
             "bending = \"hinges\" in the fit has springs on the angles between triangles"
         }
+        _ if measure.kind == MeasureKind::Squares => {
+            "springs on strains are held by no program: objective = \"offdiag\" with nonnegative = true has springs on lengths alone"
+        }
         _ if is_embedded => {
             "springs on the areas of curved membranes and on the lengths of rods in space are held by no program: objective = \"offdiag\" with \
              nonnegative = true has springs on lengths alone"

@@ -118,11 +118,16 @@ fn check(network: &NetworkRecord) -> Result<()> {
         for (size, term) in sizes.flat_map(|size| measure.terms.iter().map(move |term| (size, term))) {
             length(format!("measures[{m}].terms.gradients"), size, term.gradients.len())?;
         }
+        let places = match measure.kind {
+            MeasureKind::Turn => 4,
+            MeasureKind::Squares => 2,
+            MeasureKind::Length | MeasureKind::Content | MeasureKind::Expression => continue,
+        };
         if measure.kind == MeasureKind::Turn {
             length("dimension".into(), 3, d)?;
-            for (c, cell) in measure.cells.iter().enumerate() {
-                length(format!("measures[{m}].cells[{c}].nodes"), 4, cell.nodes.len())?;
-            }
+        }
+        for (c, cell) in measure.cells.iter().enumerate() {
+            length(format!("measures[{m}].cells[{c}].nodes"), places, cell.nodes.len())?;
         }
     }
     let mut balance = Balance::of(network);

@@ -317,6 +317,8 @@ pub enum MeasureKind {
     /// The sum of the turns of the `cells`, each times its share in m. The nodes of such a cell are the apex of a triangle, the ends a and b of an edge as the triangle runs
     /// through it, and the director of the edge. The turn is the angle about the edge from the conormal, which points out of the triangle, to the director.
     Turn,
+    /// The sum of the squared distances of the two nodes of each of the `cells`, each times its share in 1/m².
+    Squares,
     /// An expression.
     Expression,
 }

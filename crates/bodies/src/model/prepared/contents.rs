@@ -53,7 +53,11 @@ impl Contents {
                 Measure::Content(element) => (&element.tabulation, None),
                 Measure::PointContent(element, q) => (&element.tabulation, Some(*q as usize)),
                 Measure::Span(table) => (&**table, Some(0)),
-                Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Function(_) => continue,
+                Measure::Length
+                | Measure::Patch(_)
+                | Measure::Turns(_)
+                | Measure::Squares(_)
+                | Measure::Function(_) => continue,
             };
             let at = tables.cell(table, spring.points.iter().map(|&p| place[p] as u32).collect());
             found.push((s, table, point, at));
@@ -131,7 +135,7 @@ impl Contents {
 pub fn is_measured_by_quadrature(spring: &MeasureSpring) -> bool {
     match &spring.measure {
         Measure::Content(_) | Measure::PointContent(..) | Measure::Span(_) => true,
-        Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Function(_) => false,
+        Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Squares(_) | Measure::Function(_) => false,
     }
 }
 

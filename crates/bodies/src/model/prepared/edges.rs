@@ -119,8 +119,9 @@ pub fn is_bar(spring: &MeasureSpring) -> bool {
     matches!(spring.measure, Measure::Length) && spring.points.len() == 2
 }
 
+/// Adds the force `stress · r` at j, and its opposite at i.
 #[inline(always)]
-fn add<N: Coordinate, C: Coordinates<N>>(stress: N, r: C, [i, j]: [u32; 2], force: &mut [[N; 4]]) {
+pub fn add<N: Coordinate, C: Coordinates<N>>(stress: N, r: C, [i, j]: [u32; 2], force: &mut [[N; 4]]) {
     let pull = r.scaled(stress).turned().turned();
     let [i, j] = [i as usize, j as usize];
     let at = pull.load(&force[i]).minus(pull);

@@ -9,8 +9,10 @@ mod part;
 mod roots;
 mod simplices;
 mod sources;
+mod strains;
 mod tables;
 mod tangents;
+mod turns;
 
 pub(crate) use branches::{BranchRule, Branches};
 
@@ -25,7 +27,7 @@ use sources::Sources;
 use std::sync::Mutex;
 
 /// The network with faster loops and the same results up to rounding. Springs on lengths, on contents of cells and of their
-/// quadrature points, on fibres, and on patches of simplices are evaluated in a fraction of the time; a large network is evaluated in parts
+/// quadrature points, on fibres, on patches of simplices, on strains and on turns are evaluated in a fraction of the time; a large network is evaluated in parts
 /// on all threads, with the same bits on any number of them. It owns the memory of one evaluation; others at the same time take their own.
 ///
 /// N are the numbers of its forces: with `f32` they are rounded to 6·10⁻⁸ of what its springs would pull if they measured from zero.

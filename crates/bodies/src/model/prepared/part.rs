@@ -3,6 +3,8 @@
 use super::contents::{Contents, ContentsRoom, is_measured_by_quadrature};
 use super::edges::{Bars, Edges, is_bar};
 use super::simplices::{Simplices, Tensions, measures_simplices};
+use super::strains::{Strains, is_strain};
+use super::turns::{Folds, is_fold};
 use crate::model::network::{LengthSpring, MeasureSpring, Network};
 use crate::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 
@@ -20,6 +22,8 @@ pub struct Part<N> {
     bars: Bars<N>,
     simplices: Simplices<N>,
     contents: Contents,
+    strains: Strains<N>,
+    folds: Folds,
 }
 
 /// What an evaluation of a part needs.
@@ -72,6 +76,8 @@ pub fn parts<N: Coordinate>(network: &Network, order: &[usize]) -> (Vec<Part<N>>
             spring if measures_simplices(spring, network.dimension) => &mut draft.cells,
             spring if is_bar(spring) => &mut draft.bars,
             spring if is_measured_by_quadrature(spring) => &mut draft.contents,
+            spring if is_strain(spring) => &mut draft.strains,
+            spring if is_fold(spring) && network.dimension == 3 => &mut draft.folds,
             _ => &mut rest,
         };
         kind.push(s);
@@ -87,13 +93,16 @@ struct Draft<'a> {
     cells: Vec<usize>,
     bars: Vec<usize>,
     contents: Vec<usize>,
+    strains: Vec<usize>,
+    folds: Vec<usize>,
 }
 
 impl Draft<'_> {
     /// `place` is the row of each point in the whole network.
     fn finish<N: Coordinate>(self, network: &Network, place: &[usize]) -> Part<N> {
-        let Draft { lengths, cells, bars, contents } = self;
-        let others = [&cells, &bars, &contents].into_iter().flatten().flat_map(|s| &network.others[*s].points);
+        let Draft { lengths, cells, bars, contents, strains, folds } = self;
+        let of_measures = [&cells, &bars, &contents, &strains, &folds];
+        let others = of_measures.into_iter().flatten().flat_map(|s| &network.others[*s].points);
         let mut order: Vec<usize> = lengths.iter().flat_map(|spring| &spring.points).chain(others).copied().collect();
         order.sort_unstable_by_key(|point| place[*point]);
         order.dedup();
@@ -104,6 +113,8 @@ impl Draft<'_> {
             bars: Bars::new(&lengths, &network.others, &bars, &own),
             simplices: Simplices::new(network, &cells, &own),
             contents: Contents::new(network, &contents, &own),
+            strains: Strains::new(network, &strains, &own),
+            folds: Folds::new(network, &folds, &own),
             is_in_order: order.iter().copied().eq(0..order.len()),
             order,
         }
@@ -185,6 +196,8 @@ impl<N: Coordinate, const D: usize> CoordinatesWork<N> for Pull<'_, N, D> {
         let mut sound = part.bars.pull(zero, others, x, force);
         sound &= part.simplices.pull::<C, D>(zero, others, x, &mut work.tensions, force);
         sound &= part.contents.pull(D, others, x, &mut work.contents, force);
+        sound &= part.strains.pull(zero, x, force);
+        sound &= part.folds.pull(x, force);
         sound
     }
 }

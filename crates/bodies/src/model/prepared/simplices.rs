@@ -160,7 +160,7 @@ pub fn measures_simplices(spring: &MeasureSpring, dimension: usize) -> bool {
         Measure::Patch(patch) => {
             patch.element.dimension() == dimension && patch.cells.iter().all(|(nodes, _)| nodes.len() == dimension + 1)
         }
-        Measure::Length | Measure::Span(_) | Measure::Turns(_) | Measure::Function(_) => false,
+        Measure::Length | Measure::Span(_) | Measure::Turns(_) | Measure::Squares(_) | Measure::Function(_) => false,
     }
 }
 

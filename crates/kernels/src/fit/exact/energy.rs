@@ -24,12 +24,16 @@ pub enum ExactEnergy {
         /// The share s of the shear modulus, from 0 to 1, that belongs to the second invariant.
         share: f64,
     },
+    /// `λ/2 (tr E)² + μ E:E` with Green's strain `E = ½ (FᵀF − I)`: the law of Hooke in these strains. On surfaces in space it has springs on strains of the domains of
+    /// edges, without stress across them.
+    StVenantKirchhoff,
 }
 
 crate::named!(ExactEnergy {
     "stable-neo-hookean" => StableNeoHookean,
     "neo-hookean" => NeoHookean,
     "stable-mooney-rivlin" => StableMooneyRivlin { share: 0.25 },
+    "st-venant-kirchhoff" => StVenantKirchhoff,
 });
 
 /// The deformations at which two energies are compared: `I1`, `I2` and `J` of some deformations that are not rotations.
@@ -65,7 +69,35 @@ impl ExactEnergy {
                 mu / 2.0 * ((1.0 - share) * (i1 - 3.0) + share * (i2 - 3.0)) - mu * (1.0 + share) * (j - 1.0)
                     + (lambda + mu * (1.0 - share)) / 2.0 * square
             }
+            ExactEnergy::StVenantKirchhoff => {
+                // `tr E = (I1 − 3)/2` and `4 E:E = tr C² − 2 tr C + 3` with `tr C² = I1² − 2 I2`.
+                let trace = (i1 - 3.0) / 2.0;
+                lambda / 2.0 * trace * trace + mu / 4.0 * (i1 * i1 - 2.0 * i2 - 2.0 * i1 + 3.0)
+            }
         }
+    }
+
+    /// The names of the energies of springs on lengths and contents.
+    pub fn of_contents() -> Vec<&'static str> {
+        let all = ExactEnergy::all().filter(|energy| energy.has_contents().is_ok());
+        all.map(|energy| energy.name()).collect()
+    }
+
+    /// Checks that the energy is that of springs on lengths and contents.
+    ///
+    /// # Errors
+    /// It is that of springs on strains; the kind is `Unsupported`.
+    pub fn has_contents(&self) -> Result<()> {
+        match self {
+            ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean | ExactEnergy::StableMooneyRivlin { .. } => Ok(()),
+            ExactEnergy::StVenantKirchhoff => Err(self.contents_alone()),
+        }
+    }
+
+    /// The error of an energy that has no springs on contents.
+    pub fn contents_alone(&self) -> Error {
+        let expected = "another energy: only shear = \"edges\" on a surface in space has springs on strains";
+        Error::expected("energy", expected, format!("\"{}\"", self.name())).of_kind(ErrorKind::Unsupported)
     }
 
     /// Sets the share of the shear modulus that belongs to the second invariant.
@@ -78,7 +110,7 @@ impl ExactEnergy {
                 Ok(ExactEnergy::StableMooneyRivlin { share })
             }
             ExactEnergy::StableMooneyRivlin { .. } => Err(Error::expected("share", "a share from 0 to 1", share)),
-            ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean => {
+            ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean | ExactEnergy::StVenantKirchhoff => {
                 let found = format!("found with \"{}\"", self.name());
                 Err(Error::at("share", format!("belongs to the energy \"stable-mooney-rivlin\", {found}")))
             }
@@ -132,6 +164,7 @@ impl Form {
     /// # Errors
     /// The energy has no form with springs in this state; the kind is `Unsupported`.
     pub fn of(energy: ExactEnergy, state: State, is_large: bool) -> Result<Form> {
+        energy.has_contents()?;
         let law = |text: &str| Some(Arc::new(Law::parse(text).expect("the laws of this file are expressions")));
         if !is_condensed(state, is_large) {
             let law = if energy == ExactEnergy::NeoHookean { law(NEO_HOOKEAN) } else { None };
@@ -140,7 +173,7 @@ impl Form {
         let text = match (energy, state) {
             (ExactEnergy::StableNeoHookean, State::Rod { .. }) => STABLE_IN_ROD.to_string(),
             (ExactEnergy::StableNeoHookean, _) => STABLE_IN_PLANE_STRESS.replace('g', ACROSS_PLANE),
-            (ExactEnergy::NeoHookean | ExactEnergy::StableMooneyRivlin { .. }, _) => {
+            (ExactEnergy::NeoHookean | ExactEnergy::StableMooneyRivlin { .. } | ExactEnergy::StVenantKirchhoff, _) => {
                 let expected = "\"stable-neo-hookean\": the stretch across planes and rods without stress has no formula in others";
                 return Err(Error::expected("energy", expected, format!("\"{}\"", energy.name()))
                     .of_kind(ErrorKind::Unsupported));
@@ -170,8 +203,9 @@ impl Coefficients {
     /// The coefficients for small deformations or, with `is_large`, for any deformation.
     ///
     /// # Errors
-    /// Poisson's ratio is 0.5 where the stretch across a plane or rod has no formula then.
+    /// Poisson's ratio is 0.5 where the stretch across a plane or rod has no formula then, or the energy is no sum of springs on lengths and contents.
     pub fn of(energy: ExactEnergy, material: Material, is_large: bool) -> Result<Coefficients> {
+        energy.has_contents()?;
         let Moduli { lambda, mu } = material.moduli();
         let (nu, t) = (material.poisson(), material.thickness());
         let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
@@ -187,7 +221,10 @@ impl Coefficients {
                     ..plain
                 },
                 (
-                    ExactEnergy::NeoHookean | ExactEnergy::StableNeoHookean | ExactEnergy::StableMooneyRivlin { .. },
+                    ExactEnergy::NeoHookean
+                    | ExactEnergy::StableNeoHookean
+                    | ExactEnergy::StableMooneyRivlin { .. }
+                    | ExactEnergy::StVenantKirchhoff,
                     _,
                 ) => plain,
             });

@@ -58,7 +58,7 @@ impl<'a> CellFunction<'a> {
                     ExactEnergy::StableNeoHookean => true,
                     // In the plane it is the same energy.
                     ExactEnergy::StableMooneyRivlin { .. } => d == 2,
-                    ExactEnergy::NeoHookean => false,
+                    ExactEnergy::NeoHookean | ExactEnergy::StVenantKirchhoff => false,
                 };
                 if !is_linear {
                     let expected = "\"stable-neo-hookean\", whose springs on contents are linear";

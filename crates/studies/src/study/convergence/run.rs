@@ -7,7 +7,7 @@ use super::reference::same_problem;
 use crate::analysis::metrics::{displacement_error, product, square};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::model::{Body, Elastic, Entries, displaced, finite_elements, masses};
+use crate::model::{Body, Elastic, Entries, displaced, finite_elements, is_flat, masses};
 use crate::study::checkpoint::Controls;
 use crate::study::extent::extent as extent_of;
 use crate::study::outcome::{FitOutcome, Outcome};
@@ -22,6 +22,8 @@ use std::time::Instant;
 pub const MOST_LEVELS: usize = 8;
 /// Cells are divided, and do not come nearer to a curved boundary.
 const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh on all levels";
+/// The same of surfaces in space.
+const FACETS: &str = "the surface keeps the flat cells of the coarsest mesh on all levels";
 /// The scene and its reference.
 const DIFFERS: &str = "the bodies differ by more than rounding";
 /// A level that takes longer is announced, s.
@@ -118,6 +120,10 @@ fn of_levels(
             let input = scene.mesh();
             if input.disc.is_some() || input.fill.is_some() {
                 notes.push(format!("{POLYHEDRON}, and the truth is that of this body"));
+            } else if mesh.dimension == 3 && mesh.cell_dimension() == 2 && !is_flat(mesh) {
+                notes.push(format!(
+                    "{FACETS}, and the truth is that of this body: a curved one needs finer meshes of its own"
+                ));
             }
         }
         notes.iter().for_each(|note| progress(Event::Note(note)));

@@ -12,10 +12,10 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields, default)]
 pub struct ExactEntry {
     /// The network has this energy.
-    #[schemars(extend("enum" = ExactEnergy::NAMES, "x-default" = "that of the material's law, or `\"stable-neo-hookean\"`"))]
+    #[schemars(extend("enum" = ExactEnergy::NAMES, "x-default" = "that of the material's law, or `\"stable-neo-hookean\"`; with `shear = \"edges\"` on a surface in space `\"st-venant-kirchhoff\"`"))]
     pub energy: Option<String>,
-    /// Springs for the shear modulus measure the deformation in each cell (`cells`), or on the domain of each edge of linear triangles and
-    /// tetrahedra (`edges`). `edges` is nearer to the truth than the finite elements of the same mesh, with three times the springs.
+    /// Springs for the shear modulus measure the deformation in each cell (`cells`), or on the domain of each edge of linear triangles, in the plane or
+    /// on surfaces in space, and tetrahedra (`edges`). `edges` is nearer to the truth than the finite elements of the same mesh, with three times the springs.
     #[schemars(extend("enum" = ShearSprings::NAMES, "default" = ShearSprings::default().name()))]
     pub shear: Option<String>,
     /// There is one volume spring for each quadrature point (`points`), cell (`cells`), or patch of cells around a node (`patches`).

@@ -33,9 +33,13 @@ impl FitKind for ExactRecipe {
     fn fit(&self, task: &Task, progress: &mut Progress) -> Result<Fitted> {
         let (mesh, material) = (task.mesh, task.material);
         let laws = task.reference.large.map(|large| &large.laws);
-        let fit = self.resolve_all(laws)?;
-        let materials = material.materials()?;
+        let fit = self.resolve_on(mesh, laws)?;
         let start = Clock::start();
+        // The springs of domains belong to no cell.
+        let domains = match fit.shear {
+            ShearSprings::Cells => None,
+            ShearSprings::Edges => Some(edge_springs(mesh, material.clone(), &fit)?),
+        };
         let mut patches = Vec::new();
         if fit.volume == VolumeSprings::Patches {
             patches = patch_springs(mesh, material, &fit, task.reference.held)?;
@@ -45,20 +49,16 @@ impl FitKind for ExactRecipe {
         let fibres = fibres.transpose()?.unwrap_or_default();
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
-        // The springs of domains belong to no cell.
-        let domains = match fit.shear {
-            ShearSprings::Cells => None,
-            ShearSprings::Edges => Some(edge_springs(mesh, material.clone(), &fit)?),
-        };
         // What is attached to the body has springs on its own cells, whatever those of the body are on.
-        let attached = ExactFit { shear: ShearSprings::Cells, volume: VolumeSprings::Points, ..fit };
+        let energy = if fit.energy.has_contents().is_ok() { fit.energy } else { ExactEnergy::default() };
+        let attached = ExactFit { energy, shear: ShearSprings::Cells, volume: VolumeSprings::Points, ..fit };
         for (index, block) in mesh.blocks.iter().enumerate() {
             let own = match (block.element.dimension() < mesh.cell_dimension(), &domains) {
                 (true, _) => &attached,
                 (false, None) => &fit,
                 (false, Some(_)) => continue,
             };
-            let of_block = materials.block(index);
+            let of_block = material.materials()?.block(index);
             let mut watch = |n: usize| progress(Event::stage(task.name, done + n, total));
             cells.push(fit_exact(&block.element, &mesh.points, &block.connectivity, of_block, own, &mut watch)?);
             done += block.cells().len();

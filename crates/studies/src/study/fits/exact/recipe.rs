@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use crate::material::{Energy, EnergyMap, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::{has_edge_springs, patch_springs};
+use crate::model::{has_edge_springs, has_strains, patch_springs};
 use crate::positive::PositiveFit;
 
 /// The settings of an exact network, before the material is known.
@@ -51,14 +51,28 @@ impl ExactRecipe {
         Ok(first)
     }
 
+    /// The exact network of this mesh with these laws, if the material has some: springs on strains have one energy.
+    ///
+    /// # Errors
+    /// Those of [`ExactRecipe::resolve_all`].
+    pub fn resolve_on(&self, mesh: &Mesh, laws: Option<&EnergyMap>) -> Result<ExactFit> {
+        let fit = self.resolve_all(laws)?;
+        let is_free = self.energy.is_none() && laws.is_none();
+        let has_strains = self.shear == ShearSprings::Edges && has_strains(mesh);
+        Ok(if is_free && has_strains { ExactFit { energy: ExactEnergy::StVenantKirchhoff, ..fit } } else { fit })
+    }
+
     /// The exact network of a body with this law, if the material has one.
     ///
     /// # Errors
     /// The law is not an energy of springs, and no other energy is named.
     pub fn resolve(&self, law: Option<&Energy>) -> Result<ExactFit> {
         let of_law = |law: &Energy| {
-            ExactEnergy::of_law(law).ok_or_else(|| {
-                let names = ExactEnergy::NAMES.join("\", \"");
+            let found = ExactEnergy::of_law(law);
+            // Only domains of edges have springs on strains.
+            let is_known = |energy: &ExactEnergy| self.shear == ShearSprings::Edges || energy.has_contents().is_ok();
+            found.filter(is_known).ok_or_else(|| {
+                let names = ExactEnergy::of_contents().join("\", \"");
                 let expected =
                     format!("a law that is \"{names}\", with fibres or without, or one of these as the key \"energy\"");
                 Error::expected("objective", expected, format!("\"{}\"", law.name())).of_kind(ErrorKind::Unsupported)
@@ -75,8 +89,9 @@ impl ExactRecipe {
     /// Whether a body with this material and law has the network. The first cell of each block is tried for all cells;
     /// patches are constructed.
     pub fn serves(&self, laws: Option<&EnergyMap>, mesh: &Mesh, material: &MaterialMap) -> bool {
-        let (Ok(fit), Ok(materials)) = (self.resolve_all(laws), material.materials()) else { return false };
+        let Ok(fit) = self.resolve_on(mesh, laws) else { return false };
         let block = |(index, block): (usize, &CellBlock)| {
+            let Ok(materials) = material.materials() else { return false };
             let material = *materials.at(index, 0);
             let cell = &block.connectivity[..block.element.nodes()];
             fit_exact(&block.element, &mesh.points, cell, material, &fit, &mut |_| {}).is_ok()

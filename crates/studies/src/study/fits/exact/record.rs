@@ -36,7 +36,8 @@ impl ExactRecord {
             across: recipe.positive.is_some_and(|positive| positive.across),
             share: match recipe.energy {
                 Some(ExactEnergy::StableMooneyRivlin { share }) => Some(share),
-                Some(ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean) | None => None,
+                Some(ExactEnergy::StableNeoHookean | ExactEnergy::NeoHookean | ExactEnergy::StVenantKirchhoff)
+                | None => None,
             },
         }
     }

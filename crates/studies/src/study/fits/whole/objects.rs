@@ -35,8 +35,9 @@ impl WholeBody<'_> {
     /// The law is not one of springs.
     pub(super) fn exact(&self, shear: ShearSprings, volume: VolumeSprings) -> Result<ExactFit> {
         let recipe = ExactRecipe { shear, volume, ..ExactRecipe::default() };
-        recipe.resolve_all(self.laws).map_err(|e| {
-            let names = ExactEnergy::NAMES.join("\" or \"");
+        let fit = recipe.resolve_all(self.laws).and_then(|fit| fit.energy.has_contents().map(|()| fit));
+        fit.map_err(|e| {
+            let names = ExactEnergy::of_contents().join("\" or \"");
             let expected = format!("a law that is \"{names}\" in all cells, where the start is \"exact\"");
             let found = self.laws.map_or_else(|| e.problem().to_string(), |laws| laws.title());
             Error::expected("start", expected, found).of_kind(ErrorKind::Unsupported)
