@@ -3,6 +3,7 @@
 use super::extent::check_parts;
 use crate::engine::{Order, Sequence};
 use crate::error::{Error, ErrorKind, Result};
+use crate::network::QUADRILATERAL;
 use crate::report::{ContentPart, HingePart, NetworkRecord, Parts};
 use crate::springs::{cross, dot, norm};
 use std::collections::{HashMap, HashSet};
@@ -179,7 +180,9 @@ impl<'a> Job<'a> {
 
     /// The tetrahedra of the mesh; of a surface its triangles.
     pub fn simplices(&self) -> impl Iterator<Item = &'a [usize]> {
-        let cells = || self.network.cells.iter().flat_map(|block| &block.points).map(Vec::as_slice);
+        // A quadrilateral has as many corners as a tetrahedron.
+        let blocks = || self.network.cells.iter().filter(|block| block.vtk != Some(QUADRILATERAL));
+        let cells = || blocks().flat_map(|block| &block.points).map(Vec::as_slice);
         let corners = if cells().any(|points| points.len() == 4) { 4 } else { 3 };
         cells().filter(move |points| points.len() == corners)
     }
@@ -215,7 +218,8 @@ impl<'a> Job<'a> {
         let cells = if corners.iter().any(|points| points.len() == 3) { "triangles" } else { "tetrahedra" };
         let content = if cells == "triangles" { "areas" } else { "volumes" };
         let expected = format!("springs along the edges of {cells} and on their {content}, which {program} holds");
-        let advice = "; take a mesh of linear tetrahedra, and for springs between cells leave `across` out";
+        let advice =
+            "; take a mesh of linear tetrahedra or of triangles, and for springs between cells leave `across` out";
         let error = |points: &[usize]| {
             let found = format!("one of {}", named(self.network, points));
             Error::expected("springs", &expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported)

@@ -33,8 +33,8 @@ pub use reader::read_network;
 pub use record::{
     CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LoadErrorsRecord, MaterialDataRecord,
     MeasureKind, MeasureRecord, NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord,
-    NodalLoadRecord, OriginRecord, ProvenanceRecord, RelaxationRecord, ShareRecord, SpringRecord, TermRecord,
-    TimedForceRecord, TimedPullRecord, network_schema,
+    NodalLoadRecord, OriginRecord, ProvenanceRecord, QUADRILATERAL, RelaxationRecord, ShareRecord, SpringRecord,
+    TermRecord, TimedForceRecord, TimedPullRecord, network_schema,
 };
 pub use shard::{Merged, NetworkShard, ShardRun, merge_shards};
 pub use specimen::{PointTable, SpecimenFile, SpecimenOptions, read_points, read_specimen, specimen_endings};

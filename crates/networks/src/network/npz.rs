@@ -2,6 +2,7 @@
 
 use super::lists::ListedRecord;
 use super::parts::{ContentPart, Parts};
+use super::record::QUADRILATERAL;
 use super::record::{HeldRecord, NetworkRecord, RelaxationRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
@@ -52,7 +53,8 @@ pub fn network_npz_with<W: Write + Seek>(
     to: W,
     more: impl FnOnce(&mut ArrayFile<W>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let cells = || network.cells.iter().flat_map(|block| &block.points).map(Vec::as_slice);
+    let blocks = || network.cells.iter().filter(|block| block.vtk != Some(QUADRILATERAL));
+    let cells = || blocks().flat_map(|block| &block.points).map(Vec::as_slice);
     let mut file = arrays_of(network, cells, parts, to)?;
     more(&mut file)?;
     file.finish().map(drop)
@@ -65,7 +67,12 @@ pub fn network_npz_with<W: Write + Seek>(
 pub fn write_npz(path: &Path, record: &ListedRecord<'_>, mesh: &Mesh, network: &Network) -> Result<()> {
     let parts = Parts::with_room(network).with_springs(record, record.springs.iter());
     let parts = parts.map_err(|e| e.in_file(path))?;
-    let cells = || mesh.blocks.iter().flat_map(|block| block.cells());
+    let blocks = || {
+        mesh.blocks
+            .iter()
+            .filter(|block| block.element.formats.vtk.as_ref().is_none_or(|vtk| vtk.cell_type != QUADRILATERAL))
+    };
+    let cells = || blocks().flat_map(|block| block.cells());
     write_seekable(path, |to| arrays_of(record, cells, &parts, to)?.finish().map(drop))
 }
 

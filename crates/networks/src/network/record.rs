@@ -160,6 +160,9 @@ pub struct CellBlockRecord<C = Vec<Vec<usize>>> {
     pub points: C,
 }
 
+/// The number of VTK for quadrilaterals, which have as many corners as tetrahedra.
+pub const QUADRILATERAL: u32 = 9;
+
 /// A point that is held in some directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -99,8 +99,8 @@ fn of_conditions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
         let cells = if cut == 1 { "1 cell".to_string() } else { format!("{cut} cells") };
         (cut > 0).then(|| {
             format!(
-                "where = \"{text}\" of {what} cuts {cells}: it holds at the middle and not at all points, and the part ends at points that have it; the \
-                 body extends {}",
+                "where = \"{text}\" of {what} cuts through {cells}: the part ends at points of the mesh, up to a cell before the condition does, and in a finer \
+                 mesh elsewhere; errors leave this out, and a condition between points, or smaller cells, makes it small. The body extends {}",
                 extends(mesh)
             )
         })

@@ -128,8 +128,7 @@ pub fn draft(
     let names = names.into_iter().flatten().collect::<Vec<_>>().join(", ");
     line(&format!("# springs = [{names}]   # spring groups; those that are not optional if absent\n"));
     if let Some((objective, springs)) = with_volume {
-        // From Poisson's ratio 0.4 on a run chooses what errors are relative to.
-        let is_given = poisson < LOCKS && mesh.point_count() <= MOST_COMPARED && mesh.elevated().is_ok();
+        let is_given = mesh.point_count() <= MOST_COMPARED && mesh.elevated().is_ok();
         if is_given {
             line("[reference]              # errors are relative to");
             line("from = \"quadratic\"       # quadratic elements on the same cells, which bend and shear better\n");
