@@ -19,7 +19,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from settle import judge, seconds, settle, taken
+from settle import judge, keep_rest, seconds, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -142,7 +142,7 @@ if __name__ == "__main__":
     keep(made, frames)
     x = shown(made[0], len(frames))
     if is_rest:
-        np.save(given[1], x)
+        keep_rest(net, x, given[1])
     moved = np.linalg.norm(x - points, axis=1)
     print(f"{len(points)} points, {len(frames)} frames: the largest displacement at the last is {moved.max():.4g} m, at point {moved.argmax()}")
     if bpy.app.background:

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import newton
 import numpy as np
-from settle import judge, seconds, settle, taken
+from settle import judge, keep_rest, seconds, settle, taken
 
 folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
@@ -144,7 +144,7 @@ if __name__ == "__main__":
     forces, given = taken(net, change_setting(sys.argv[1:]))
     if given[:1] == ["--rest"]:
         x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
-        np.save(given[1], x)
+        keep_rest(net, x, given[1])
     else:
         duration = seconds(given, 0.5)
         body = Motion(forces=forces)

@@ -136,7 +136,7 @@ impl<'a> Job<'a> {
         }
         let negative = parts.lengths.iter().filter(|spring| spring.constant < 0.0).count();
         if negative > 0 && !holds.negative {
-            let advice = "nonnegative = true (--nonnegative) has none";
+            let advice = "a fit with nonnegative = true has none: --fit names another fit of the scene";
             let found = format!("{negative} of {} below zero", parts.lengths.len());
             return unsupported("springs".into(), "constants above zero", found, advice);
         }

@@ -43,7 +43,7 @@ pub fn write_files(files: &[NamedFile], folder: &Path, inputs: &[PathBuf]) -> Re
 
 /// What a script in Python says where it takes in how bodies are loaded, come to rest and are judged, and that text.
 const SETTLING: [&str; 2] =
-    ["from settle import judge, seconds, settle, taken\n", include_str!("../../exports/settle.py")];
+    ["from settle import judge, keep_rest, seconds, settle, taken\n", include_str!("../../exports/settle.py")];
 
 /// A script in Python, which stands alone: what scripts have in common is put where it is imported.
 pub(super) fn script(text: &str) -> Content {

@@ -97,7 +97,7 @@ fn is_smooth(mesh: &Mesh, block: &CellBlock, cells: [usize; 2]) -> bool {
     // Triangles of one sheet may run through their edge alike, so that one of their normals is turned.
     let runs = corners.map(|nodes| {
         let at = |p: &usize| corners[0].contains(p) && corners[1].contains(p);
-        let first = nodes.iter().position(|p| at(p)).unwrap_or(0);
+        let first = nodes.iter().position(&at).unwrap_or(0);
         if at(&nodes[(first + 1) % 3]) { nodes[first] } else { nodes[(first + 2) % 3] }
     });
     let cosine = if runs[0] == runs[1] { -cosine } else { cosine };
