@@ -52,6 +52,8 @@ def taken(net, arguments):
     forces = np.zeros((len(net["points"]), 3))
     if arguments[-1:] == ["--rest"]:
         sys.exit("--rest: expected a file for the positions, found none")
+    if "--rest" in arguments and not Path(arguments[arguments.index("--rest") + 1]).resolve().parent.is_dir():
+        sys.exit(f"--rest: expected a file in a folder that is there, found {arguments[arguments.index('--rest') + 1]}")
     if "--load" not in arguments:
         return forces, arguments
     place = arguments.index("--load")
@@ -72,6 +74,14 @@ def seconds(given, usual):
         return float(given[0]) if given else usual
     except ValueError:
         sys.exit(f"expected --rest FILE, --load NAME or the seconds of a motion, found {given[0]!r}: --help has all")
+
+
+def keep_rest(net, x, file):
+    """Writes the positions [points, 3], m, as an array of NumPy, and says where and how far the body has moved."""
+    file = Path(file) if file.endswith(".npy") else Path(file + ".npy")
+    np.save(file, x)
+    moved = np.linalg.norm(x - net["points"], axis=1)
+    print(f"{len(x)} points at rest: the largest displacement is {moved.max():.4g} m, at point {moved.argmax()}; written: {file}")
 
 
 def inverted(net, x):
@@ -254,7 +264,7 @@ if __name__ == "__main__":
     forces, given = taken(net, sys.argv[1:])
     if given[:1] == ["--rest"]:
         x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
-        np.save(given[1], x)
+        keep_rest(net, x, given[1])
     else:
         m = model()
         d = start(m, forces)
