@@ -17,7 +17,7 @@ use nalgebra::Matrix3;
 /// ```
 ///
 /// A step takes for the integral of r/τ at each point what the two steps before it lead one to expect, so that it has a potential; when it ends, the
-/// integral is that with which q is right ([`Yield`]).
+/// integral is that with which q is right (`Yield`).
 #[derive(Debug, Clone)]
 pub struct FlowMemory {
     form: Form,

@@ -39,7 +39,7 @@ pub struct LargeMemory {
 
 impl LargeMemory {
     /// The branches of a body whose points are at `rest`, `[points × dimension]`, m, with the shares of shear of a relaxation; shares of bulk
-    /// are not used ([`Relaxation::rest_of`] refuses them).
+    /// are not used ([`Relaxation::check_large`] refuses them).
     ///
     /// # Errors
     /// There are so many pairs of points that they cannot be numbered.
