@@ -115,13 +115,14 @@ impl Terminal {
         if left.is_some_and(|left| left > LONG) && !self.stage.is_announced {
             self.stage.is_announced = true;
             self.last = Instant::now();
-            let line = format!("note: {name}: {done} of {total}{words}, estimated from the pace so far");
+            let line =
+                self.within_page(&format!("note: {name}: {done} of {total}{words}, estimated from the pace so far"));
             return self.above_bar(|| tell(&line));
         }
         if !std::io::stderr().is_terminal() {
             if self.last.elapsed() >= BETWEEN_LINES {
                 self.last = Instant::now();
-                tell(&format!("note: {name}: {done} of {total}{words}"));
+                tell(&self.within_page(&format!("note: {name}: {done} of {total}{words}")));
             }
             return;
         }

@@ -769,3 +769,56 @@ fn clamped_edges_keep_their_directors() {
     let error = target_named("mujoco").unwrap().files(&hinged, None).err().unwrap();
     assert!(error.to_string().contains("hold two rows of points"), "{error}");
 }
+
+/// A program pulls all points by its gravity: it is that of the scene's load, acts once, and other loads act beside it.
+#[test]
+fn gravity_of_a_load_is_the_gravity_of_the_program() {
+    let folder = TempDir::new().unwrap();
+    let scene = "[mesh]\nbox = { element = \"tet4\", size = [0.2, 0.1, 0.1], cells = [2, 1, 1] }\n[material]\nyoung = 1e6\npoisson = 0.3\ndensity = 1000\n\
+                 [[fit]]\nobjective = \"offdiag\"\nnonnegative = true\n[[fix]]\ngroup = \"xmin\"\n\
+                 [[load]]\nname = \"sag\"\ngravity = [0, -2, 0]\n[[load]]\nname = \"push\"\ngroup = \"xmax\"\ntraction = [0, 0, 50]\n\
+                 [[load]]\nname = \"both\"\nsum = [\"sag\", \"push\"]\n";
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let written = |more: &[&str], out: &str| -> (String, serde_json::Value) {
+        let (code, text) =
+            program(folder.path(), &[&["export", "s.toml", "--to", "xpbd", "--out", out], more].concat());
+        assert_eq!(code, Some(0), "{text}");
+        (text, serde_json::from_slice(&fs::read(folder.path().join(out).join("network.json")).unwrap()).unwrap())
+    };
+    let (text, network) = written(&[], "own");
+    assert!(text.contains("gravity 0 -2 0 m/s²"), "{text}");
+    assert_eq!(network["gravity"], serde_json::json!([0.0, -2.0, 0.0]));
+    let loads: Vec<(&str, Vec<[f64; 3]>)> = network["loads"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|load| {
+            let forces = load["forces"].as_array().unwrap().iter();
+            (load["name"].as_str().unwrap(), forces.map(|f| [1, 2, 3].map(|k| f[k].as_f64().unwrap())).collect())
+        })
+        .collect();
+    let total = |forces: &[[f64; 3]]| [0, 1, 2].map(|k| forces.iter().map(|f| f[k]).sum::<f64>());
+    // 50 Pa on 0.01 m².
+    for (name, forces) in &loads {
+        let [x, y, z] = total(forces);
+        assert!(x.abs() < 1e-9 && y.abs() < 1e-9 && (z - 0.5).abs() < 1e-9, "{name}: {x} {y} {z}");
+    }
+    assert_eq!(loads.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["push", "both"]);
+    let (text, network) = written(&["--gravity", "0 0 -1"], "other");
+    assert!(text.contains("\"sag\" is 0 -2 0 m/s²") && text.contains("--gravity \"0 -2 0\""), "{text}");
+    assert_eq!(network["gravity"], serde_json::json!([0.0, 0.0, -1.0]));
+}
+
+/// Quadrilaterals have as many corners as tetrahedra, and are none.
+#[test]
+fn a_surface_of_quadrilaterals_is_no_body_of_tetrahedra() {
+    let folder = TempDir::new().unwrap();
+    let obj = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0.1\nf 1 2 5 4\nf 2 3 6 5\n";
+    fs::write(folder.path().join("cloth.obj"), obj).unwrap();
+    let scene = "[mesh]\nfile = \"cloth.obj\"\n[material]\nyoung = 1e5\npoisson = 0.3\nthickness = 0.001\ndensity = 1000\n\
+                 [[fit]]\nobjective = \"offdiag\"\nnonnegative = true\n[[fix]]\nwhere = \"x < 0.1\"\n";
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let (code, text) = program(folder.path(), &["export", "s.toml", "--to", "mujoco", "--out", "o"]);
+    assert!(code == Some(2) && text.contains("linear tetrahedra or of triangles"), "{text}");
+    assert!(!folder.path().join("o").exists());
+}

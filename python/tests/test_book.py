@@ -45,6 +45,6 @@ def test_a_cloth_falls_in_a_loop_of_its_own(tmp_path):
         return made.stdout
 
     (tmp_path / "cloth.obj").write_text(run("awk", "-f", "cloth.awk"))
-    run(sys.executable, "-m", "springfit", "export", "cloth.toml", "--fit", "hinges", "--to", "npz", "--out", "arrays")
+    run(sys.executable, "-m", "springfit", "export", "cloth.toml", "--fit", "hinges", "--to", "npz", "--gravity", "0 0 -9.81", "--out", "arrays")
     (printed,) = re.findall(r"python loop.py 1\n(.*?)\n", page)
     assert run(sys.executable, "loop.py", "1").strip() == printed

@@ -85,7 +85,7 @@ fn conditions_that_select_nothing_or_all_are_told() {
     let said = notes(&format!("{BOX}{material}{load}"));
     assert!(said.contains("where = \"x > -1\" of the load all holds at all points of the body"), "{said}");
     let said = notes(&at("x < 0.7"));
-    assert!(said.contains("of fix[0] cuts 1 cell"), "{said}");
+    assert!(said.contains("of fix[0] cuts through 1 cell"), "{said}");
     assert!(!notes(&at("x < 0.3")).contains("cuts"), "{said}");
 }
 
