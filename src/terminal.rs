@@ -30,6 +30,8 @@ pub struct Terminal {
     /// The arguments of the program, for completions and manual pages.
     pub grammar: fn() -> clap::Command,
     level: Level,
+    /// The columns that lines are broken to, if anything sets them.
+    page: Option<usize>,
     start: Instant,
     bar: Option<ProgressBar>,
     stage: Stage,
@@ -93,8 +95,18 @@ impl Stage {
 impl Terminal {
     pub fn new(grammar: fn() -> clap::Command, level: Level) -> Terminal {
         let now = Instant::now();
-        report::set_page(page_width().unwrap_or(PAGE), level.detail());
-        Terminal { grammar, level, start: now, bar: None, stage: Stage::new("", 0), last: now, is_document: false }
+        let page = page_width();
+        report::set_page(page.unwrap_or(PAGE), level.detail());
+        Terminal {
+            grammar,
+            level,
+            page,
+            start: now,
+            bar: None,
+            stage: Stage::new("", 0),
+            last: now,
+            is_document: false,
+        }
     }
 
     /// Shows a stage in the bar, and a note above it.
@@ -170,7 +182,7 @@ impl Terminal {
 
     /// Breaks sentences into lines where a terminal or `COLUMNS` sets a width. Elsewhere a sentence is a line, which other programs search.
     pub fn within_page(&self, text: &str) -> String {
-        let Some(page) = page_width() else { return text.into() };
+        let Some(page) = self.page else { return text.into() };
         text.lines().map(|line| broken(line, page) + "\n").collect::<String>().trim_end_matches('\n').to_string()
             + if text.ends_with('\n') { "\n" } else { "" }
     }

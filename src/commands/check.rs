@@ -56,18 +56,18 @@ impl Check {
             }
             inspections.push(inspection);
         }
-        let failed = inspections.iter().filter(|i| !i.passes).count();
+        let failing: Vec<&str> = inspections.iter().filter(|i| !i.passes).map(|i| i.file.as_str()).collect();
         self.output.print(
             terminal,
             || inspections.to_vec(),
             || vec![report::check_table(&inspections)],
             || {
-                let failing = inspections.iter().filter(|i| !i.passes).map(|i| i.file.as_str()).collect::<Vec<_>>();
-                let is_told = (1..inspections.len()).contains(&failing.len());
-                let which = if !is_told { String::new() } else { format!("; not {}", failing.join(", ")) };
-                format!("{} of {} files pass{which}\n", inspections.len() - failed, inspections.len())
+                let (all, passing) = (inspections.len(), inspections.len() - failing.len());
+                let is_mixed = passing > 0 && passing < all;
+                let which = if is_mixed { format!("; not {}", failing.join(", ")) } else { String::new() };
+                format!("{passing} of {all} files pass{which}\n")
             },
         )?;
-        Ok(if inspections.iter().all(|i| i.passes) { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+        Ok(if failing.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 }

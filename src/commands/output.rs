@@ -77,8 +77,7 @@ impl OutputOptions {
         let record = || Report::of(outcome);
         let detail = terminal.detail();
         let text = || format!("{}\n{}", report::summary(outcome), report::tables(outcome));
-        let text = self.text(record, || Table::all(&record()), text);
-        self.print_text(terminal, &text)?;
+        self.print(terminal, record, || Table::all(&record()), text)?;
         if self.json {
             return Ok(());
         }

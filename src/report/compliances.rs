@@ -1,5 +1,6 @@
 //! The constants of a network as engines of position-based dynamics take them.
 
+use super::page::constants_of;
 use super::table::Digits::Significant;
 use super::table::{Cell, Column, Table};
 use crate::element::SpringKind;
@@ -22,9 +23,7 @@ pub fn compliances(network: &Network) -> Table {
 }
 
 fn row(network: &Network, kind: SpringKind) -> Option<Vec<Cell>> {
-    let lengths = network.lengths.iter().filter(|_| kind == SpringKind::Length).map(|spring| spring.constant);
-    let others = network.others.iter().filter(|spring| spring.kind == kind).map(|spring| spring.constant);
-    let constants: Vec<f64> = lengths.chain(others).collect();
+    let constants: Vec<f64> = constants_of(network, kind).collect();
     if constants.is_empty() {
         return None;
     }

@@ -101,7 +101,7 @@ impl FitRecord {
     /// Makes the record of a fit of a run.
     pub(super) fn of(run: &Outcome, outcome: &FitOutcome) -> FitRecord {
         let elements = run.mesh.cell_count();
-        // That of all elements; none if theirs differ.
+        // It is none if the thicknesses of the elements differ.
         let thickness = run.material.thicknesses().uniform().copied();
         let certificate = outcome.kind.stiffness();
         let moduli = outcome.moduli.as_ref();

@@ -6,6 +6,7 @@ use super::load_record::{LoadRecord, MeasuredRecord};
 use super::table::Digits::{Fixed, Significant};
 use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
+use crate::study::statistics::median;
 use crate::study::{BODY, Times};
 
 /// More loads are summed up.
@@ -69,7 +70,7 @@ pub(super) fn overview(report: &Report) -> Table {
 }
 
 /// The loads of each fit.
-fn loads(report: &Report) -> &[LoadRecord] {
+pub(super) fn loads(report: &Report) -> &[LoadRecord] {
     report.fits.first().map_or(&[], |fit| &fit.loads)
 }
 
@@ -95,13 +96,11 @@ fn of_load<'a>(report: &'a Report, place: usize, load: &LoadRecord) -> Shown<'a>
 fn of_many(report: &Report, count: usize) -> Vec<Shown<'_>> {
     let known = |loads: &[LoadRecord], error: &dyn Fn(&LoadRecord) -> Option<f64>| {
         // An error that is not known is no small one.
-        let mut known = loads.iter().map(error).collect::<Option<Vec<f64>>>()?;
-        known.sort_by(f64::total_cmp);
-        Some(known)
+        loads.iter().map(error).collect::<Option<Vec<f64>>>()
     };
     let cells = move |known: Option<Vec<f64>>| -> [Cell; 2] {
-        let middle = known.as_ref().map(|known| (known[(known.len() - 1) / 2] + known[known.len() / 2]) / 2.0);
-        let worst = known.and_then(|known| known.last().copied());
+        let middle = known.as_deref().map(median);
+        let worst = known.and_then(|known| known.into_iter().reduce(f64::max));
         [middle, worst].map(|error| Cell::number(error, Fixed(2)))
     };
     let of_fit = move |fit: &FitRecord| cells(known(&fit.loads, &|load| load.e_max));

@@ -5,7 +5,7 @@ use super::frequencies::frequencies;
 use super::json::Report;
 use super::load_record::LoadRecord;
 use super::motion::motions;
-use super::overview::{measured, overview};
+use super::overview::{loads, measured, overview};
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::Third;
 use super::table::{Cell, Column, Table};
@@ -27,11 +27,6 @@ impl Table {
         ];
         all.into_iter().filter(|table| !table.rows.is_empty()).collect()
     }
-}
-
-/// The loads of each fit.
-fn loads(report: &Report) -> &[LoadRecord] {
-    report.fits.first().map_or(&[], |fit| &fit.loads)
 }
 
 fn fits(report: &Report) -> Table {

@@ -81,7 +81,7 @@ impl<'a> NetworkFile<'a> {
         let d = mesh.dimension;
         let outcome = self.study.map(|(outcome, _)| outcome);
         let motion = outcome.and_then(|outcome| outcome.motion.as_ref());
-        // That of the motion, or of the first load that has one.
+        // The gravity of the motion goes first, then that of the first load that has one.
         let of_motion = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
         let of_loads = || outcome?.loads.iter().find_map(|load| load.gravity.as_ref());
         let gravity = of_motion.or_else(of_loads);

@@ -9,14 +9,16 @@ const INTERVALS: usize = 48;
 /// The share of springs at each end that may lie outside, where they lie far out: a single far spring would leave the others one interval.
 const OUTSIDE: f64 = 0.01;
 
+/// The constants of the springs of a kind.
+pub(in crate::report) fn constants_of(network: &Network, kind: SpringKind) -> impl Iterator<Item = f64> {
+    let lengths = network.lengths.iter().filter(move |_| kind == SpringKind::Length).map(|spring| spring.constant);
+    lengths.chain(network.others.iter().filter(move |spring| spring.kind == kind).map(|spring| spring.constant))
+}
+
 impl HistogramRecord {
     /// One for each kind of spring of the network.
     pub fn all(network: &Network) -> Vec<HistogramRecord> {
-        let constants = |kind: SpringKind| -> Vec<f64> {
-            let lengths = network.lengths.iter().filter(|_| kind == SpringKind::Length).map(|spring| spring.constant);
-            let others = network.others.iter().filter(|spring| spring.kind == kind).map(|spring| spring.constant);
-            lengths.chain(others).filter(|constant| constant.is_finite()).collect()
-        };
+        let constants = |kind| constants_of(network, kind).filter(|constant| constant.is_finite()).collect();
         SpringKind::all().filter_map(|kind| HistogramRecord::of(kind, constants(kind))).collect()
     }
 

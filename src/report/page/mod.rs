@@ -6,6 +6,7 @@ mod histogram;
 mod record;
 
 pub use array::{Floats, Places};
+pub(super) use histogram::constants_of;
 pub use record::{
     HistogramRecord, LoadViewRecord, ModelViewRecord, MotionViewRecord, NetworkViewRecord, PageRecord,
     SpringMeshRecord, ViewRecord,

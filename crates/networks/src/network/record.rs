@@ -181,7 +181,7 @@ pub struct NodalLoadRecord {
     pub name: String,
     /// Each entry is a force on a point.
     pub forces: Vec<NodalForceRecord>,
-    /// The forces have that of this acceleration of gravity in m/s² on the masses; it is null if there is none.
+    /// The forces include the weight of the masses under this acceleration in m/s²; it is null if the load has no gravity.
     #[serde(default)]
     pub gravity: Option<Vec<f64>>,
     /// The load is gravity and nothing else.

@@ -20,7 +20,7 @@ pub struct BodyLoad {
     pub support: Support,
     /// The nodal forces, `[points · dimension]`, N.
     pub forces: Vec<f64>,
-    /// The acceleration of gravity that is in these forces, m/s²; `None` if there is none.
+    /// The forces include the weight under this acceleration, m/s²; `None` if the load has no gravity.
     pub gravity: Option<Vec<f64>>,
     /// Whether the load is gravity and nothing else.
     pub is_gravity: bool,

@@ -54,7 +54,7 @@ pub enum LoadKind {
 }
 
 impl LoadCase {
-    /// The acceleration of gravity that is in the load, m/s², `[dimension]`, by itself or as one of a sum of `all` loads; `None` if there is none.
+    /// The acceleration of gravity, m/s², `[dimension]`, of the load itself or of those of its sum among `all` loads; `None` if it has no gravity.
     pub fn gravity(&self, all: &[LoadCase]) -> Option<Vec<f64>> {
         match &self.kind {
             // An acceleration is the same everywhere.
