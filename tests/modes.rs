@@ -6,7 +6,7 @@ use springfit::element::{Element, SHIPPED};
 use springfit::material::Material;
 use springfit::mesh::{BoxMesh, Mesh, Selection};
 use springfit::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
-use springfit::solve::{Factor, Modes, System, lowest_modes};
+use springfit::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
 use springfit::study::Scene;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -70,7 +70,7 @@ impl Model {
             let column = self.system.apply(&unit);
             (0..n).for_each(|i| matrix[(i, j)] = column[i] / mass[i].sqrt());
         }
-        let mut squares: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
+        let mut squares: Vec<f64> = eigenvalues(matrix).iter().copied().collect();
         squares.sort_by(f64::total_cmp);
         squares
     }
@@ -268,7 +268,7 @@ fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
             let columns: Vec<Vec<f64>> =
                 (0..n).map(|j| model.system.apply(inverse.row(j).transpose().as_slice())).collect();
             let square = &inverse * DMatrix::from_fn(n, n, |i, j| columns[j][i]);
-            let mut squares: Vec<f64> = square.symmetric_eigenvalues().iter().copied().collect();
+            let mut squares: Vec<f64> = eigenvalues(square).iter().copied().collect();
             squares.sort_by(f64::total_cmp);
             let count = 8.min(n);
             let modes = lowest_modes(&model.system, &model.factor, &matrix, d, count).unwrap();

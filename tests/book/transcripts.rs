@@ -39,17 +39,34 @@ fn run(page: &Page, folder: &Path) {
     }
 }
 
-#[test]
-fn the_tutorials_print_what_they_say_in_an_empty_folder() {
+/// Runs the pages that say that they take minutes, or the others; returns how many there are.
+fn tutorials(long: bool) -> usize {
+    let mut count = 0;
     for entry in std::fs::read_dir(root().join("docs/src/start")).unwrap() {
         let folder = tempfile::tempdir().unwrap();
         let page = page(entry.unwrap().path().to_str().unwrap());
+        if page.text.contains("<!-- takes minutes -->") != long {
+            continue;
+        }
+        count += 1;
         // A page may say that it is read in the folder of the repository.
         if page.text.contains("In the folder of the repository") {
             std::os::unix::fs::symlink(root().join("scenes"), folder.path().join("scenes")).unwrap();
         }
         run(&page, folder.path());
     }
+    count
+}
+
+#[test]
+fn the_tutorials_print_what_they_say_in_an_empty_folder() {
+    assert!(tutorials(false) > 15);
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/long has it"]
+fn the_long_tutorials_print_what_they_say_in_an_empty_folder() {
+    assert!(tutorials(true) > 0);
 }
 
 /// In a folder like that of the repository, with the files that the recipes have from the tutorials.

@@ -36,7 +36,7 @@ const RUNS: [&[&str]; 29] = [
     ],
     &["fit", "plate.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.vtu", "--objective", "offdiag"],
     &["fit", "rods.msh", "--young=1e4", "--poisson=0.3", "-o", "springs.json", "--objective", "frobenius"],
-    &["compare", "tri3", "--shapes=1", "--iterations=5"],
+    &["compare", "tri3", "--shapes=1", "--iterations=5", "--fit=objective='offdiag'"],
     &["converge", "scene.toml", "--levels=2"],
     &["measure", "--lattice", "cubic", "--constants=100,50"],
     &["measure", "--lattice", "cubic", "--constants=100,50", "--cells=2", "--hull"],

@@ -255,33 +255,42 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// Checks the files of all cases that the language has room for; their number, or none without the tool.
+    /// Checks the texts of all cases that the language has room for; their number, or none without the tool.
     pub fn check(self, cases: &[Case]) -> Option<usize> {
         let folder = TempDir::new().unwrap();
-        let mut paths = Vec::new();
-        for (i, case) in cases.iter().enumerate() {
-            let (language, first, last, name) = match self {
-                Tool::Shaders => ("wgsl", "", "", "code.wgsl"),
-                Tool::Glslang => {
-                    let main = "layout(local_size_x = 1) in;\nvoid main() {}\n";
-                    ("glsl", "#version 450\n", main, "code.comp")
-                }
-                Tool::Cuda => ("cuda", "#define __device__\n#define __forceinline__ inline\n", "", "code.cc"),
-            };
-            let Some(text) = case.text(language) else { continue };
-            let path = folder.path().join(format!("{i}_{name}"));
-            fs::write(&path, format!("{first}{text}\n{last}")).unwrap();
-            paths.push(path.to_str().unwrap().to_string());
-        }
-        let program = match self {
-            Tool::Shaders => "springfit-shaders",
-            Tool::Glslang => "glslangValidator",
-            Tool::Cuda => "c++",
+        let (language, program) = match self {
+            Tool::Shaders => ("wgsl", "springfit-shaders"),
+            Tool::Glslang => ("glsl", "glslangValidator"),
+            Tool::Cuda => ("cuda", "c++"),
         };
-        let strict = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused"];
-        let options = if self == Tool::Cuda { &strict[..] } else { &[] };
-        let arguments: Vec<&str> = options.iter().copied().chain(paths.iter().map(String::as_str)).collect();
+        let texts: Vec<String> = cases.iter().filter_map(|case| case.text(language)).collect();
+        let whole = |i: usize, text: &String| match self {
+            Tool::Shaders => (format!("{i}_code.wgsl"), text.clone()),
+            Tool::Glslang => {
+                let main = "layout(local_size_x = 1) in;\nvoid main() {}\n";
+                (format!("{i}_code.comp"), format!("#version 450\n{text}\n{main}"))
+            }
+            Tool::Cuda => (format!("{i}_code.h"), text.clone()),
+        };
+        let files: Vec<(String, String)> = texts.iter().enumerate().map(|(i, text)| whole(i, text)).collect();
+        files.iter().for_each(|(name, text)| fs::write(folder.path().join(name), text).unwrap());
+        let names = files.into_iter().map(|(name, _)| name);
+        let strict = ["-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-Wno-unused"].map(String::from);
+        let arguments: Vec<String> = match self {
+            // One file for all: a C++ compiler reads the system's headers anew for each, which takes longer than the code. Cases may have the
+            // same names.
+            Tool::Cuda => {
+                let mut all = String::from("#include <math.h>\n#define __device__\n#define __forceinline__ inline\n");
+                names.enumerate().for_each(|(i, name)| {
+                    writeln!(all, "namespace case_{i} {{\n#include \"{name}\"\n}}").unwrap();
+                });
+                fs::write(folder.path().join("code.cc"), all).unwrap();
+                strict.into_iter().chain(["code.cc".into()]).collect()
+            }
+            _ => names.collect(),
+        };
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
         run(folder.path(), program, &arguments)?;
-        Some(paths.len())
+        Some(texts.len())
     }
 }

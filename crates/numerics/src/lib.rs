@@ -2,4 +2,5 @@
 #![forbid(unsafe_code)]
 
 pub mod convex;
+pub mod dense;
 pub mod newton;

@@ -3,7 +3,7 @@
 use super::markdown;
 use crate::branches::yield_errors;
 use crate::prony::creep_errors;
-use springfit::study::{Outcome, Scene, run};
+use springfit::study::{Outcome, Scene, Setting, run};
 use std::path::Path;
 
 /// Errors of a bar that creeps, by what relaxes.
@@ -33,35 +33,12 @@ pub fn yielding() -> String {
     markdown(&["steps in τ", "stretch", "shear"], &rows)
 }
 
-/// The kidney of the gallery, pressed for two seconds and let go.
+/// The kidney of the gallery, pressed for two seconds and let go, at twice the steps.
 fn kidney(terms: &str) -> Outcome {
-    let text = format!(
-        r#"
-[mesh]
-file = "meshes/kidney_hex.msh"
-scale = 0.001
-[material]
-young = "5 kPa"
-poisson = 0.45
-law = "stable-neo-hookean"
-relaxation = {{ terms = [{terms}] }}
-[[fit]]
-objective = "exact"
-[[fix]]
-group = "fixed"
-[motion]
-quasi-static = true
-duration = 6
-step = 0.05
-every = 0.5
-watch = {{ group = "load" }}
-[[motion.force]]
-group = "load"
-force = [0, 0, "0.04*(abs(t) - abs(t - 0.25) - abs(t - 2) + abs(t - 2.25))"]
-"#
-    );
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/kidney.toml");
-    run(&Scene::parse(&text, &root).unwrap(), &mut |_| {}).unwrap()
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/kidney_creep.toml");
+    let terms = format!("material.relaxation.terms=[{terms}]");
+    let settings = [&terms, "motion.step=0.05", "motion.duration=6"].map(|setting| Setting::parse(setting).unwrap());
+    run(&Scene::load_with(&path, &settings).unwrap(), &mut |_| {}).unwrap()
 }
 
 /// The way of the loaded points of the kidney, elastic, relaxing and yielding, and the difference of network and finite elements.

@@ -33,4 +33,5 @@ pub use method::{StaticMethod, StaticSolver};
 pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub use newton::{Ending, Equilibrium, Newton};
+pub use springfit_numerics::dense::eigenvalues;
 pub use stability::{Stability, Standing, compare_energies, is_definite};

@@ -14,8 +14,9 @@ const SMOOTH: f64 = 0.1;
 /// The agreement of a quadrature with that of its two halves at which it is accepted, relative to the energy; about 50
 /// rounding errors.
 const KNOWN: f64 = 1e-14;
-/// The largest number of halvings of the interval.
-const HALVINGS: usize = 10;
+/// The largest number of halvings of one way. A kink of the law takes one for each binary digit of its place. Rounding errors of a force
+/// that is a small difference of large terms would take all that there are, and come no nearer.
+const HALVINGS: usize = 64;
 
 impl Law {
     /// Energy, force and slope of several springs, each at one measure. A function is asked once, and again for springs whose energy
@@ -34,8 +35,8 @@ impl Law {
         let places: Vec<Vec<f64>> = springs
             .iter()
             .map(|&(one, c)| {
-                let middle = one.rest + (c - one.rest) / 2.0;
-                let ways = [[one.rest, c], [one.rest, middle], [middle, c]];
+                let [first, last] = halves([one.rest, c]);
+                let ways = [[one.rest, c], first, last];
                 let of_ways = ways.into_iter().flat_map(|way| rule().iter().map(move |(x, _)| place(way, *x)));
                 std::iter::once(c).chain(function.around_measure(c, one.rest)).chain(of_ways).collect()
             })
@@ -49,18 +50,17 @@ impl Law {
         let count = places.first().map_or(1, Vec::len);
         let pull = |((one, c), own): (&(&AskedForces, f64), &[f64])| {
             let (around, ways) = own[1..].split_at(AROUND_COUNT);
-            let middle = one.rest + (c - one.rest) / 2.0;
             let work = |[from, to]: [f64; 2], own: &[f64]| -> f64 {
                 rule().iter().zip(own).map(|((_, w), t)| w * (to - from) / 2.0 * t).sum()
             };
-            let (whole, halves) = ways.split_at(POINTS);
-            let whole = work([one.rest, *c], whole);
-            let halves = [work([one.rest, middle], &halves[..POINTS]), work([middle, *c], &halves[POINTS..])];
-            let sum = halves[0] + halves[1];
-            let is_known = (sum - whole).abs() <= KNOWN * (halves[0].abs() + halves[1].abs()) || !sum.is_finite();
+            let whole = [one.rest, *c];
+            let [first, last] = halves(whole);
+            let (of_whole, of_halves) = ways.split_at(POINTS);
+            let works = [work(first, &of_halves[..POINTS]), work(last, &of_halves[POINTS..])];
+            let way = Halved::known(whole, works, work(whole, of_whole));
             let energy = match (c - one.rest).abs() <= SMOOTH * one.rest.abs() {
-                true => whole,
-                false if is_known => sum,
+                true => work(whole, of_whole),
+                false if way.is_known(way.size()) => way.sum(),
                 false => self.energy(*c, one.rest, &one.parameters),
             };
             [energy, own[0], function.slope_of(around, *c, one.rest)]
@@ -68,36 +68,29 @@ impl Law {
         springs.iter().zip(forces.chunks_exact(count)).map(pull).collect()
     }
 
-    /// The energy `∫ T dc` from rest, by a quadrature that is refined until it agrees with that of its halves.
+    /// The energy `∫ T dc` from rest, by a quadrature that is refined until it agrees with that of its halves: of all parts of the way, the one
+    /// whose halves disagree most with it is halved next.
     pub fn energy(&self, c: f64, rest: f64, parameters: &[f64]) -> f64 {
         let whole = self.work([rest, c], rest, parameters);
         if (c - rest).abs() <= SMOOTH * rest.abs() {
-            whole
-        } else {
-            self.refined([rest, c], whole, 0.0, rest, parameters, HALVINGS)
+            return whole;
         }
-    }
-
-    /// The work on a part of the way, of which one rule knows `whole`. `known` is the size of the work on the ways that this one is a half of: what is small beside
-    /// that is not refined, however far the measure is from rest.
-    fn refined(
-        &self,
-        [from, to]: [f64; 2],
-        whole: f64,
-        known: f64,
-        rest: f64,
-        parameters: &[f64],
-        halvings: usize,
-    ) -> f64 {
-        let middle = from + (to - from) / 2.0;
-        let halves = [[from, middle], [middle, to]];
-        let works = halves.map(|half| self.work(half, rest, parameters));
-        let sum = works[0] + works[1];
-        let known = known.max(works[0].abs() + works[1].abs());
-        if halvings == 0 || !sum.is_finite() || (sum - whole).abs() <= KNOWN * known {
-            return sum;
+        let halved = |way, work| Halved::of(way, work, |half| self.work(half, rest, parameters));
+        let first = halved([rest, c], whole);
+        if first.is_known(first.size()) {
+            return first.sum();
         }
-        (0..2).map(|i| self.refined(halves[i], works[i], known, rest, parameters, halvings - 1)).sum()
+        let mut parts = vec![first];
+        for _ in 0..HALVINGS {
+            let size = parts.iter().map(Halved::size).sum();
+            let worst = (0..parts.len()).max_by(|a, b| parts[*a].doubt.total_cmp(&parts[*b].doubt)).unwrap_or(0);
+            if parts[worst].is_known(size) {
+                break;
+            }
+            let Halved { halves, works, .. } = parts.swap_remove(worst);
+            parts.extend(halves.into_iter().zip(works).map(|(half, work)| halved(half, work)));
+        }
+        parts.iter().map(Halved::sum).sum()
     }
 
     /// `∫ T dc` by one rule without refinement.
@@ -114,6 +107,44 @@ impl Law {
             }
         }
     }
+}
+
+/// A part of the way of a spring, in two halves.
+struct Halved {
+    halves: [[f64; 2]; 2],
+    /// The work on each half, by one rule.
+    works: [f64; 2],
+    /// How far their sum is from the work on the part by one rule.
+    doubt: f64,
+}
+
+impl Halved {
+    fn of(way: [f64; 2], whole: f64, work: impl Fn([f64; 2]) -> f64) -> Halved {
+        Halved::known(way, halves(way).map(work), whole)
+    }
+
+    fn known(way: [f64; 2], works: [f64; 2], whole: f64) -> Halved {
+        Halved { halves: halves(way), works, doubt: (works[0] + works[1] - whole).abs() }
+    }
+
+    fn sum(&self) -> f64 {
+        self.works[0] + self.works[1]
+    }
+
+    fn size(&self) -> f64 {
+        self.works[0].abs() + self.works[1].abs()
+    }
+
+    /// Whether the doubt is rounding beside the size of the work on the whole way: what is small beside that is not refined, however far the
+    /// measure is from rest. What is not finite is not refined either.
+    fn is_known(&self, size: f64) -> bool {
+        self.doubt <= KNOWN * size || !self.sum().is_finite()
+    }
+}
+
+fn halves([from, to]: [f64; 2]) -> [[f64; 2]; 2] {
+    let middle = from + (to - from) / 2.0;
+    [[from, middle], [middle, to]]
 }
 
 /// The points and weights of the quadrature that integrates the force.

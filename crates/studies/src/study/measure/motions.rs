@@ -5,7 +5,7 @@ use crate::analysis::homogenise::folded_entries;
 use crate::dynamics::largest_square;
 use crate::error::Result;
 use crate::model::{Entries, Specimen, Support};
-use crate::solve::{is_definite, lowest_modes};
+use crate::solve::{eigenvalues, is_definite, lowest_modes};
 use crate::study::time::{RELEASE, Raised};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
@@ -65,10 +65,10 @@ impl<'a> Motions<'a> {
             is_complete,
         };
         if self.free() <= FEW {
-            let eigenvalues = self.dense().symmetric_eigenvalues();
-            let floor = NOTHING * eigenvalues.amax();
-            let releasing = eigenvalues.iter().filter(|value| **value < -floor).count();
-            let zero = eigenvalues.iter().filter(|value| value.abs() <= floor).count();
+            let all = eigenvalues(self.dense());
+            let floor = NOTHING * all.amax();
+            let releasing = all.iter().filter(|value| **value < -floor).count();
+            let zero = all.iter().filter(|value| value.abs() <= floor).count();
             return Ok(counted(releasing, zero, true));
         }
         if !is_definite(&self.entries, &self.support, NOTHING)? {
@@ -181,7 +181,7 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
                     gram[(a, b)] += row[a] * row[b];
                 }
             }
-            gram.symmetric_eigenvalues().iter().filter(|value| **value > INDEPENDENT * count).count()
+            eigenvalues(gram).iter().filter(|value| **value > INDEPENDENT * count).count()
         };
         let all = || points.iter().flat_map(|p| p * d..(p + 1) * d);
         rank(&mut all()) - rank(&mut all().filter(|dof| support.is_fixed(*dof)))

@@ -10,6 +10,7 @@ use crate::fit::{
 };
 use crate::random::Random;
 use crate::scalar::{DoubleDouble, Real};
+use crate::solve;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use nalgebra::{DMatrix, DVectorView};
@@ -237,7 +238,7 @@ impl Subject<'_> {
         if k.iter().any(|entry| !entry.is_finite()) {
             return;
         }
-        let mut eigenvalues: Vec<f64> = k.symmetric_eigenvalues().iter().copied().collect();
+        let mut eigenvalues: Vec<f64> = solve::eigenvalues(k).iter().copied().collect();
         eigenvalues.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
         let largest = eigenvalues[0].abs();
         // Without the rigid motions, whose eigenvalues are nearest to zero.

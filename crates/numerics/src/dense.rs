@@ -1,0 +1,17 @@
+//! Dense matrices whose size is the caller's, such as the stiffness of a small network.
+//!
+//! A generic function is compiled, and optimised, with the package that calls it. These are compiled here, so that callers whose own code is
+//! not optimised run them at full speed.
+
+use nalgebra::{DMatrix, DVector};
+
+/// All λ with `A v = λ v`, of a symmetric matrix A, n × n, in no order. It is done in n³ operations.
+///
+/// ```
+/// use nalgebra::dmatrix;
+/// let eigenvalues = springfit_numerics::dense::eigenvalues(dmatrix![2.0, 1.0; 1.0, 2.0]);
+/// assert!((eigenvalues.min() - 1.0).abs() < 1e-14 && (eigenvalues.max() - 3.0).abs() < 1e-14);
+/// ```
+pub fn eigenvalues(a: DMatrix<f64>) -> DVector<f64> {
+    a.symmetric_eigenvalues()
+}
