@@ -21,7 +21,8 @@ use rayon::prelude::*;
 
 /// The number of cells that one thread fits at a time: enough that starting the thread costs nothing.
 pub(super) const CHUNK: usize = 512;
-/// The number of cells between two reports of progress.
+/// The number of cells between two reports of progress. So many chunks keep all threads busy until nearly the end of a
+/// round.
 pub(super) const ROUND: usize = 64 * CHUNK;
 /// The number of cells that one thread fits at a time where each takes a good part of a second: whole lanes, and few enough that
 /// progress is reported, and a caller can end the work, every few seconds.
@@ -211,6 +212,7 @@ impl CellFits {
             Ok(tally)
         };
         let (size, round_size) = match fit.is_costly() {
+            // Two chunks for each thread: whoever ends early finds another one, and the end of a round stays near.
             true => (COSTLY_CHUNK, 2 * COSTLY_CHUNK * rayon::current_num_threads()),
             false => (CHUNK, ROUND),
         };

@@ -15,9 +15,11 @@ use crate::scalar::{Packed, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the other is faster,
+/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the
+/// other is faster.
 const MOST_FACTORED: usize = 120;
-/// and beyond this number conjugate gradients, where the equations of the nodes are solved.
+/// The most bounded constants that are solved by factors where the equations of the nodes are solved. Beyond it
+/// conjugate gradients are faster, whose products with M are cheap there.
 const MOST_FACTORED_WITH_NODES: usize = 60;
 
 /// How the equations of a fit are solved, with the working memory.

@@ -73,6 +73,8 @@ impl Congruence {
         let mut unit = 0.0;
         each_cell(element, points, connectivity, 0, |cell, x, _| {
             let lengths = lengths(x);
+            // All cells are rounded in the unit of the first one, so that equal lengths have equal keys. Where rounding
+            // puts equal lengths on two sides of a step, a shape is only fitted twice.
             if unit == 0.0 {
                 unit = EQUAL * lengths.iter().fold(0.0, |a, length| length.abs().max(a));
             }

@@ -133,6 +133,8 @@ pub struct Exchanges {
 impl Exchanges {
     pub fn new(positive: Vec<bool>) -> Exchanges {
         let m = positive.len();
+        // The numbers α = 3 and β = m + 1 are those of Kim and Park. Murty's rule ends, but it may visit very many
+        // sets: a search that has no exchanges left is given to the solver of singular equations.
         Exchanges { positive, fewest: m + 1, patience: 3, left: 100 + 10 * m }
     }
 

@@ -14,17 +14,22 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
 const PROMISE: f64 = 1e-12;
-/// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more than this share.
+/// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more
+/// than this share. That tells optima apart; those that are kept are finished to the finer share on all shapes.
 const ROUGH_PROMISE: f64 = 1e-8;
-/// Starts whose errors differ by less than this share of the best error have found the same optimum.
+/// Starts whose errors differ by less than this share of the best error have found the same optimum. A local optimum
+/// that is worse by less than that is as good to whoever uses the springs.
 const SAME: f64 = 1e-3;
-/// Starts whose sums of squares differ by less than this share are finished together.
+/// Starts whose sums of squares differ by less than this share are finished together. It is above what
+/// [`ROUGH_PROMISE`] leaves of each of them.
 const EQUAL: f64 = 1e-6;
-/// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one.
+/// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one. Such
+/// parameters are exponents and rates of strains, numbers whose size is mostly near one.
 const STARTS: [f64; 2] = [0.1, 10.0];
 /// The least number of shapes on which starts search, and the least number of their equations for each unknown.
 const FEW: [usize; 2] = [64, 8];
-/// A prime by which the few shapes are spread over all.
+/// A prime by which the few shapes are spread over all. As it is prime, no shape comes twice unless their number is a
+/// multiple of it, and it meets no period of a list.
 const STRIDE: usize = 1_000_003;
 
 /// The best of several starts.

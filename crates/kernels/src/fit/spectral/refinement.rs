@@ -16,13 +16,14 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const STEPS: usize = 8;
 /// A first step above this, relative to t, does not start near the optimum.
 const LARGEST: f64 = 0.1;
-/// A step below this leaves an error of the order of its square, which is negligible if the gap confirms it,
+/// A step below this leaves an error of the order of its square, which is negligible if the gap confirms it.
 const CONVERGED: f64 = 1e-6;
-/// that is, if the gap is below this, relative to t.
+/// The gap below which it does, relative to t: the square of [`CONVERGED`].
 const CLOSED: f64 = 1e-12;
 /// Steps that end below this are as accurate as rounding allows.
 const SETTLED: f64 = 1e-10;
-/// Eigenvalues of the equations below this count as zero: on degenerate shapes motions are linearly dependent.
+/// Eigenvalues of the equations below this count as zero: on degenerate shapes motions are linearly dependent. The
+/// equations are in units of t, so that their other eigenvalues are of the size of one.
 const SINGULAR: f64 = 1e-9;
 /// Factors of the width within which an eigenvalue counts as active: first the one from the barrier method, then those
 /// that are tried if the steps do not converge.
@@ -74,6 +75,7 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
         if is_inside && value <= optimum.value + rounding {
             let bound = problem.bound(&active.x, &active.y);
             *optimum = Optimum { kappa: kappa.clone(), value, bound: optimum.bound.max(bound) };
+            // Value and bound carry a rounding each, and the value that is foreseen has one added.
             if is_near && value - bound < CLOSED * value + 3.0 * rounding {
                 return true;
             }

@@ -14,7 +14,8 @@ use crate::stiffness::{Fault, Geometry};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// An unknown below this share of the largest of its kind is a rounding error.
+/// An unknown below this share of the largest of its kind is a rounding error. It becomes zero, so that a spring that
+/// does not pull is stored as one.
 const ROUNDING: f64 = 1e-13;
 /// Tensions below this share of `k c` are rounding errors: tensions are stored as `k c − T`, and what remains of them
 /// is not in equilibrium.
