@@ -261,7 +261,8 @@ impl Element {
     fn side_table(&self, side: &Side) -> SideTable {
         let d = self.dimension();
         let (origin, tangents) = side.embedding(self.cell);
-        let on_side = |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < cell::SAME;
+        let on_side =
+            |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < cell::SAME;
         let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
         let tabulation = self.side_tabulation(side, &nodes, 2 * self.degree());
         SideTable { nodes, tabulation }
@@ -353,8 +354,9 @@ fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
         image[0] = -image[0];
         image
     };
-    let find =
-        |image: Vec<f64>| nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < cell::SAME));
+    let find = |image: Vec<f64>| {
+        nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < cell::SAME))
+    };
     let first: Option<Vec<usize>> = nodes.iter().map(|at| find(swapped(at))).collect();
     let turns = |order: &Vec<usize>| order.iter().enumerate().any(|(a, b)| a != *b);
     first.filter(turns).or_else(|| nodes.iter().map(|at| find(mirrored(at))).collect())

@@ -189,6 +189,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         for (i, &lane) in lanes.iter().enumerate() {
             let constants = &mut constants[lane * m..][..m];
             let (k, rank) = match wides.get_mut(i) {
+                // The constants without bounds tell where to begin, unless springs of a group share an unknown: those
+                // are in another order.
                 Some(wide) => solve_wide(wide, (wide.size() == m).then_some(&*constants)),
                 None => {
                     let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();

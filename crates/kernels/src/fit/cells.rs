@@ -147,6 +147,7 @@ impl CellFits {
                 let few: Vec<usize> = congruence.representatives.iter().flat_map(nodes).copied().collect();
                 let mut fitted = CellFits::new(self.springs.clone());
                 fitted.constants.resize(shapes * m, 0.0);
+                // The caller counts cells, not shapes.
                 let mut share = |done: usize| progress(done * cells / shapes);
                 let own = moduli.of_cells(&congruence.representatives);
                 let own = BlockValues::listed(&own, matches!(moduli, BlockValues::Uniform(_)));
@@ -221,6 +222,7 @@ impl CellFits {
             let chunks = nodes.par_chunks(size * n).zip(constants.par_chunks_mut(size * m)).enumerate();
             let results: Vec<Result<Tally>> =
                 chunks.map(|(i, (nodes, constants))| chunk(round * round_size + i * size, nodes, constants)).collect();
+            // In the order of the cells, so that the first faulty one is told and lists do not depend on the threads.
             for tally in results {
                 let tally = tally?;
                 self.deficient += tally.deficient;

@@ -215,6 +215,7 @@ impl<T: Packed> Closed<T> {
             Steps::Nodes if springs.len() > MOST_FACTORED_WITH_NODES => {
                 return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
             }
+            // The equations of the nodes have no rows of single springs, which bounds need.
             Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
             Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED => return false,
             Steps::Springs | Steps::Groups => {}

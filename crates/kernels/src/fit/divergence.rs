@@ -99,6 +99,7 @@ impl<T: Real> Divergence<T> {
             self.kappa[i] = start.clone();
             self.step[i] = zero.clone();
         }
+        // The first trial is the start itself.
         let mut alpha = zero.clone();
         let mut barrier = one.constant(if self.nonnegative { &BARRIER[0] } else { &0.0 });
         let last = one.constant(if self.nonnegative { &BARRIER[1] } else { &0.0 });
@@ -185,6 +186,7 @@ impl<T: Real> Divergence<T> {
             for i in 0..c {
                 self.step[i] = inside.choose(&self.trial[i], &self.step[i]);
             }
+            // A lane that is outside tries half of its last step, while the others go on.
             alpha = inside.choose(&moving, &alpha.clone().scaled(&0.5));
             if self.reached.exceeds(&zero) {
                 break;

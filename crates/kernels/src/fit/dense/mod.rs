@@ -102,6 +102,7 @@ fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]
         let (before, row) = a.split_at_mut(s * n);
         let row = &mut row[..=s];
         let pivot = eliminate_row(row, before, inverse, n, s);
+        // An entry that is not above zero has no relative pivot; its direction is removed below.
         let diagonal = row[s].choose(&row[s], &one);
         // The quotient is not in the chain from pivot to pivot.
         least = least.least(&(pivot.clone() / &diagonal));

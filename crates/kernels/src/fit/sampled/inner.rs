@@ -59,6 +59,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     let total = cell.shapes(Part::Trained);
     let all = Drawn::new(cell, Part::Trained, (0..total).collect())?;
     let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
+    // More than half of the shapes would save little.
     let few = match starts > 1 && 2 * few < total {
         true => Some(Drawn::new(cell, Part::Trained, (0..few).map(|i| i * STRIDE % total).collect())?),
         false => None,
@@ -112,6 +113,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     let square = |end: &End| if is_sound(end) { end.sums.sums.square } else { f64::INFINITY };
     let best = ends.iter().map(|(end, _)| end).min_by(|a, b| square(a).total_cmp(&square(b)));
     let best = best.filter(|end| is_sound(end)).ok_or_else(without_values)?;
+    // Errors are roots of these squares. An optimum of zero is met only to what ends a search.
     let limit = (square(best).sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.sums.sums.size;
     let is_best = |(end, _): &&(End, f64)| square(end) <= limit;
     let agreeing = ends.iter().filter(is_best).map(|(_, count)| count).sum::<f64>() / starts as f64;

@@ -60,6 +60,7 @@ pub fn minimize(
         };
         let (slope, bend) = (dot(&slopes, &step), dot(&step, &product(&curvature, &step)));
         let promise = -slope - 0.5 * bend;
+        // The first promise is that of the quadratic function alone, and says nothing of this one.
         if !(promise > PROMISE * scale.max(own.abs())) && is_scaled {
             return Ok(Some(Found { unknowns: at, converged: true }));
         }

@@ -41,6 +41,7 @@ pub fn refine(problem: &Problem, optimum: &mut Optimum) {
         let mut kappa = start.kappa.clone();
         let Some(active) = Active::at(problem, &mut kappa, start.value, width) else { continue };
         let set = (active.above, active.below, active.free.clone());
+        // Another width may find the same set, whose steps would be the same.
         if tried.contains(&set) {
             continue;
         }
@@ -112,6 +113,7 @@ impl Active {
         let spectrum = problem.spectrum.clone();
         let mut active = Active { t, spectrum, above: 0, below: 0, free: Vec::new(), x: empty(), y: empty() };
         let values = &active.spectrum.values;
+        // The end is outside by rounding: distances from t would have no sign.
         if !(values.amax() < t) {
             return None;
         }
@@ -119,6 +121,7 @@ impl Active {
         let near = |distance: f64| distance * distance < width * width * mu * t;
         active.above = values.iter().filter(|e| near(t - **e)).count();
         active.below = values.iter().filter(|e| near(t + **e)).count();
+        // Without an active eigenvalue there is no equation, and one cannot be at both ends.
         if active.above + active.below == 0 || active.above + active.below > p {
             return None;
         }
@@ -295,6 +298,8 @@ fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
     if !system.iter().all(|entry| entry.is_finite()) {
         return None;
     }
+    // Eigenvalues, which tell what is singular, take several times as long: they are for the few systems that need
+    // them.
     let factors = system.clone().lu();
     if factors.lu_internal().diagonal().amin() > SINGULAR {
         return factors.solve(rhs);
