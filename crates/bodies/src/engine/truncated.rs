@@ -61,7 +61,7 @@ impl Truncated {
         Truncated::prepare(model, support, setting, (false, DENSE))
     }
 
-    /// The same with the equations solved by iterations, whatever their number.
+    /// The effective stiffness as [`Truncated::new`] has it, with the equations solved by iterations, whatever their number.
     ///
     /// # Errors
     /// Those of [`Truncated::new`].
