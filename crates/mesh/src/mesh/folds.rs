@@ -7,7 +7,8 @@ use crate::stiffness::gather;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Heights below this share of the lengths count as zero.
+/// Heights below this share of the lengths count as zero. A centre in the plane of the shared side is on neither side
+/// of it.
 const FLAT: f64 = 1e-9;
 
 impl Mesh {
