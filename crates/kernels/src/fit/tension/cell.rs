@@ -89,6 +89,7 @@ impl<'a> Cells<'a> {
             true => solve_bounded(&problem, &bounded, free),
             false => (free, true),
         };
+        // Constants and tensions have each their own scale: the largest of one says nothing of the other.
         for sort in [true, false] {
             let own: Vec<usize> = every.iter().copied().filter(|&j| unknowns[j].is_constant == sort).collect();
             let largest = own.iter().map(|&j| optimum.unknowns[j].abs()).fold(0.0, f64::max);
