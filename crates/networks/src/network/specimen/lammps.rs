@@ -141,6 +141,10 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
                 "none",
             ));
         }
+        _ if crosses => {
+            notes.push("bonds cross the box of the file, with which the network does not repeat itself".to_string());
+            specimen
+        }
         _ => {
             notes.push("no bond crosses the box of the file: the network is a body".to_string());
             specimen
