@@ -115,10 +115,120 @@ pub use springfit_kernels::{element, fit, material, springs, stiffness};
 pub use springfit_mesh::mesh;
 pub use springfit_studies::study;
 
-pub use springfit_foundation::file::{
-    Edition, Sum, abandon, check_apart, check_file, check_folder, files_in, finish_edition, write_whole, write_with,
-};
-pub use springfit_foundation::named::{suggestion, unknown};
+/// Files that come into a folder together, and replace those of the run before.
+///
+/// ```
+/// let folder = std::env::temp_dir().join(format!("springfit-edition-{}", std::process::id()));
+/// let mut edition = springfit::Edition::begin(&folder, &["a.txt"], &[], &[])?;
+/// edition.write("a.txt", |path| springfit::write_whole(path, b"one"))?;
+/// assert!(!folder.join("a.txt").exists());
+/// edition.publish()?;
+/// assert_eq!(std::fs::read(folder.join("a.txt")).unwrap(), b"one");
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::Edition;
+/// A checksum, by which files of a run are known again.
+///
+/// ```
+/// let sum = springfit::Sum::of(b"");
+/// assert_eq!(sum.to_string(), "cbf29ce484222325"); // FNV-1a of nothing
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::Sum;
+/// Takes back what this process has begun to write, before it ends.
+///
+/// ```no_run
+/// springfit::abandon();
+/// std::process::exit(130);
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::abandon;
+/// Refuses an output that is an input, before long work.
+///
+/// ```
+/// let file = std::env::temp_dir().join(format!("springfit-apart-{}", std::process::id()));
+/// springfit::write_whole(&file, b"")?;
+/// assert!(springfit::check_apart(&[file.clone()], &[file.clone()]).is_err());
+/// # std::fs::remove_file(&file).unwrap();
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::check_apart;
+/// Refuses a file that could not be written, before long work.
+///
+/// ```
+/// let file = std::env::temp_dir().join("springs.json");
+/// assert!(springfit::check_file(&file).is_ok());
+/// assert!(springfit::check_file("/".as_ref()).is_err());
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::check_file;
+/// Refuses a folder that could not be written into, before long work.
+///
+/// ```
+/// let missing = std::env::temp_dir().join("springfit-not-yet-there");
+/// assert!(springfit::check_folder(&missing).is_ok());
+/// assert!(!missing.exists());
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::check_folder;
+/// Lists the files of a folder with one ending.
+///
+/// ```
+/// let scenes = springfit::files_in("scenes".as_ref(), "toml")?;
+/// assert!(scenes.contains(&"scenes/square_quad.toml".into()));
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::files_in;
+/// Ends what a process left that ended while it put files in their places.
+///
+/// ```
+/// springfit::finish_edition(&std::env::temp_dir())?; // nothing was left there
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::finish_edition;
+/// Writes a file at once: whoever reads sees the old file or the new one.
+///
+/// ```
+/// let file = std::env::temp_dir().join(format!("springfit-whole-{}", std::process::id()));
+/// springfit::write_whole(&file, b"k\n50\n")?;
+/// assert_eq!(std::fs::read(&file).unwrap(), b"k\n50\n");
+/// # std::fs::remove_file(&file).unwrap();
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::write_whole;
+/// Writes a file at once, with content that is made while it is written.
+///
+/// ```
+/// let file = std::env::temp_dir().join(format!("springfit-with-{}", std::process::id()));
+/// springfit::write_with(&file, |to| (0..3).try_for_each(|k| writeln!(to, "{k}")))?;
+/// assert_eq!(std::fs::read(&file).unwrap(), b"0\n1\n2\n");
+/// # std::fs::remove_file(&file).unwrap();
+/// # Ok::<(), springfit::error::Error>(())
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::file::write_with;
+/// Says which known name was meant.
+///
+/// ```
+/// assert_eq!(springfit::suggestion(["edge", "diagonal"], "egde"), "; did you mean \"edge\"?");
+/// assert_eq!(springfit::suggestion(["edge", "diagonal"], "bulk"), "");
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::named::suggestion;
+/// Makes the error for a name that is not known.
+///
+/// ```
+/// let error = springfit::unknown("a group", ["edge", "diagonal"], "egde");
+/// assert_eq!(error.to_string(), "expected a group, found \"egde\"; did you mean \"edge\"?");
+/// ```
+#[doc(inline)]
+pub use springfit_foundation::named::unknown;
 #[cfg(feature = "cli")]
 use springfit_foundation::{file, number};
 #[cfg(feature = "cli")]

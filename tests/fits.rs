@@ -519,6 +519,29 @@ fn certified_fits_know_no_scale() {
     }
 }
 
+/// Two pairs of triangles behind one of a metre: those of 10 nm differ by a ten-thousandth, those of 100 000 km are of unlike shapes.
+#[test]
+fn cells_of_unlike_sizes_do_not_take_each_others_constants() {
+    let element = Element::linear_simplex(2).unwrap();
+    let springs = Springs::select(&element, None).unwrap();
+    let moduli = Material::for_body(2, 1e4, 0.3, None, None).unwrap().moduli();
+    let legs = [[1.0, 1.0], [1e-8, 1e-8], [1e-8, 1.00005e-8], [1e8, 1e8], [1e8, 2e8]];
+    let corners = |[a, b]: [f64; 2]| [0.0, 0.0, a, 0.0, 0.0, b];
+    let points: Vec<f64> = legs.into_iter().flat_map(corners).collect();
+    let connectivity: Vec<usize> = (0..3 * legs.len()).collect();
+    let fit = Fit::new(Objective::Spectral(MotionWeight::None));
+    let fits = fit_cells(&element, &springs, &points, &connectivity, moduli, &fit, &mut |_| {}).unwrap();
+    assert_eq!(fits.reused, 0);
+    for (legs, found) in legs.into_iter().zip(fits.constants.chunks(springs.len())) {
+        let alone = fit_element(&element, &springs, &corners(legs), moduli, &fit).unwrap();
+        // Two runs of one solver on the same numbers.
+        assert!(
+            found.iter().zip(&alone).all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()),
+            "{legs:?}: {found:?} {alone:?}"
+        );
+    }
+}
+
 /// Cells of a regular box are of one shape (or few, where a box is cut into simplices), those of a jittered one are not; what
 /// is taken over is what a fit of each cell alone gives, to the rounding of their positions.
 #[test]

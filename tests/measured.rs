@@ -211,6 +211,10 @@ fn a_periodic_box_is_homogenised() {
         assert!((value - expected).abs() < 1e-9, "{value} {expected}");
     }
     assert!((c.zener.unwrap() - 2.0).abs() < 1e-9 && (found.density.unwrap() - 1.0).abs() < 1e-12);
+    // Taken as a body, it is not said that no bond crosses the box.
+    let body = SpecimenOptions { is_periodic: Some(false), ..SpecimenOptions::default() };
+    let notes = read_specimen(&path, &body).unwrap().notes;
+    assert_eq!(notes, ["bonds cross the box of the file, with which the network does not repeat itself"]);
     // As a body the same bonds would cross it: a cell of one lattice spacing leaves two images equally near.
     let small = SpecimenOptions { cell: Some(DMatrix::identity(3, 3) * 2.0), ..SpecimenOptions::default() };
     assert!(read_specimen(&path, &small).is_err());

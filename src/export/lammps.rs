@@ -137,6 +137,7 @@ fn input(job: &Job) -> String {
         }
     }
     let (boundary, plane) = if d == 2 { ("s s p", "fix plane all enforce2d\n") } else { ("s s s", "") };
+    // The longest stable step is that at rest: a fifth of it leaves room for springs that stiffen.
     let (longest_step, step) = (job.step, 0.2 * job.step);
     // A ten-thousandth of a millionth of the weight.
     let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();

@@ -77,6 +77,7 @@ fn arrays(job: &Job) -> io::Result<Vec<u8>> {
     let springs = &job.parts.lengths;
     // The force is exp(Y) (l/L − 1).
     let stiffness = || springs.iter().map(|s| s.constant * s.rest);
+    // The longest stable step is that at rest: half of it leaves room for springs that stiffen.
     let substeps = (FRAME / (0.5 * job.step)).ceil().max(1.0);
     let mut file = ArrayFile::new(Cursor::new(Vec::new()));
     file.real("init_vertices", &[count, 3], order.iter().flat_map(place))?;
@@ -109,6 +110,7 @@ fn above_ground(job: &Job) -> f64 {
 /// The damper that all springs share, kg/s.
 fn equal_damper(network: &NetworkRecord) -> Option<f64> {
     let first = network.springs.first()?.damper;
+    // Dampers of one ratio are computed for each spring.
     network.springs.iter().all(|spring| (spring.damper - first).abs() <= 1e-9 * first).then_some(first)
 }
 

@@ -82,7 +82,7 @@ pub enum Stands {
     Still,
 }
 
-/// Of programs that show or pass on the numbers of a network, whatever they were fitted for.
+/// These are the engines of programs that show or pass on the numbers of a network, whatever they were fitted for.
 pub(super) const EVERY_ENGINE: &[Engine] =
     &[Engine::Xpbd, Engine::Vbd, Engine::Jolt, Engine::NewtonXpbd, Engine::NewtonVbd];
 

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::report::NetworkRecord;
 use serde::Serialize;
 
-/// As in Jolt, constraints have compliances above zero and do not pull against each other at rest.
+/// What is held is that of Jolt: constraints have compliances above zero and do not pull against each other at rest.
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: true,

@@ -53,6 +53,7 @@ impl Comparison {
             rows.push(row);
             let errors: Option<Vec<f64>> = fit.loads.iter().map(|l| l.error.map(|e| e.rms)).collect();
             if let Some(errors) = errors.filter(|errors| !errors.is_empty()) {
+                // An error of zero has no logarithm: rounding takes its place.
                 let mean = errors.iter().map(|e| e.max(1e-12).ln()).sum::<f64>() / errors.len() as f64;
                 points.push((fit.fit.name.clone(), seconds, mean.exp()));
             }

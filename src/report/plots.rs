@@ -188,6 +188,7 @@ fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
     let (Some(&least), Some(&largest)) = (values.first(), values.last()) else {
         return Err(Error::new(format!("{name} has no springs between two points")));
     };
+    // Where all are equal, an interval has a width all the same.
     let width = ((largest - least) / INTERVALS as f64).max(1e-6 * largest.abs()).max(f64::MIN_POSITIVE);
     let mut counts = vec![0usize; INTERVALS];
     values.iter().for_each(|value| counts[(((value - least) / width) as usize).min(INTERVALS - 1)] += 1);

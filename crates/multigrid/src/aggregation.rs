@@ -31,6 +31,7 @@ fn strong<const N: usize>(a: &BlockMatrix<N, N>, is_held: &[bool], threshold: f6
                 let coupling = square(&a.values[at]);
                 let bound = threshold * threshold * sizes[row] * sizes[column];
                 if column != row && !is_held[column] && coupling > bound {
+                    // The diagonal of a node may be zero, by which nothing may be divided.
                     list.push((column as u32, (coupling.sqrt() / sizes[column].max(f64::MIN_POSITIVE)) as f32));
                 }
             }
@@ -54,9 +55,11 @@ pub(crate) fn aggregates<const N: usize>(a: &BlockMatrix<N, N>, is_held: &[bool]
             count += 1;
         }
     }
+    // A node that joins attracts no others, so that an aggregate reaches no farther than two couplings.
     let whole = of.clone();
     for node in (0..a.rows()).filter(|node| whole[*node] == NONE) {
         let joined = around(node).iter().filter(|(other, _)| whole[*other as usize] != NONE);
+        // Of equal couplings that to the first node: the levels are the same on every machine.
         if let Some((other, _)) = joined.max_by(|x, y| x.1.total_cmp(&y.1).then(y.0.cmp(&x.0))) {
             of[node] = whole[*other as usize];
         }

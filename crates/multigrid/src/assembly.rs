@@ -58,6 +58,7 @@ impl<const D: usize> BlockMatrix<D, D> {
                 continue;
             }
             let (low, high) = (low as usize, high as usize + 1);
+            // A piece for each thread, unless it would be too short to be worth one.
             let share = (high - low).div_ceil(threads).max(PIECE / 16);
             let mut pieces = Vec::new();
             let mut rest = &mut self.values[pattern.starts[low]..pattern.starts[high]];

@@ -32,6 +32,7 @@ impl<const N: usize> Bottom<N> {
                 }
             }
         }
+        // What is held gets an equation of its own, without which there is no factor.
         for (i, _) in held.iter().enumerate().filter(|(_, held)| **held) {
             (0..held.len()).for_each(|j| (dense[(i, j)], dense[(j, i)]) = (0.0, 0.0));
             dense[(i, i)] = 1.0;

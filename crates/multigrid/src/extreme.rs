@@ -8,9 +8,9 @@ use crate::parallel::{combine, dot};
 use crate::random::Random;
 use crate::settings::{Event, Watch};
 
-/// The quotient is found once it changes by less than this share of itself, …
+/// The quotient is found once it changes by less than this share of itself.
 const SETTLED: f64 = 1e-3;
-/// … so many times one after the other.
+/// The number of such changes, one after the other, that are needed: a search may rest on a saddle for a step or two.
 const TIMES: usize = 4;
 
 /// Which end of the quotients.
@@ -122,6 +122,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             self.apply(&residual, &mut w, &mut room);
             let mut basis = vec![best.clone()];
             for mut direction in [Some(images(w)), last.take()].into_iter().flatten() {
+                // Twice, because the first pass leaves rounding of what it takes out.
                 for _ in 0..2 {
                     for own in &basis {
                         let along = dot(&own.bx, &direction.x);
@@ -131,6 +132,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                         break;
                     }
                 }
+                // A direction that depends on the others is only rounding, which has no length of one after it is
+                // scaled.
                 if (dot(&direction.x, &direction.bx) - 1.0).abs() < 1e-6 {
                     basis.push(direction);
                 }

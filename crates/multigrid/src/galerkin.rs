@@ -38,6 +38,7 @@ pub(crate) fn galerkin<const R: usize, const C: usize>(
     let around = |coarse: usize| &places[rows_of[coarse]..rows_of[coarse + 1]];
     // Rows of the result at a time, so that the rows of A P around them take ROOM: a row of A P has some four times the blocks of P's.
     let each = 4 * p.values.len() * size_of::<Block<R, C>>() / count.max(1);
+    // Not fewer rows than threads can share.
     let batch = (ROOM / each.max(1)).clamp(256, count.max(256));
     let mut local = vec![ABSENT; a.rows()];
     let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
@@ -158,6 +159,8 @@ fn mirrored<const N: usize>(upper: &Pattern, values: &[Block<N, N>]) -> BlockMat
             columns.push(upper.columns[at]);
             let block = &values[at];
             let is_diagonal = upper.columns[at] as usize == row;
+            // Both halves of a block on the diagonal are summed in other orders; their mean is symmetric to the last
+            // bit.
             let half = |i: usize, j: usize| if is_diagonal { 0.5 * (block[i][j] + block[j][i]) } else { block[i][j] };
             all.push(std::array::from_fn(|i| std::array::from_fn(|j| half(i, j))));
         }

@@ -8,9 +8,11 @@ use crate::settings::{Event, Watch};
 use crate::tridiagonal::Tridiagonal;
 use rayon::prelude::*;
 
-/// Iterations without a new least residual after which there is no hope.
+/// Iterations without a new least residual after which there is no hope. Residuals rise between falls, the longer the
+/// farther apart the eigenvalues are.
 const PATIENCE: usize = 60;
-/// Times that the residual is worked out anew from the solution.
+/// Times that the residual is worked out anew from the solution. The residual of a recurrence drifts away from the true
+/// one, and each time takes the drift away.
 const RESTARTS: usize = 4;
 /// The square of the share of `‖ |A| |x| ‖` below which a residual is rounding: four units.
 const ROUNDING: f64 = 16.0 * f64::EPSILON * f64::EPSILON;

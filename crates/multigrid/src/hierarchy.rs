@@ -11,7 +11,7 @@ use crate::settings::{Event, LevelSize, Settings, Watch};
 use crate::smoother::Room;
 use std::sync::Arc;
 
-/// The last level has at most so many unknowns where its nodes do not group any more.
+/// The last level has at most so many unknowns where its nodes do not group any more. Their dense matrix has 288 MB.
 const LARGEST: usize = 6000;
 
 /// A hierarchy for a symmetric, positive definite matrix of D × D blocks, with M motions that are carried to all levels.
@@ -71,6 +71,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         tell(watch, levels[0])?;
         let built = Level::new(matrix.clone(), &motions, &is_held, settings, 0);
         let built = built.map_err(|motion| Fault::NotPositive(shown(&matrix, motion)))?;
+        // As much memory as six vectors; the next levels have motions of their own.
         drop(motions);
         let Some((first, mut next)) = built else { return Err(Fault::Stagnant { levels }) };
         let mut others: Vec<Level<M, M>> = Vec::new();

@@ -13,7 +13,8 @@ use crate::tentative::tentative;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Groups that leave more than this share of the nodes are none.
+/// Groups that leave more than this share of the nodes are none. A level with nearly as many nodes costs as much as the
+/// one before it and corrects little that its smoother does not.
 const COARSER: f64 = 0.7;
 
 #[derive(Debug)]
@@ -65,8 +66,11 @@ impl<const R: usize, const C: usize> Level<R, C> {
         let inverse = inverses(&matrix, is_held)?;
         let all_held: Vec<bool> = is_held.iter().map(|held| held.iter().all(|h| *h)).collect();
         let free = all_held.iter().filter(|held| !**held).count();
+        // Couplings even out from level to level, and with them the share that is strong (Vaněk, Mandel and Brezina,
+        // Computing 56, 1996).
         let mut groups = aggregates(&matrix, &all_held, settings.threshold * 0.5_f64.powi(depth));
         if groups.count as f64 > COARSER * free as f64 {
+            // With every coupling as a strong one, what is left still groups.
             groups = aggregates(&matrix, &all_held, 0.0);
         }
         if groups.count as f64 > COARSER * free as f64 {
@@ -74,6 +78,7 @@ impl<const R: usize, const C: usize> Level<R, C> {
         }
         let smoother = Smoother::new(&matrix, inverse, settings.degree, settings.ratio);
         let tentative = tentative(&groups, motions);
+        // The damping that makes the bound of the energy of the prolongator least (Vaněk, Mandel and Brezina 1996).
         let omega = 4.0 / 3.0 / smoother.upper;
         let prolongator = prolongator(&matrix, &smoother.inverse, omega, &groups, &tentative);
         let (rows_of, places) = prolongator.pattern.transposed();

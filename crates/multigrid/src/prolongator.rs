@@ -24,6 +24,7 @@ pub(crate) fn prolongator<const R: usize, const C: usize>(
         let first = columns.len();
         for &j in a.pattern.row(row) {
             let own = aggregates.of[j as usize];
+            // A row has few columns: to look through them is faster than a set.
             if own != NONE && !columns[first..].contains(&own) {
                 columns.push(own);
             }

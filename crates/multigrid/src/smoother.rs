@@ -8,9 +8,10 @@ use crate::random::Random;
 use crate::tridiagonal::Tridiagonal;
 use rayon::prelude::*;
 
-/// Steps of Lanczos' method for the largest eigenvalue.
+/// Steps of Lanczos' method for the largest eigenvalue. The smoother needs no more digits than its margin has.
 const STEPS: usize = 15;
-/// Their Ritz value is below the eigenvalue by less than this share of it.
+/// Their Ritz value is below the eigenvalue by less than this share of it. A bound below the eigenvalue would let the
+/// polynomial grow beyond it, and the errors there with it.
 const SAFETY: f64 = 1.1;
 
 /// Polynomial smoothing of errors between `upper / ratio` and `upper`.
@@ -146,6 +147,8 @@ fn largest<const N: usize>(a: &BlockMatrix<N, N>, inverse: &[Block<N, N>]) -> f6
             break;
         }
         if !t.diagonal.is_empty() {
+            // What is left is rounding: the vectors span all that the operator reaches, and a further one would be
+            // noise.
             if size <= 1e-12 * t.diagonal[0].abs() {
                 break;
             }

@@ -4,7 +4,8 @@ use crate::aggregation::{Aggregates, NONE};
 use crate::block::{Block, zero};
 use rayon::prelude::*;
 
-/// What is left of a motion after the others are taken out of it, as a share of it, where it is dependent on them.
+/// What is left of a motion after the others are taken out of it, as a share of it, where it is dependent on them. A
+/// basis vector of less would carry the rounding of the first pass to all levels.
 const DEPENDENT: f64 = 1e-8;
 
 /// `B_i = T_i B_c` for the nodes i of each aggregate c.

@@ -16,6 +16,7 @@ impl Tridiagonal {
         for (i, diagonal) in self.diagonal.iter().enumerate() {
             let coupling = if i == 0 { 0.0 } else { self.beside[i - 1].powi(2) / pivot };
             pivot = diagonal - x - coupling;
+            // The next coupling is divided by it. A zero counts as below x: x is an eigenvalue of what is above.
             if pivot == 0.0 {
                 pivot = -f64::MIN_POSITIVE;
             }
@@ -36,6 +37,7 @@ impl Tridiagonal {
         // The eigenvalue of this number, counted from the least.
         let find = |number: usize| {
             let (mut low, mut high) = (low, high);
+            // More halvings than an interval has numbers, unless it ends near zero.
             for _ in 0..80 {
                 let middle = 0.5 * (low + high);
                 if self.below(middle) > number { high = middle } else { low = middle }

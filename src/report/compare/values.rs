@@ -103,7 +103,7 @@ impl LongTable {
         self.columns.iter().map(column).collect()
     }
 
-    /// As CSV with all digits; what is missing is an empty cell.
+    /// Writes the columns as CSV with all digits; what is missing is an empty cell.
     pub fn csv(&self) -> String {
         let header: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
         let cell = |values: &Values, row: usize| match values {

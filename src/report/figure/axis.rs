@@ -30,6 +30,7 @@ impl Axis {
             let room = (largest / least).powf(0.06).max(1.2);
             return least / room..largest * room;
         }
+        // Values that are all equal, or all zero, have an axis of some width as well.
         let room = 0.05 * (largest - least).max(1e-9 * largest.abs()).max(f64::MIN_POSITIVE);
         least - room..largest + room
     }
@@ -71,5 +72,6 @@ pub(super) fn number(v: &f64) -> String {
 /// The power of a thousand with which a value is easily read: its factor, and its prefix of the SI.
 pub(super) fn prefix(value: f64) -> (f64, &'static str) {
     let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ")];
+    // A value that is written as 1000 with its digits has the next prefix.
     prefixes.into_iter().find(|(factor, _)| value.abs() >= *factor * 0.9995).unwrap_or((1e-9, "n"))
 }

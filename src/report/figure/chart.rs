@@ -99,6 +99,7 @@ impl Chart {
                 return Err(Error::new(format!("the figure cannot be drawn: {words}")));
             }
         }
+        // The length of a bar is its value: it begins at zero.
         if bars {
             y.start = 0.0;
         }

@@ -109,6 +109,7 @@ fn check_same(mesh: &Mesh, network: &NetworkRecord) -> Result<()> {
     let flat: Vec<f64> = network.points.iter().flatten().copied().collect();
     let size = flat.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
     let is_same =
+        // A network file may have its points in single precision.
         flat.len() == mesh.points.len() && flat.iter().zip(&mesh.points).all(|(a, b)| (a - b).abs() <= 1e-6 * size);
     match is_same {
         true => Ok(()),

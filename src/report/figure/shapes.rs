@@ -55,6 +55,7 @@ impl Deformation {
         let bound = |k: usize, pick: fn(f64, f64) -> f64, from: f64| all.iter().map(|p| p[k]).fold(from, pick);
         let (low, high) =
             ([0, 1].map(|k| bound(k, f64::min, f64::INFINITY)), [0, 1].map(|k| bound(k, f64::max, f64::NEG_INFINITY)));
+        // A body that is seen as a point or a line has no width, by which nothing may be divided.
         let [wide, tall] = [(high[0] - low[0]).max(1e-300), high[1] - low[1]];
         let width = f64::from(columns.pixels());
         // In one column the key has the place of a fourth panel, unless the body is flat.

@@ -67,6 +67,7 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
     }
     let curve = |(name, mut points): (String, Errors)| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // Errors that are rounding, in percent, have no place on a logarithmic axis.
         let points = points.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > 1e-9);
         Series { name, points: points.collect(), shape: Shape::Curve }
     };

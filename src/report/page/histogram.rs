@@ -31,6 +31,7 @@ impl HistogramRecord {
         let [first, last] = if is_far && inner[0] < inner[1] { inner } else { [least, largest] };
         // Where nearly all are equal, an interval has a width all the same.
         let span = (last - first).max(1e-6 * first.abs().max(last.abs())).max(f64::MIN_POSITIVE);
+        // The largest constant belongs to the last interval, and not to one beyond.
         let width = span * (1.0 + 1e-9) / INTERVALS as f64;
         let mut record = HistogramRecord {
             kind: kind.name().into(),

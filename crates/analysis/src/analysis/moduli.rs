@@ -172,6 +172,7 @@ fn images(mesh: &Mesh) -> (Vec<usize>, usize) {
         (0..d).map(|k| mesh.points.iter().skip(k).step_by(d).fold(0.0, |a: f64, x| a.max(*x))).collect();
     let mut classes: Vec<Vec<f64>> = Vec::new();
     let place = |p: usize| -> Vec<f64> {
+        // Points on opposite sides are images of each other: those at the end are counted with those at the start.
         let wrap = |(x, size): (&f64, &f64)| if (x / size - 1.0).abs() < 1e-9 { 0.0 } else { x / size };
         mesh.point(p).iter().zip(&extent).map(wrap).collect()
     };
@@ -206,6 +207,7 @@ fn strains(d: usize) -> Vec<DMatrix<f64>> {
 
 fn moduli(stiffness: DMatrix<f64>, d: usize) -> Option<EffectiveModuli> {
     let compliance = stiffness.clone().try_inverse()?;
+    // A strain meets no resistance, and the compliance would be that of rounding.
     if stiffness.clone().symmetric_eigenvalues().min() < 1e-9 * stiffness.amax() {
         return None;
     }

@@ -85,6 +85,7 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
         let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
         let before = square(&now);
         let mut found = None;
+        // Twelve factors of ten shorten a step below all that can be seen.
         for _ in 0..12 {
             let step = damped(&columns, &residuals, damping);
             let largest = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
@@ -100,11 +101,13 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
                 found = Some((tried, next));
                 break;
             }
+            // Marquardt's factors of ten, from a damping that hardly changes a step.
             damping = if damping == 0.0 { 1e-4 } else { 10.0 * damping };
         }
         let Some((tried, next)) = found else {
             // Near the optimum rounding decides.
             let step = damped(&columns, &residuals, 0.0);
+            // A relative change of 1e-4 is far below the intervals that are reported.
             let near = step.iter().all(|s| s.abs() < 1e-4);
             fault = fault.filter(|_| !near).map(|_| Fault::Stalled);
             break;
@@ -151,6 +154,7 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
 /// The step of Levenberg and Marquardt in units in which each unknown changes the residuals alike.
 fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
     let m = columns.len();
+    // An unknown that nothing sees has a column of zeros, which must not divide by zero.
     let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
     let scaled = |p: usize, q: usize| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]);
     let normal = DMatrix::from_fn(m, m, |p, q| scaled(p, q) + if p == q { damping } else { 0.0 });
@@ -158,6 +162,7 @@ fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
     let eigen = normal.symmetric_eigen();
     let mut step = vec![0.0; m];
     for (value, vector) in
+        // A combination that measurements see to less than a millionth stays where it is.
         eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|(value, _)| **value > 1e-12)
     {
         let along = vector.dot(&slopes) / value;
@@ -174,6 +179,7 @@ fn inverse(columns: &[Vec<f64>]) -> DMatrix<f64> {
     let eigen = normal.symmetric_eigen();
     let mut sum = DMatrix::zeros(m, m);
     for (value, vector) in
+        // The square of the share from which on a combination counts as seen where deviations are worked out.
         eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()).filter(|(value, _)| **value > 1e-14)
     {
         sum += vector * vector.transpose() / *value;

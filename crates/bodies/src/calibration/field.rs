@@ -94,6 +94,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
     let mut theta = vec![0.0; m];
     let mut now = search.at(&theta)?.ok_or_else(no_equilibrium)?;
     let columns = limit.weighed(&now.columns);
+    // A hundred times the weight of what is seen: the field starts as good as uniform.
     let mut rho = columns.iter().map(|column| dot(column, column)).fold(0.0, f64::max) * 100.0;
     let (mut outside, mut inside): (Option<f64>, Option<f64>) = (None, None);
     let mut best = (theta.clone(), rho);
@@ -238,6 +239,7 @@ impl Search<'_, '_> {
             let Some((tried, next)) = found else { break };
             let after = objective(self, &tried, &next);
             (theta, now) = (tried, next);
+            // A stage need not be exact: the next one begins where it has ended.
             if before - after < 1e-3 * before {
                 break;
             }

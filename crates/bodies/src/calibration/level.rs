@@ -61,11 +61,13 @@ pub(super) struct Answer {
 
 /// Loads under one support are solved with one factor; the way to solve is chosen for so many.
 const SOLUTIONS: usize = 50;
-/// More unknowns are differentiated by one solution for each observed quantity.
+/// More unknowns are differentiated by one solution for each observed quantity. Both ways give the same derivatives:
+/// one takes a solution for each unknown, the other one for each quantity.
 const FORWARD: usize = 40;
 /// The relative error of derivatives where equations are solved by iterations.
 const PRODUCT: f64 = 1e-7;
-/// The change of θ over which forces of laws are differentiated.
+/// The change of θ over which forces of laws are differentiated. Central differences err by its square, and the
+/// rounding of forces over it is 1e-12.
 const STEP: f64 = 1e-4;
 
 impl<'a> Level<'a> {

@@ -16,10 +16,11 @@ const QUADRATIC: f64 = 4.0;
 /// The order where strains are singular, as at the edge of a clamped face: twice the exponent of 0.7 of the displacements there.
 const SINGULAR: f64 = 1.4;
 
-/// Where between both orders the rest of an answer is, as a share of the way from that of the element to that of an edge, and how far to either
-/// side 95 % of the rests are. On two refinements; the bench `python/benches/calibration.py` measures both.
+/// This is where between both orders the rest of an answer is on two refinements, as a share of the way from that of
+/// the element to that of an edge, and how far to either side 95 % of the rests are. The bench
+/// `python/benches/calibration.py` measures both numbers.
 const TWICE: (f64, f64) = (0.17, 0.3);
-/// The same on one refinement: a first mesh is often coarser than any order holds for.
+/// These are the numbers of [`TWICE`] on one refinement: a first mesh is often coarser than any order holds for.
 const ONCE: (f64, f64) = (0.5, 0.7);
 /// Answers that change from mesh to mesh by a larger ratio have no order yet; their rest grows with it, and what is known of it as well.
 const ORDERLY: f64 = 0.4;

@@ -9,7 +9,8 @@ use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 
 /// The relative residual to which definiteness is tested, whatever the tolerance of solutions is.
 const DEFINITE: f64 = 1e-10;
-/// The largest number of iterations of a solution.
+/// The largest number of iterations of a solution. A step whose equations take as many is reported as stalled; a
+/// shorter one has better equations.
 const ITERATIONS: usize = 5000;
 
 /// The matrix in blocks of one point with D coordinates, and its incomplete factor. Held coordinates of a point that is

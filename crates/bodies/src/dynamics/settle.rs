@@ -6,7 +6,8 @@ use super::equations::{End, Equations};
 use super::resistance::Resistance;
 use springfit_numerics::newton::{falls_enough, shifts};
 
-/// The largest number of halvings of a Newton step.
+/// The largest number of halvings of a Newton step. Where a step of a millionth does not decrease the potential, the
+/// state is kept as it was, and the step has stalled.
 const HALVINGS: usize = 20;
 /// A Newton step below this share of the model's coordinates is within their rounding: no better solution exists.
 const ROUNDING: f64 = 1e-14;

@@ -28,6 +28,7 @@ pub(super) fn check_growth(
     while !is_stable(above) && above < LARGE {
         (below, above) = (above, 2 * above);
     }
+    // To a percent: the number is advice, not a bound.
     while above - below > 1 + below / 100 {
         let middle = (below + above) / 2;
         if is_stable(middle) { above = middle } else { below = middle }

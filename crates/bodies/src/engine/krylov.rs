@@ -55,6 +55,7 @@ pub(super) fn gmres(
         columns.push(column);
         rotations.push([cosine, sine]);
         right.push(rest);
+        // A lane whose space is exhausted goes on with zeros, which change nothing.
         basis.push(scaled(&next, &length.map(reciprocal)));
     }
     let count = columns.len();

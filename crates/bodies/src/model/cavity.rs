@@ -39,6 +39,7 @@ impl Cavity {
             return Err(Error::expected("volume", "sides that close a cavity", found));
         }
         let cavity = Cavity { sides, volume, dimension: mesh.dimension };
+        // Sides around the body close a space too, whose normals point away from it.
         let own = cavity.volume_at(&mesh.points);
         if !(own > 0.0) {
             let found = format!("sides around the body, which enclose {:.4e} m³ of it", -own);

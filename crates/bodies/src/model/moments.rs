@@ -49,6 +49,7 @@ impl Moments {
     fn sum<'a, I: Iterator<Item = (f64, &'a [f64])>>(d: usize, parts: impl Fn() -> I) -> Moments {
         let mass: f64 = parts().map(|(m, _)| m).sum();
         let centre: Vec<f64> = (0..d).map(|k| parts().map(|(m, x)| m * x[k]).sum::<f64>() / mass).collect();
+        // In a second pass, about the centre: differences of large sums lose the digits of a body far from the origin.
         let away = |x: &[f64], k: usize| x[k] - centre[k];
         let product = |kl: usize| parts().map(|(m, x)| m * away(x, kl / d) * away(x, kl % d)).sum();
         let second = (0..d * d).map(product).collect();

@@ -53,6 +53,7 @@ pub fn patch_springs(
         }
     }
     let region = |part: &Part| *material.region().at(0, part.cell);
+    // A sort that keeps the order of the cells of a region, in which sums are rounded.
     shares.iter_mut().for_each(|parts| parts.sort_by_key(region));
     let in_regions = shares.iter().flat_map(|parts| parts.chunk_by(|a, b| region(a) == region(b)));
     let moduli = &material.materials()?.map(Material::moduli);
@@ -82,6 +83,7 @@ pub fn patch_springs(
         }
     };
     let patches = in_regions.chain(alone.iter().map(|parts| &parts[..])).filter(|parts| !parts.is_empty());
+    // At a Poisson's ratio of zero λ is zero, and nothing is to be carried.
     Ok(patches.map(spring).filter(|spring| spring.constant != 0.0).collect())
 }
 

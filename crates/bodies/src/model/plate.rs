@@ -83,8 +83,8 @@ struct Triangle<'a> {
     points: &'a [usize],
     positions: Vec<f64>,
     area: f64,
-    /// Of each edge, in the order of the opposite corners: its length l, m, and `v = (n_x², n_y², 2 n_x n_y)` of its conormal in the axes of the
-    /// triangle, in which its membrane has its moduli.
+    /// Each edge, in the order of the opposite corners, has its length l, m, and `v = (n_x², n_y², 2 n_x n_y)` of its
+    /// conormal in the axes of the triangle, in which its membrane has its moduli.
     edges: [(f64, Vector3<f64>); 3],
 }
 

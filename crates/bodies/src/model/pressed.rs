@@ -67,6 +67,7 @@ impl PressedFaces {
         if sides.is_empty() {
             return Err(Error::at("load", "acts on nothing: the selected part has no sides"));
         }
+        // A side inside has two cells, out of which its normals point in opposite directions.
         if let Some((place, count)) = mesh.inner_sides(&sides) {
             let found =
                 format!("{count} of {} inside it, with cells on both sides, the first at {place:?} m", sides.len());

@@ -34,6 +34,7 @@ pub fn relaxed_stiffness(
 ) -> DMatrix<f64> {
     let (space, cases) = (frame.nrows(), strained.ncols());
     let mut forces = product(entries, strained);
+    // Most networks have one stiffness: its product is needed once then.
     let mut affine = match std::ptr::eq(entries, own) {
         true => strained.tr_mul(&forces),
         false => strained.tr_mul(&product(own, strained)),
@@ -97,6 +98,7 @@ fn solve(inner: DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
         }
     }
     if !inner.iter().all(|k| k.is_finite()) {
+        // The iterations for eigenvalues need not end with numbers that are none.
         return force * f64::NAN;
     }
     let eigen = inner.symmetric_eigen();

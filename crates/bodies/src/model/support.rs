@@ -61,7 +61,8 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
     unheld_pieces((&mesh.points, mesh.dimension), mesh.pieces(), support)
 }
 
-/// As [`unheld_bodies`], for the parts of a network that springs connect. `points` are `[points × dimension]`, m.
+/// Finds the parts of a network, connected by springs, that can move without deforming, as [`unheld_bodies`] does.
+/// `points` are `[points × dimension]`, m.
 pub fn unheld_parts(network: &Network, points: &[f64], support: &Support) -> Vec<Unheld> {
     let pieces = pieces_of(points.len() / network.dimension, network.springs().map(|(points, _)| points));
     unheld_pieces((points, network.dimension), pieces, support)

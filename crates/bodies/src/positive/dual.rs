@@ -26,17 +26,22 @@ use nalgebra::{DMatrix, DVector};
 const FOUND: f64 = 1e-13;
 /// The powers of ten to it.
 const NEAR: usize = 13;
-/// The weight of the proximal term, relative to the mean of the diagonal of the Hessian.
+/// The weight of the proximal term, relative to the mean of the diagonal of the Hessian. The Hessian is singular where
+/// variables at their bounds leave a motion free. The term makes it regular, and the centre moves until it does not
+/// act.
 const PROXIMAL: f64 = 1e-8;
-/// The proximal term is centred again when the gradient is below this share of the residual.
+/// The proximal term is centred again when the gradient is below this share of the residual. Then the minimum with this
+/// centre is near, and another centre takes its bias away.
 const CENTRED: f64 = 0.1;
 /// The largest number of steps, and of steps shorter than `SHORT`. Programmes with a solution took 6 to 15 steps, none of
 /// them short; those without one take short steps for ever.
 const STEPS: u32 = 60;
 const SHORT_STEPS: usize = 4;
 const SHORT: f64 = 1e-2;
-/// A search along a direction ends when the slope is below this share of the first.
+/// A search along a direction ends when the slope is below this share of the first. The next direction corrects what is
+/// left more cheaply than another round.
 const FLAT: f64 = 0.1;
+/// The largest number of rounds of that search: every second one halves the interval, so that its end is rounding.
 const HALVINGS: usize = 60;
 
 /// The solution; `None` if it has not been found, which is no proof that there is none.
@@ -217,6 +222,7 @@ impl<'a> Point<'a> {
                 break;
             }
             let secant = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+            // A secant may creep along a kink of the slope, and a half knows nothing of it: they take turns.
             let at = if round % 2 == 0 { secant } else { (low.0 + high.0) / 2.0 };
             let slope = self.slope(direction, at);
             if slope > 0.0 {

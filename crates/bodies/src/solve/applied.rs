@@ -6,7 +6,8 @@ use crate::springs::dot;
 use faer::sparse::Triplet;
 use std::borrow::Cow;
 
-/// The largest number of corrections of a step for the part of a tangent that is not symmetric.
+/// The largest number of corrections of a step for the part of a tangent that is not symmetric. Where they do not end,
+/// the step is one of many that Newton's method corrects.
 const CORRECTIONS: usize = 60;
 /// Corrections end when one is below this share of the first: a relative error of the step that Newton's method does not notice.
 const CORRECTED: f64 = 1e-8;

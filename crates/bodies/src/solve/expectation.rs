@@ -55,6 +55,7 @@ pub fn factor_cost_of<'a>(
 pub fn dense_rate() -> f64 {
     static RATE: OnceLock<f64> = OnceLock::new();
     *RATE.get_or_init(|| {
+        // Large enough for blocks and threads to count, small enough to take a few milliseconds.
         const SIZE: usize = 512;
         let matrix =
             Mat::<f64>::from_fn(SIZE, SIZE, |i, j| if i == j { SIZE as f64 } else { 1.0 / (1 + i + j) as f64 });

@@ -8,11 +8,12 @@ use crate::error::Result;
 use crate::model::{Cavity, Elastic, Support, displaced};
 use crate::springs::{dot, norm};
 
-/// The volume is reached to this share of it.
+/// The volume is reached to this share of it. The volume is a sum over the sides of the cavity, whose rounding is below
+/// that.
 const FILLED: f64 = 1e-12;
 /// While more than this share of the volume is missing, the forces need not balance better than before: the first step changes the shape.
 const FILLING: f64 = 1e-6;
-/// The largest number of halvings of a step.
+/// The largest number of halvings of a step. A step of 2⁻²⁰ is none.
 const SHORTER: usize = 20;
 
 impl Newton {
@@ -112,12 +113,15 @@ impl Inflation<'_> {
             let sides = Applied { forces: &lack.gradient, pressed: Some(&self.cavity.sides) };
             let following = sides.stiffness(self.rest.points, u, pressure);
             let entries = raised(&with(&now.response.tangent, &following), u.len(), 0.0);
+            // A step moves no support: what is prescribed is held.
             let still = Support { prescribed: support.prescribed.iter().map(|held| held.map(|_| 0.0)).collect() };
             let system = match self.known.take() {
                 Some(known) => known.renewed(&entries, &still)?,
                 None => System::new(&entries, &still)?,
             };
             let system = self.known.insert(system);
+            // Beyond the maximum of the pressure the tangent is not positive definite, although the body is stable at
+            // its volume.
             let Some(factor) = system.factorize()? else { return Ok((history, ForceBalance::None)) };
             self.shifted += usize::from(!factor.is_positive_definite());
             let (by_forces, _) = system.solve(&factor, &lack.forces);

@@ -6,7 +6,8 @@ use crate::memory;
 use crate::model::Support;
 use std::sync::{Mutex, MutexGuard};
 
-/// Bytes that are to be left when equations are kept for further questions under the same support.
+/// Bytes that are to be left when equations are kept for further questions under the same support. The next equations
+/// may be as large as those that are kept, and other results need room beside them.
 const ROOM: u64 = 4_000_000_000;
 
 /// The equations of a model under each support that was asked for, as long as memory allows.
@@ -25,6 +26,7 @@ impl KnownEquations {
         if memory::available().is_some_and(|left| left < ROOM) {
             self.kept().clear();
         }
+        // Not under the lock: a solution takes long, and at worst two threads find the same one.
         let found = solve()?;
         self.kept().push((support.clone(), found.clone()));
         Ok(found)

@@ -12,9 +12,10 @@ const FOUND: f64 = 2e-3;
 const LEAST_STEPS: usize = 32;
 /// Steps between two looks at the values.
 const LOOK: usize = 4;
-/// The vectors in the basis before it is condensed to those of each end.
+/// The vectors in the basis before it is condensed to those of each end. Each step costs products with all of them, and
+/// each is two vectors in memory.
 const BASIS: usize = 60;
-/// The vectors of each end that are kept then.
+/// The vectors of each end that are kept then. More than one, because those next to the end slow its convergence down.
 const KEPT: usize = 10;
 
 /// An approximate eigenvalue θ of the operator A, and its vector.
@@ -64,6 +65,8 @@ pub(super) fn ends(
         let mut next = operator(&v, &rv);
         basis.push((v, rv));
         let last = basis.len() - 1;
+        // Twice is enough: after a second pass what is left of the others is rounding (Giraud et al., Numer. Math. 101,
+        // 2005).
         for _ in 0..2 {
             for (i, (q, rq)) in basis.iter().enumerate() {
                 let along = dot(rq, &next);
@@ -75,6 +78,7 @@ pub(super) fn ends(
         rv = metric(&next);
         v = next;
         let left = dot(&v, &rv).max(0.0).sqrt();
+        // What is left is rounding: the basis spans all that the operator reaches from the start.
         let is_whole = !(left > 1e-13 * projected.column(last).norm()) || basis.len() == n;
         if is_whole || step == steps {
             return found(&basis, &projected, if is_whole { 0.0 } else { left });

@@ -16,7 +16,8 @@ use springfit_multigrid::{
 use springfit_multigrid::{plane_motions, space_motions};
 use std::ops::ControlFlow;
 
-/// The chance of a wrong "positive definite" that is let pass.
+/// The chance of a wrong "positive definite" that is let pass. A wrong verdict is then less likely than a fault of the
+/// machine.
 const DOUBT: f64 = 1e-12;
 /// Steps of the proof at most.
 const STEPS: usize = 3000;

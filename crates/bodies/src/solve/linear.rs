@@ -17,7 +17,8 @@ use faer::sparse::{CreationError, FaerError, Pair, SparseColMat, SymbolicSparseC
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
-/// The largest number of refinements of a solution. Two are enough unless the factor has only a few digits of K.
+/// The largest number of refinements of a solution. Two are enough unless the factor has only a few digits of K. A
+/// correction that is just below half of the last one gains one bit, so that sixty give all digits.
 const REFINEMENTS: usize = 60;
 /// The refinement ends if a correction is not below this share of the previous one.
 const SLOWEST: f64 = 0.5;
@@ -115,6 +116,7 @@ impl System {
         let mut reaction = vec![DoubleDouble::from(0.0); pattern.free.len()];
         let mut slots = pattern.slots.iter();
         each_value(entries, &pattern.place, |row, column, value| match support.prescribed[column] {
+            // A support at rest pulls nothing, and most supports are at rest.
             Some(0.0) => {}
             Some(u) => {
                 let reaction = &mut reaction[pattern.place[row]];
@@ -222,6 +224,7 @@ impl System {
             unsettled = change / norm(&u.iter().map(|u| u.hi).collect::<Vec<_>>());
             let ratio = if last.is_finite() { change / last } else { 1.0 };
             last = change;
+            // The next correction would be smaller by the same ratio: it would change no digit.
             if !(unsettled * ratio > f64::EPSILON) {
                 unsettled = 0.0;
                 break;
@@ -263,6 +266,7 @@ impl System {
 
     fn columns(&self, factor: &Factor, forces: &[Vec<f64>], reaction: &[f64], held: &[f64]) -> Vec<Vec<f64>> {
         let free = self.free();
+        // One part for each thread, whose columns the factor solves side by side: it is then read once for all of them.
         let part = forces.len().div_ceil(rayon::current_num_threads()).max(1);
         let solve = |forces: &[Vec<f64>]| -> Vec<Vec<f64>> {
             let rhs = |f: &Vec<f64>| free.iter().zip(reaction).map(|(&dof, r)| f[dof] - r).collect::<Vec<f64>>();

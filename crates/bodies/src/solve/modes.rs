@@ -12,9 +12,10 @@ use std::f64::consts::TAU;
 /// The number of vectors beyond those that are wanted. The last wanted one converges with the ratio of its eigenvalue
 /// to that of the first vector that is left out.
 const SPARE: usize = 4;
-/// The number of blocks in the basis before it is condensed to its best two.
+/// The number of blocks in the basis before it is condensed to its best two. A larger basis converges in fewer rounds
+/// and costs the square of its width in memory and products.
 const BLOCKS: usize = 6;
-/// The largest number of blocks that are computed.
+/// The largest number of blocks that are computed. Pairs that are not found then are still checked one by one with K.
 const ROUNDS: usize = 60;
 /// An eigenpair is accepted if `‖A y − θ y‖` is below this share of θ,
 const FOUND: f64 = 1e-11;
@@ -166,6 +167,7 @@ fn largest_eigenpairs(
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let theta = DVector::from_iterator(m, order.iter().map(|&k| eigen.eigenvalues[k]));
         let is_full = m + width > BLOCKS * width;
+        // More than those that are wanted, because the next ones slow their convergence down.
         let kept = if is_full { 2 * width } else { width };
         let leading = eigen.eigenvectors.select_columns(&order[..kept]);
         let (vectors, moved) = (&basis.vectors * &leading, &images * &leading);
@@ -174,6 +176,7 @@ fn largest_eigenpairs(
         for k in 0..width {
             let residual = moved.column(k) - vectors.column(k) * theta[k];
             if norm(&residual, inertia) > (FOUND * theta[k]).max(ROUNDING * theta[0]) {
+                // The spare ones serve the others, and need not be found.
                 is_found &= k >= count;
                 residuals.push(residual);
             }
@@ -242,6 +245,7 @@ fn orthonormal(basis: &Basis, mut block: DMatrix<f64>, inertia: &Inertia) -> Bas
             }
             // What remains of a dependent vector is a rounding error.
             let left = norm(&column, inertia);
+            // A threshold far above rounding, because the second pass then restores all digits of what is kept.
             if left > 1e-8 * size {
                 column /= left;
                 let dual = inertia.metric(column.as_slice()).map(DVector::from_vec);
@@ -258,6 +262,7 @@ fn orthonormal(basis: &Basis, mut block: DMatrix<f64>, inertia: &Inertia) -> Bas
 
 /// Numbers between −½ and ½, the same on every machine.
 pub(crate) fn generator() -> impl FnMut() -> f64 {
+    // Marsaglia's xorshift (2003) from a seed with bits of both kinds; any seed but zero does.
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
     move || {
         seed ^= seed << 13;

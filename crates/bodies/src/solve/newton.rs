@@ -27,6 +27,7 @@ pub struct Newton {
 
 impl Default for Newton {
     fn default() -> Newton {
+        // Where Newton's method takes more iterations, two shorter load steps are cheaper.
         Newton { steps: 1, iterations: 40, tolerance: 1e-10 }
     }
 }
@@ -76,13 +77,15 @@ pub struct Equilibrium {
 }
 
 /// The largest rounding error of the forces, relative to the applied forces, at which a balance of forces counts as an
-/// equilibrium.
+/// equilibrium. Beyond it the displacements would have less than four digits, which no report could show as a solution.
 pub(super) const ROUGHEST: f64 = 1e-4;
-/// The relative accuracy to which prescribed displacements are reached.
+/// The relative accuracy to which prescribed displacements are reached. The last part of a displacement is added to the
+/// others, whose rounding it leaves.
 const REACHED: f64 = 1e-14;
-/// The largest number of halvings of a load step.
+/// The largest number of halvings of a load step. A load that does not advance by 1/256 of a step has reached a limit,
+/// or a fold of the path, which a smaller step does not pass.
 const HALVINGS: u32 = 8;
-/// The largest number of halvings of a Newton step.
+/// The largest number of halvings of a Newton step. A step of 2⁻³⁰ cannot lower the energy by what its rounding shows.
 const SHORTER: usize = 30;
 
 /// Finds the equilibrium under a share of a load, from displacements that it changes; returns the residuals, and whether the forces balance.
@@ -137,6 +140,8 @@ impl Newton {
         let first = 1.0 / self.steps.max(1) as f64;
         let mut step = first;
         while found.load < 1.0 {
+            // Sums of steps such as 1/3 end a rounding below one, and a step over that rounding would be one of no
+            // load.
             let target = if found.load + step > 1.0 - 1e-12 { 1.0 } else { found.load + step };
             let mut u = found.displacement.clone();
             let (history, balance) = settle(target, &mut u)?;
@@ -146,6 +151,7 @@ impl Newton {
                     found.path.push(u.clone());
                     (found.displacement, found.load) = (u, target);
                     found.is_rounded = balance == ForceBalance::Rounded;
+                    // What stopped a longer step may lie behind.
                     step = (2.0 * step).min(first);
                 }
                 ForceBalance::None => {
@@ -249,6 +255,7 @@ impl<'a> Statics<'a> {
     fn new(newton: Newton, rest: Rest<'a>, forces: Applied<'a>, pattern: Option<&System>) -> Statics<'a> {
         let mut tension = vec![0.0; forces.forces.len()];
         if !rest.model.forces(rest.points, &mut tension) {
+            // A model without a response at rest fails in its first step, and tells it there.
             tension.fill(0.0);
         }
         Statics { newton, rest, tension, forces, known: pattern.cloned(), shifted: 0 }
@@ -348,6 +355,7 @@ fn direction(
 ) -> Result<Option<(Vec<f64>, bool)>> {
     let support = Support { prescribed: moves };
     let tangent = &*with(tangent, following);
+    // The largest entry before springs and cells are added is enough as a scale of shifts, and needs no sums.
     let diagonal = tangent.iter().filter(|e| e.row == e.col).map(|e| e.val.abs()).fold(0.0, f64::max);
     for shift in std::iter::once(0.0).chain(shifts()) {
         let shifted = raised(tangent, rest.len(), shift * diagonal);

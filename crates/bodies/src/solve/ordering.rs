@@ -8,7 +8,8 @@ use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
 
 /// A part with at most this number of nodes is not divided.
 const LEAF: usize = 8;
-/// The largest distance of a cut from the middle of a part, as a share of its nodes.
+/// The largest distance of a cut from the middle of a part, as a share of its nodes. Parts of about equal size keep the
+/// tree of the elimination low.
 const ASIDE: f64 = 0.1;
 /// The least number of nodes for which dissection is tried. Smaller graphs cost about the same in both orders.
 const NODES: usize = 500;
@@ -109,6 +110,7 @@ impl Graph {
                     Side::Low | Side::High => high.push(node),
                 }
             }
+            // Nodes of this part are no neighbours within the next one.
             part.iter().for_each(|&node| rank[node as usize] = ABSENT);
             order.extend(separator.iter().rev().map(|&node| node as usize));
             parts.extend([low, high]);
@@ -144,6 +146,7 @@ impl Graph {
         for position in 0..=*positions.end() {
             low += below[position];
             high += above[position];
+            // Of equal separators the one nearer to the middle is taken.
             let uneven = 1.0 + 0.5 * (position as f64 / count as f64 - 0.5).abs();
             for (size, side) in [(low, Side::Low), (high, Side::High)] {
                 let cost = f64::from(size) * uneven;

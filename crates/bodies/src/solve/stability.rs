@@ -13,7 +13,8 @@ use faer::sparse::Triplet;
 const STEPS: usize = 200;
 /// Steps of the search near zero in a matrix that is not positive definite: what is nearest is found first, or is zero with rounding.
 const NEAR_STEPS: usize = 40;
-/// An energy ratio below this is zero up to rounding: the network does not resist the motion.
+/// An energy ratio below this is zero up to rounding: the network does not resist the motion. The ratio of a motion
+/// without energy is the rounding of both stiffnesses times the condition of that of the body.
 pub(super) const NOTHING: f64 = 1e-9;
 /// The energy of a motion by its displacements is rounded by up to this share of the body's, where the body is slender.
 const ROUNDED: f64 = 1e-6;

@@ -100,6 +100,7 @@ pub(super) fn lbfgs(
     let configure = |state: IterState<_, _, _, _, _, f64>| state.param(theta.to_vec()).max_iters(iterations as u64);
     let solver = LBFGS::new(MoreThuenteLineSearch::new(), memory);
     // If a line search fails, the search ends at the present point.
+    // The program itself hears interrupts.
     let ended = Executor::new(&objective, solver).configure(configure).ctrlc(false).run();
     let reason = ended.ok().and_then(|end| end.state().get_termination_reason().cloned());
     let is_finished = reason != Some(TerminationReason::MaxItersReached);

@@ -140,6 +140,7 @@ impl<'a> Displacements<'a> {
             let entries = object.stiffness(theta);
             let one = |(group, support): &(usize, &Support)| {
                 let lock = || self.systems.lock().expect("nothing panics while it holds the systems");
+                // Taken out, so that the lock is free while the equations are assembled.
                 let known = lock()[*group].take();
                 let system = Arc::new(match known {
                     Some(known) => known.renewed(&entries, support)?,
@@ -153,6 +154,7 @@ impl<'a> Displacements<'a> {
         let mut known = self.blocks.lock().expect("nothing panics while it holds the blocks");
         let stiffness = BlockStiffness::of_network(&object.network(theta), object.points, known.as_ref());
         *known = Some(stiffness.clone());
+        // Solutions take long and need the pattern no more.
         drop(known);
         let one =
             |(_, support): &(usize, &Support)| Equations::iterated(stiffness.clone(), object.points, support, solver);

@@ -20,6 +20,8 @@ pub struct GaussNewton {
 
 impl Default for GaussNewton {
     fn default() -> GaussNewton {
+        // An inexact step is enough far from the optimum (Nocedal and Wright 2006, 7.1), and each product takes a
+        // solution for every load.
         GaussNewton { products: 40, accuracy: 0.1, decrease: 1e-2 }
     }
 }
@@ -28,7 +30,7 @@ impl Default for GaussNewton {
 const STEP: f64 = 1e-3;
 /// The first radius of the trust region: the root mean square of a step in θ, which is a logarithm.
 const RADIUS: f64 = 1.0;
-/// A smaller radius ends the search.
+/// A smaller radius ends the search. It is a relative change of the constants that no error of displacements shows.
 const LEAST_RADIUS: f64 = 1e-6;
 /// The least share of the predicted decrease that a step must achieve.
 const ACCEPTED: f64 = 1e-3;
@@ -58,6 +60,7 @@ impl GaussNewton {
         let mut is_finished = false;
         for _ in 0..iterations {
             let path = self.path(&now, rho, &gradient, radius)?;
+            // A step that is refused is shortened along the same path, without further products.
             let (lowered, found) = loop {
                 let (step, promised) = path.within(radius);
                 // If the gradient is zero there is no direction to go.
@@ -69,6 +72,7 @@ impl GaussNewton {
                 let next = problem.at(&tried)?;
                 let share = rho / root.powi(2);
                 let after = next.as_ref().map(|next| next.square() + share * dot(&tried, &tried));
+                // A network that is unstable has no residuals: a step to it is too long.
                 let after = after.filter(|after| after.is_finite()).unwrap_or(f64::INFINITY);
                 let kept = (value - after) / promised;
                 if kept < 0.25 {

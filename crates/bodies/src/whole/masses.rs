@@ -53,17 +53,20 @@ pub struct MassStage {
 const REGULARIZATIONS: [f64; 3] = [1.0, 1e-1, 1e-2];
 /// The one of them that is taken where nothing chooses: masses change by 30 % to lower a frequency's error from 10 %.
 const PLAIN: usize = 1;
-/// Steps for each ρ at most.
+/// Steps for each ρ at most. Each takes the modes under every support.
 const STEPS: usize = 12;
-/// Steps that bring the masses back to the moments at most.
+/// Steps that bring the masses back to the moments at most. Newton's method doubles the digits in each; where no
+/// positive masses have the moments it does not end.
 const RETURNS: usize = 30;
 /// The relative error of the moments.
 const KEPT: f64 = 1e-10;
 /// A step that lowers the objective by a smaller share is the last one.
 const DECREASE: f64 = 1e-3;
-/// The largest change of a logarithm in a step.
+/// The largest change of a logarithm in a step. The derivatives hold for masses that change by some ten per cent, and
+/// not by orders of magnitude.
 const LONGEST: f64 = 0.5;
-/// The singular values of the moments that count as zero: points in one plane have none across it.
+/// The singular values of the squared moments, relative to the largest entry, that count as zero: points in one plane
+/// have none across it, and points that are nearer to a plane than 3e-5 of their extent count as in it.
 const NOTHING: f64 = 1e-9;
 
 /// Fits the masses at `points`, `[points × dimension]`, from `start`, `[points]`, kg, with the second moments of the body where positive masses have
@@ -119,6 +122,7 @@ pub fn fit_masses(
             let (masses, regularization) = (problem.masses(&path[least]), REGULARIZATIONS[least]);
             best = Some((error(&curve[least]), MassFit { masses, regularization, change, curve }));
         }
+        // With nothing to choose by, second moments are those of the body.
         if others.is_empty() {
             break;
         }
@@ -240,6 +244,7 @@ impl<'a> Problem<'a> {
             let longest = step.amax();
             let mut length = (LONGEST / longest).min(1.0);
             let mut found = None;
+            // Where a thirty-second of a step lowers nothing, the stage has ended.
             for _ in 0..6 {
                 let tried: Vec<f64> = theta.iter().zip(step.iter()).map(|(t, s)| t + length * s).collect();
                 if let Some(tried) = self.back(&tried) {

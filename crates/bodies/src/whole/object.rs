@@ -76,6 +76,7 @@ impl<'a> Object<'a> {
         let (gradients, pulls) = SpringGradients::at(&network, points);
         let slopes = network.lengths.iter().map(|s| s.constant * s.rest);
         let slopes = slopes.chain(network.others.iter().map(|s| s.pull(s.rest)[2] * s.rest));
+        // Rest lengths of a file pull by the rounding of its digits.
         let pulls_at_rest = pulls.iter().zip(slopes).any(|(pull, size)| pull.abs() > 1e-9 * size.abs());
         if newton.is_none() && pulls_at_rest {
             return Err(Error::expected("force", "springs that do not pull at rest", "rest lengths of their own"));

@@ -65,7 +65,8 @@ pub struct Best {
 /// A callback after each step, with the current state, or `None` during cross-validation. Returning false ends the fit.
 pub type StepCallback<'a> = dyn FnMut(Option<&Snapshot>) -> bool + 'a;
 
-/// The largest size of θ: no constant changes by more than the factor e¹⁰⁰.
+/// The largest size of θ: no constant changes by more than the factor e¹⁰⁰. Its square is still far from overflow, and
+/// no fit comes near it.
 const LARGEST: f64 = 100.0;
 
 impl Snapshot {
@@ -118,6 +119,7 @@ impl Path<'_> {
         watch: &mut StepCallback,
     ) -> Result<Best> {
         let range = |theta: &[f64]| self.object.range(theta);
+        // A start beyond the range is not forbidden by it.
         let limit = self.settings.range.max(range(&vec![0.0; snapshot.theta.len()]));
         let stages = self.settings.regularizations.len();
         while snapshot.stage < snapshot.stages(stages) {

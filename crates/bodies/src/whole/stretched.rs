@@ -20,7 +20,7 @@ const SHARE: f64 = 0.1;
 const NEAR: f64 = 0.05;
 /// A load that leaves less than this share of the wanted stretch says little of large deformation, and is left out.
 const LEAST: f64 = 0.5;
-/// Equilibria that are sought at most for a load.
+/// Equilibria that are sought at most for a load. Where they do not suffice, the load counts as far as it was followed.
 const SOLUTIONS: usize = 20;
 /// Iterations at most for one of them: where Newton's method takes more, a shorter step is cheaper.
 const ITERATIONS: usize = 25;
@@ -141,6 +141,8 @@ impl Stretched<'_> {
                         return Ok(Some(found));
                     }
                     let missing = (self.stretch - found.stretch) / (found.stretch - now.stretch);
+                    // A body that stiffens would be sent far ahead by its last secant: no step is more than twice the
+                    // one before.
                     step *= if missing > 0.0 { missing.min(2.0) } else { 1.0 };
                     ahead =
                         found.equations.respond_all(std::slice::from_ref(&f.to_vec()), 0.0)?.pop().unwrap_or_default();
@@ -149,6 +151,8 @@ impl Stretched<'_> {
                 // Too far, or by a jump.
                 Some(found) => {
                     let share = (self.stretch - now.stretch) / (found.stretch - now.stretch);
+                    // At least a tenth, because behind a jump the secant says nothing; at most nine tenths, so that the
+                    // step becomes shorter.
                     step *= share.clamp(0.1, 0.9);
                 }
                 None => step /= 2.0,

@@ -14,6 +14,7 @@ pub fn ninety_five(freedom: Option<usize>) -> f64 {
     }
     // One degree of freedom has the largest, 12.7.
     let (mut low, mut high) = (NORMAL, 13.0);
+    // Fifty halvings of an interval of eleven end at rounding.
     for _ in 0..50 {
         let middle = (low + high) / 2.0;
         if held(middle, freedom.max(1)) < 0.95 { low = middle } else { high = middle }

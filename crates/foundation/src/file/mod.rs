@@ -131,6 +131,7 @@ fn replace(path: &Path, write: impl FnOnce(&fs::File, bool) -> io::Result<()>) -
         Partial::beside(&target).and_then(|partial| {
             old.map_or(Ok(()), |old| partial.file.set_permissions(old.permissions()))
                 .and_then(|()| write(&partial.file, true))
+                // On the disk before it replaces the old file: whatever happens, one of the two is whole.
                 .and_then(|()| partial.file.sync_all())
                 .and_then(|()| partial.rename(&target))
         })

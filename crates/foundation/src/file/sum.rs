@@ -6,7 +6,7 @@ use std::hash::Hasher;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Bytes that are read at once.
+/// Bytes that are read at once. A larger file need not fit into memory.
 const PART: usize = 1 << 16;
 
 /// FNV-1a of 64 bits, which is the same on every machine and in every version. It guards against mistakes, not against forgers.

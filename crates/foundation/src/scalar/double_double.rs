@@ -143,6 +143,7 @@ impl Scalar for DoubleDouble {
 impl Real for DoubleDouble {
     fn sqrt(self) -> DoubleDouble {
         let root = self.hi.sqrt();
+        // Newton's step would divide zero by zero; roots that are no numbers stay what they are.
         if !(root > 0.0) {
             return DoubleDouble::from(root);
         }

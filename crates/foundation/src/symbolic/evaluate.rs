@@ -43,6 +43,7 @@ impl Value for f64 {
         let p = exponent.to_f64()?;
         Some(match exponent.to_i32() {
             Some(n) if exponent.is_integer() => self.powi(n),
+            // A root is rounded correctly, a power is not.
             _ if p == 0.5 => self.sqrt(),
             _ => self.powf(p),
         })

@@ -61,7 +61,7 @@ impl Program {
         Ok(Program { prefix, heading, functions })
     }
 
-    /// The same file with a branch beside the network whose stress relaxes at large deformation: its constants at rest, and a step of it.
+    /// Adds a branch beside the network whose stress relaxes at large deformation: its constants at rest, and a step of it.
     ///
     /// # Errors
     /// The recipe is no exact network.

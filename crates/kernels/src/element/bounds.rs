@@ -4,7 +4,7 @@
 //! In the Bernstein basis it is bounded by its coefficients, and those at the corners of the box are values of it. Where the bounds
 //! do not decide, the box is divided (Johnen, Remacle, Geuzaine, J. Comput. Phys. 233, 2013).
 
-use super::cell::Cell;
+use super::cell::{Cell, SAME};
 use super::quadrature::Quadrature;
 use super::{Element, Tabulation};
 use nalgebra::DMatrix;
@@ -130,6 +130,8 @@ impl JacobianBounds {
             element.positions.iter().enumerate().map(|(i, x)| x + 0.1 * (1.0 + 7.0 * i as f64).sin()).collect();
         let coefficients = self.bernstein(&bent);
         let largest = coefficients.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
+        // Places without a pattern, so that a function that is no polynomial of the degree cannot agree at all of them
+        // by symmetry.
         [0.13, 0.48, 0.91].iter().all(|start| {
             let t: Vec<f64> = (0..d).map(|k| (start + 0.31 * k as f64) % 0.97).collect();
             let value: f64 = coefficients
@@ -227,9 +229,10 @@ fn straight(element: &Element) -> Option<(DMatrix<f64>, Vec<usize>)> {
         DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
     };
     let corners = element.cell.corners();
-    let is_at = |corner: &[f64], at: &[f64]| corner.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9);
+    let is_at = |corner: &[f64], at: &[f64]| corner.iter().zip(at).all(|(a, b)| (a - b).abs() < SAME);
     let node = |corner: &&[f64]| places.iter().position(|at| is_at(corner, at));
     let nodes: Option<Vec<usize>> = corners.iter().map(node).collect();
+    // Singular values below this are zeros: terms that the corners cannot tell apart.
     let inverse = matrix(corners).pseudo_inverse(1e-12).ok()?;
     Some((matrix(&places) * inverse, nodes?))
 }

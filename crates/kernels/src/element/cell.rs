@@ -5,6 +5,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+/// Coordinates of reference cells, which are of size one, are equal if they differ by less: files give them with ten digits or
+/// more, and no two nodes are as near.
+pub(super) const SAME: f64 = 1e-9;
+
 /// The reference cell of an element.
 ///
 /// Intervals, squares and cubes span [−1, 1] in each coordinate. Triangle and tetrahedron have their corners at the
@@ -154,6 +158,7 @@ impl Cell {
     pub fn contains(self, at: &[f64]) -> bool {
         let centre = self.centre();
         if self == Cell::Interval {
+            // Points of rules and sides are computed, and those on the boundary may be a rounding outside.
             return at[0].abs() <= 1.0 + 1e-12;
         }
         self.sides().iter().all(|side| {

@@ -14,9 +14,11 @@ use nalgebra::DMatrix;
 
 /// Values of functions of size one below this are zero: some thousand rounding errors.
 const ROUNDING: f64 = 1e-12;
-/// The degree of the rule at whose points a function is looked at along a side.
+/// The degree of the rule at whose points a function is looked at along a side. Its points are many enough that a mode
+/// of the usual degrees does not vanish at all of them by chance.
 const ALONG: usize = 7;
-/// Modes whose Gram matrix has an eigenvalue below this share of the largest are linearly dependent.
+/// Modes whose Gram matrix has an eigenvalue below this share of the largest are linearly dependent. A Gram matrix has
+/// the squares of the singular values, of which rounding leaves 1e-16.
 const DEPENDENT: f64 = 1e-10;
 
 /// Takes the condensed functions, which come after the nodes and have no place, out of the nodes.

@@ -20,9 +20,11 @@ pub enum Integrand {
 /// For functions that are not polynomials: an integral is accepted if a rule of higher degree changes it by at most
 /// this share of the content of the cell. It is a few hundred rounding errors.
 const SETTLED: f64 = 1e-13;
-/// The difference of the degrees of these two rules.
+/// The difference of the degrees of these two rules. A rule that is not enough differs from one with so many more
+/// degrees, whereas the next rule may share its error.
 const FURTHER: usize = 6;
-/// The largest order that is tried, by dimension: 34 points per direction in the plane, 15 in space.
+/// The largest order that is tried, by dimension: the rule of more degrees has 32 points per direction in the plane,
+/// the most of any rule, and 15 in space.
 const MOST_ORDER: [usize; 3] = [28, 28, 11];
 
 /// The degree of the Jacobian determinant of functions of degree p: in each coordinate of boxes and pyramids, in all together of others.

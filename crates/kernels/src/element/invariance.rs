@@ -18,6 +18,8 @@ pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> 
     let mut random = Sequence(0);
     let size = positions.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
     for _ in 0..TRIALS {
+        // Shapes from half to two and a half times the size, with nodes that are moved so far that no symmetry of the
+        // element is left.
         let stretch = 1.5 + random.next();
         let x: Vec<f64> = positions.iter().map(|x| stretch * x + 0.4 * size * random.next()).collect();
         let shift: Vec<f64> = (0..dimension).map(|_| 3.0 * size * random.next()).collect();

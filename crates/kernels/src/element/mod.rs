@@ -250,7 +250,7 @@ impl Element {
     /// The node at a corner of the cell, if there is one.
     pub fn corner_node(&self, corner: usize) -> Option<usize> {
         let at = self.cell.corners()[corner];
-        self.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < 1e-9))
+        self.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < cell::SAME))
     }
 
     /// One table per side, in the order of the sides of the cell. It is exact for a constant traction on flat sides.
@@ -261,7 +261,8 @@ impl Element {
     fn side_table(&self, side: &Side) -> SideTable {
         let d = self.dimension();
         let (origin, tangents) = side.embedding(self.cell);
-        let on_side = |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < 1e-9;
+        let on_side =
+            |a: &usize| cell::height(&self.positions[a * d..(a + 1) * d], &origin, &tangents).abs() < cell::SAME;
         let nodes: Vec<usize> = (0..self.nodes()).filter(on_side).collect();
         let tabulation = self.side_tabulation(side, &nodes, 2 * self.degree());
         SideTable { nodes, tabulation }
@@ -353,8 +354,9 @@ fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
         image[0] = -image[0];
         image
     };
-    let find =
-        |image: Vec<f64>| nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < 1e-9));
+    let find = |image: Vec<f64>| {
+        nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < cell::SAME))
+    };
     let first: Option<Vec<usize>> = nodes.iter().map(|at| find(swapped(at))).collect();
     let turns = |order: &Vec<usize>| order.iter().enumerate().any(|(a, b)| a != *b);
     first.filter(turns).or_else(|| nodes.iter().map(|at| find(mirrored(at))).collect())

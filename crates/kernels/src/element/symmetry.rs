@@ -1,10 +1,7 @@
 //! The symmetry of an element: the affine maps of its cell onto itself, as permutations of the nodes.
 
-use super::cell::Cell;
+use super::cell::{Cell, SAME};
 use nalgebra::{DMatrix, DVector};
-
-/// Coordinates of reference cells, which are of size one, are equal if they differ by less.
-const SAME: f64 = 1e-9;
 
 /// For each affine map of the cell onto itself that maps nodes to nodes: the image of each node. The identity is one of
 /// them.

@@ -148,6 +148,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 let mut verdict = method.finish(|value| value.as_slice()[lane], quality, constants);
                 if verdict.delicate || self.are_near(&self.packing.lane(lane)) {
                     let nodes = &nodes[lane * n..(lane + 1) * n];
+                    // A cell that cannot be fitted alone keeps the constants of the lanes, which are then reported as
+                    // not reached.
                     let unreached = Verdict { reached: false, ..verdict };
                     verdict = self.fit_alone(first + lane, nodes, constants, true).unwrap_or(unreached);
                 }
@@ -170,6 +172,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
+        // A constant that is not a number counts as below its bound, so that its cell is solved again.
         let is_bounded = |lane: &usize| constants[lane * m..][..m].iter().any(|k| !(*k >= 0.0));
         let lanes: Vec<usize> = (0..constants.len() / m).filter(is_bounded).collect();
         if closed.bound(springs, &self.packing.x, &self.geometry, hooke, &lanes) {
@@ -177,6 +180,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             return true;
         }
         let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, hooke) else {
+            // Each constant has an equation of its own, whose optimum under the bound is zero.
             constants.iter_mut().for_each(|k| *k = k.max(0.0));
             return true;
         };
@@ -185,6 +189,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         for (i, &lane) in lanes.iter().enumerate() {
             let constants = &mut constants[lane * m..][..m];
             let (k, rank) = match wides.get_mut(i) {
+                // The constants without bounds tell where to begin, unless springs of a group share an unknown: those
+                // are in another order.
                 Some(wide) => solve_wide(wide, (wide.size() == m).then_some(&*constants)),
                 None => {
                     let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
@@ -242,6 +248,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
         let mut eliminated = normal.clone();
+        // A small pivot has lost digits of gradients that have lost some before: the cell is fitted again in more
+        // digits.
         if self.closed.is_none()
             && !is_delicate
             && !(eliminated.solve_regular() && eliminated.least_pivot() >= LEAST_MEASURED_PIVOT)

@@ -8,23 +8,25 @@
 //!
 //! Theory: page *The divergence* of the book.
 
-use super::dense::{add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace};
+use super::dense::{
+    FLOOR, add_outers, at_half, at_rounding, factorize, inner, invert, row_products, solve, tie, trace,
+};
 use super::objective::Balance;
 use crate::scalar::Real;
 use springfit_numerics::newton::falls_enough;
 
-/// The largest number of Newton steps.
+/// The largest number of Newton steps. After more, rounding stalls the search, and the conditions of optimality decide
+/// whether its point counts.
 const STEPS: usize = 200;
 /// The largest number of halvings of a step; 2⁻⁴⁰ of it changes no more than the last digits.
 const HALVINGS: usize = 40;
-/// Relative pivots below this are rounding errors.
-const FLOOR: f64 = 1e-14;
 /// If the squared Newton decrement is below this, rounding hides a further decrease of the objective.
 const CLOSE: f64 = 1e-10;
 /// The largest slope at the optimum, relative to the terms of which it is a sum. Rounding leaves less unless the
 /// Hessian is nearly singular.
 const OPTIMAL: f64 = 1e-10;
-/// The largest remaining step, relative to the constants.
+/// The largest remaining step, relative to the constants. As the steps converge quadratically, the error that this one
+/// leaves is at rounding.
 const LEFT: f64 = 1e-10;
 
 /// The objective at a point, with its slope and curvature for each unknown.
@@ -69,6 +71,7 @@ pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, 
                 .for_each(|(&i, d)| to[i] = (from[i].clone() + &d.clone().scaled(&length)).greatest(&zero));
             to
         };
+        // The objective has no zero of its own: its rounding is relative to its value, or to one where that is small.
         let size = 1.0 + point.value.abs();
         let whole = moved(1.0);
         let change = from.iter().zip(&whole).map(|(a, b)| (b.clone() - a).rounded().abs()).fold(0.0, f64::max);

@@ -21,7 +21,8 @@ use rayon::prelude::*;
 
 /// The number of cells that one thread fits at a time: enough that starting the thread costs nothing.
 pub(super) const CHUNK: usize = 512;
-/// The number of cells between two reports of progress.
+/// The number of cells between two reports of progress. So many chunks keep all threads busy until nearly the end of a
+/// round.
 pub(super) const ROUND: usize = 64 * CHUNK;
 /// The number of cells that one thread fits at a time where each takes a good part of a second: whole lanes, and few enough that
 /// progress is reported, and a caller can end the work, every few seconds.
@@ -146,6 +147,7 @@ impl CellFits {
                 let few: Vec<usize> = congruence.representatives.iter().flat_map(nodes).copied().collect();
                 let mut fitted = CellFits::new(self.springs.clone());
                 fitted.constants.resize(shapes * m, 0.0);
+                // The caller counts cells, not shapes.
                 let mut share = |done: usize| progress(done * cells / shapes);
                 let own = moduli.of_cells(&congruence.representatives);
                 let own = BlockValues::listed(&own, matches!(moduli, BlockValues::Uniform(_)));
@@ -211,6 +213,7 @@ impl CellFits {
             Ok(tally)
         };
         let (size, round_size) = match fit.is_costly() {
+            // Two chunks for each thread: whoever ends early finds another one, and the end of a round stays near.
             true => (COSTLY_CHUNK, 2 * COSTLY_CHUNK * rayon::current_num_threads()),
             false => (CHUNK, ROUND),
         };
@@ -219,6 +222,7 @@ impl CellFits {
             let chunks = nodes.par_chunks(size * n).zip(constants.par_chunks_mut(size * m)).enumerate();
             let results: Vec<Result<Tally>> =
                 chunks.map(|(i, (nodes, constants))| chunk(round * round_size + i * size, nodes, constants)).collect();
+            // In the order of the cells, so that the first faulty one is told and lists do not depend on the threads.
             for tally in results {
                 let tally = tally?;
                 self.deficient += tally.deficient;

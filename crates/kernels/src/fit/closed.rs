@@ -15,9 +15,11 @@ use crate::scalar::{Packed, Real};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the other is faster,
+/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the
+/// other is faster.
 const MOST_FACTORED: usize = 120;
-/// and beyond this number conjugate gradients, where the equations of the nodes are solved.
+/// The most bounded constants that are solved by factors where the equations of the nodes are solved. Beyond it
+/// conjugate gradients are faster, whose products with M are cheap there.
 const MOST_FACTORED_WITH_NODES: usize = 60;
 
 /// How the equations of a fit are solved, with the working memory.
@@ -213,6 +215,7 @@ impl<T: Packed> Closed<T> {
             Steps::Nodes if springs.len() > MOST_FACTORED_WITH_NODES => {
                 return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
             }
+            // The equations of the nodes have no rows of single springs, which bounds need.
             Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
             Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED => return false,
             Steps::Springs | Steps::Groups => {}

@@ -293,6 +293,7 @@ fn is_exact(element: &Element, exact: &crate::element::Tabulation) -> bool {
         Some(geometry.stiffness(Moduli { lambda: 1.0, mu: 1.0 }))
     };
     match (with(&element.tabulation), with(exact)) {
+        // Two exact rules differ by rounding, 1e-15, and a rule that is not exact differs in its first digits.
         (Some(own), Some(exact)) => (&own - &exact).norm() < 1e-10 * exact.norm(),
         _ => false,
     }

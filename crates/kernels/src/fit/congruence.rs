@@ -9,6 +9,8 @@ use std::collections::HashMap;
 
 /// The relative difference below which lengths are equal; rounding in generated boxes is about 1e-14.
 const EQUAL: f64 = 1e-12;
+/// The ratio of the sizes of cells whose lengths are compared in another unit.
+const SIZES: f64 = 1e3;
 
 /// Cells grouped by their moduli and the distances of their nodes. These are equal for cells that a rigid motion or a mirror
 /// maps onto each other, and such cells have the same constants.
@@ -70,13 +72,20 @@ impl Congruence {
     ) -> Result<Congruence> {
         let mut congruence = Congruence { representatives: Vec::new(), shapes: Vec::new() };
         let mut known: HashMap<Vec<i64>, usize> = HashMap::new();
-        let mut unit = 0.0;
+        // The largest length of the first cell, m.
+        let mut first = 0.0;
         each_cell(element, points, connectivity, 0, |cell, x, _| {
             let lengths = lengths(x);
-            if unit == 0.0 {
-                unit = EQUAL * lengths.iter().fold(0.0, |a, length| length.abs().max(a));
+            let largest = lengths.iter().fold(0.0, |a, length: &f64| length.abs().max(a));
+            if first == 0.0 {
+                first = largest;
             }
-            let moduli = moduli(cell).into_iter().map(u64::cast_signed);
+            // One unit for all cells of about a size, so that equal lengths have equal keys. In that of a much smaller cell
+            // lengths would be beyond whole numbers, and in that of a much larger one cells of different shapes would
+            // have one key. Where rounding puts equal cells on two sides of a step, they are only fitted twice.
+            let size = ((largest / first).ln() / SIZES.ln()).round();
+            let unit = EQUAL * first * SIZES.powf(size);
+            let moduli = moduli(cell).into_iter().map(u64::cast_signed).chain([size as i64]);
             let key = moduli.chain(lengths.iter().map(|length| (length / unit).round() as i64)).collect();
             let shape = *known.entry(key).or_insert_with(|| {
                 congruence.representatives.push(cell);

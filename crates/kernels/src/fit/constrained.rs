@@ -20,6 +20,8 @@ pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding:
     let (near, mut free) = (normal.rounded(), normal.clone());
     if !free.solve_to(rounding) {
         if !nonnegative {
+            // What is singular in more digits is so in `f64`, where eigenvalues decide what counts. They lose no
+            // digits: the pivot of one says so.
             return (near.least_norm(), Rank::Deficient, 1.0);
         }
         return match solve_nonnegative(&near) {
@@ -95,6 +97,7 @@ fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f
         return (k, Rank::Full);
     }
     let scaled = scaled();
+    // Exchanges that do not end say nothing of the rank.
     let is_regular = scaled.clone().solve_regular();
     match least_nonnegative(&scaled) {
         Some(k) => (k, if is_regular { Rank::Full } else { Rank::Deficient }),
@@ -133,6 +136,8 @@ pub struct Exchanges {
 impl Exchanges {
     pub fn new(positive: Vec<bool>) -> Exchanges {
         let m = positive.len();
+        // The numbers α = 3 and β = m + 1 are those of Kim and Park. Murty's rule ends, but it may visit very many
+        // sets: a search that has no exchanges left is given to the solver of singular equations.
         Exchanges { positive, fewest: m + 1, patience: 3, left: 100 + 10 * m }
     }
 

@@ -56,6 +56,8 @@ impl Raw<'_> {
                 let balance = balance.value();
                 let eigenvalues = (DMatrix::identity(p, p) - e).symmetric_eigenvalues();
                 if eigenvalues.min() <= 0.0 {
+                    // The objective is infinite here. A number keeps the difference of two such points defined, which
+                    // annealing asks for.
                     return 1e300;
                 }
                 eigenvalues.iter().map(|a| a + balance / a - (1.0 - balance) * a.ln()).sum()
@@ -134,6 +136,7 @@ pub fn search(
     reduced.set(weight, springs, x, geometry, hooke, &measured);
     let count = reduced.scales.len();
     let mut start = vec![reduced.uniform(); count];
+    // Best equal constants tell the size of κ, of which a search knows nothing else.
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;
     let random = Mutex::new(StdRng::seed_from_u64(1));
     let (objective, nonnegative) = (fit.objective, fit.nonnegative);
@@ -145,6 +148,7 @@ pub fn search(
         Search::NelderMead => {
             let mut simplex = vec![start.clone(); start.len() + 1];
             simplex.iter_mut().skip(1).enumerate().for_each(|(i, vertex)| vertex[i] += stride);
+            // Objectives are of the size of one: the simplex has ended where its values agree to twelve digits.
             let solver = NelderMead::new(simplex).with_sd_tolerance(1e-12).expect("the tolerance is positive");
             let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
             run.map_err(failed)?.state.take_best_param()
@@ -153,12 +157,15 @@ pub fn search(
             // The remaining springs take the load of those that are removed.
             let most = if topology.is_some() { 10.0 } else { 3.0 };
             let bound = |sign: f64| {
+                // Three strides are 0.9 of the start, so that every κ of a swarm is above zero unless it is switched
+                // off.
                 let reach = stride * if sign > 0.0 { most } else { -3.0 };
                 let kappa = start[..count].iter().map(|k| k + reach);
                 kappa.chain(start[count..].iter().map(|_| sign)).collect::<Vec<f64>>()
             };
             let swarm = |seed: u64, iterations: u64| -> std::result::Result<Option<Vec<f64>>, String> {
                 let random = StdRng::seed_from_u64(seed);
+                // Forty particles are those of the standard swarm (Clerc 2012).
                 let solver = ParticleSwarm::new((bound(-1.0), bound(1.0)), 40).with_rng_generator(random);
                 let run = Executor::new(&raw, solver).configure(|state| state.max_iters(iterations)).run();
                 Ok(run.map_err(failed)?.state.best_individual.map(|particle| particle.position))
@@ -171,6 +178,7 @@ pub fn search(
         }
         Search::SimulatedAnnealing => {
             let rng = StdRng::seed_from_u64(1);
+            // At a temperature of one the first steps have the whole stride.
             let solver = SimulatedAnnealing::new_with_rng(1.0, rng).expect("the temperature is positive");
             let configure = |state: argmin::core::IterState<_, (), (), (), (), f64>| {
                 state.param(start.clone()).max_iters(iterations)

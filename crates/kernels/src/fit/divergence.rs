@@ -9,7 +9,8 @@
 //! Theory: page *The divergence* of the book.
 
 use super::dense::{
-    add_outers, at_rounding, factorize, inner, invert, least_pivot, longest_step, row_products, solve, tie, trace,
+    FLOOR, add_outers, at_rounding, factorize, inner, invert, least_pivot, longest_step, row_products, solve, tie,
+    trace,
 };
 use super::objective::Balance;
 use super::reduction::Reduced;
@@ -18,13 +19,13 @@ use crate::scalar::Real;
 /// The largest number of Newton steps. For nearly incompressible materials the stiffness of the content damps the first
 /// steps, of which there can be hundreds.
 const STEPS: usize = 1000;
-/// Relative pivots below this are rounding errors.
-const FLOOR: f64 = 1e-14;
 /// The squared Newton decrement at which the next step leaves an error of 1e-10, relative to the scale of the problem.
 const CLOSE: f64 = 1e-10;
-/// A step goes at most this share of the way to where the first κ would be zero.
+/// A step goes at most this share of the way to where the first κ would be zero. Beyond it the barrier, which is
+/// infinite at zero, would have to push κ back in the next step.
 const TOWARDS_ZERO: f64 = 0.9;
-/// The weight of the barrier that keeps constants positive, at the start and at the end.
+/// The weight of the barrier that keeps constants positive, at the start and at the end. The end leaves constants that
+/// should be zero at 1e-9 over their slope, which the module of the bounded divergence then takes to zero.
 const BARRIER: [f64; 2] = [1e-1, 1e-9];
 
 /// The working memory of the solver, and its result.
@@ -98,6 +99,7 @@ impl<T: Real> Divergence<T> {
             self.kappa[i] = start.clone();
             self.step[i] = zero.clone();
         }
+        // The first trial is the start itself.
         let mut alpha = zero.clone();
         let mut barrier = one.constant(if self.nonnegative { &BARRIER[0] } else { &0.0 });
         let last = one.constant(if self.nonnegative { &BARRIER[1] } else { &0.0 });
@@ -165,12 +167,16 @@ impl<T: Real> Divergence<T> {
             // Relative to the objective, which is large if the element is nearly flat.
             let size = one.clone().plus_product(&balance, &trace(&self.inverse, p).scaled(&(1.0 / p as f64)));
             let close = inside.choose(&(size.scaled(&CLOSE) - &decrement), &zero);
+            // Tenths of the first weight meet the last one only up to rounding.
             let ended = close.choose(&(last.clone().scaled(&1.001) - &barrier), &zero);
             // If the barrier has ended (both weights are zero), this condition holds as well.
             let ended = if self.nonnegative { ended } else { close.clone() };
             let ended = (full.clone() - &balance).choose(&zero, &ended);
             let ended = self.reached.choose(&one, &ended);
             // The step at which the iteration is close enough leaves only rounding errors.
+            // For the barrier −log det, with λ the decrement, a step of 1/(1 + λ) stays inside and decreases the
+            // objective. From λ = ½ down a whole step does, after which λ₊ ≤ (λ/(1 − λ))² (Nesterov and Nemirovskii
+            // 1994).
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
             let mut length = (one.constant(&0.25) - &decrement).choose(&one, &length);
             if self.nonnegative {
@@ -180,11 +186,13 @@ impl<T: Real> Divergence<T> {
             for i in 0..c {
                 self.step[i] = inside.choose(&self.trial[i], &self.step[i]);
             }
+            // A lane that is outside tries half of its last step, while the others go on.
             alpha = inside.choose(&moving, &alpha.clone().scaled(&0.5));
             if self.reached.exceeds(&zero) {
                 break;
             }
             self.reached = ended.choose(&one, &self.reached);
+            // Near its minimum for one weight of the barrier, the iteration goes on to a tenth of that weight.
             let near = one.constant(&0.3) - &decrement;
             let tighter = near.negated().choose(&barrier, &barrier.clone().scaled(&0.1).greatest(&last));
             barrier = inside.choose(&tighter, &barrier);

@@ -17,7 +17,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// A matrix is symmetric, and vanishes on rigid motions, up to this share of it: what files of eight digits leave, and what condensation does.
 const PROVED: f64 = 1e-7;
-/// Points this far from a line, relative to its length, are on it.
+/// Points this far from a line, relative to its length, are on it. The resistance of the matrix to a rotation about the
+/// line has the square of this share, which is below rounding.
 const STRAIGHT: f64 = 1e-9;
 /// Springs up to which closed forms, and what does not reach its accuracy otherwise, are solved in double-double numbers: those of 28 nodes.
 const PRECISE: usize = 400;

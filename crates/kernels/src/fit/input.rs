@@ -8,7 +8,8 @@ use crate::springs::Springs;
 /// The number of values that are checked without a branch between them.
 const BLOCK: usize = 64;
 
-/// The rounding error of moduli near the bounds of Poisson's ratio, relative to the larger modulus.
+/// The rounding error of moduli near the bounds of Poisson's ratio, relative to the larger modulus. Moduli that a user
+/// has computed from E and ν = −1 or 1/2 meet a bound only up to rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Checks cells with nodes `connectivity`, `[cells × nodes]`, among `points`, `[points × space]`, m.

@@ -107,6 +107,7 @@ impl<T: Scalar> Nodal<T> {
             above = above.minus_product(&self.border[s], &rhs[s]);
             below = below.minus_product(&self.border[s], &image[s]);
         }
+        // The pivot of the content, by the rule of all normal equations: a thousand rounding errors count as zero.
         let regular = below.exceeds(&self.border[lengths].clone().scaled(&T::exact(1e3 * T::epsilon())));
         let constant = above / &below;
         for s in 0..lengths {

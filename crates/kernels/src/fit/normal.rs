@@ -11,7 +11,8 @@ use nalgebra::{DMatrix, DVector};
 /// roundings. Pivots above this limit are used, and the digits are lost that the condition costs.
 pub(super) const RANK: f64 = 1000.0;
 
-/// The tolerance of the optimality conditions under `k ≥ 0`, as a fraction of the largest |b| in the scaling with a unit diagonal.
+/// The tolerance of the optimality conditions under `k ≥ 0`, as a fraction of the largest |b| in the scaling with a
+/// unit diagonal. Rounding of M k leaves less, unless the condition of the equations has cost six digits.
 pub(super) const OPTIMALITY: f64 = 1e-10;
 
 /// By how much `M k − b` may be below zero in the scaling with equal diagonal entries, where `largest` is the largest |b|.
@@ -120,6 +121,7 @@ impl<T: Scalar> Normal<T> {
         any.vectorize(
             #[inline(always)]
             || match self.size() {
+                // Pairs of nodes of the triangle, of the quadrilateral and tetrahedron, and of the hexahedron.
                 3 if T::UNROLLED => self.factorize(3, rounding),
                 6 if T::UNROLLED => self.factorize(6, rounding),
                 28 if T::UNROLLED => self.factorize(28, rounding),

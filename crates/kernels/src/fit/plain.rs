@@ -22,7 +22,8 @@ use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use nalgebra::{DMatrix, DVector};
 
-/// An eigenvalue is rounding if it is below this share of the largest.
+/// An eigenvalue is rounding if it is below this share of the largest. Rigid motions have a stiffness of some 1e-16,
+/// and the softest motion of a cell that is not degenerate has more than this.
 const ROUNDING: f64 = 1e-12;
 
 /// The stiffness of the element with nodes at `x`, `[nodes × dimension]`, m: `R = Σ_q v_q B_qᵀ D B_q`, N/m. Row `voigt(k, l)` of B has the

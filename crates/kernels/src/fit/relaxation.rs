@@ -40,9 +40,11 @@ pub struct FittedSeries {
     pub error: f64,
 }
 
-/// Relaxation times in a decade of the measurement.
+/// Relaxation times in a decade of the measurement. A term falls within about one decade, so that two follow any
+/// measured curve, and more would follow its noise.
 const PER_DECADE: f64 = 2.0;
-/// A rise of a modulus that falls, as a share of the largest, that may be noise.
+/// A rise of a modulus that falls, as a share of the largest, that may be noise. A larger rise is no relaxation:
+/// columns are exchanged, or rows are out of order.
 const NOISE: f64 = 0.02;
 /// A share of the modulus below it is rounding.
 const NONE: f64 = 1e-9;

@@ -14,7 +14,8 @@ pub struct Anisotropy {
 
 /// A ratio of Young's moduli beyond the square of this has no accurate compliance.
 const LARGEST_RATIO: f64 = 1e6;
-/// Two axes whose angle has a smaller sine are not independent.
+/// Two axes whose angle has a smaller sine are not independent. A third axis, their cross product, would have lost six
+/// digits or more.
 const INDEPENDENT: f64 = 1e-6;
 
 impl Anisotropy {

@@ -144,6 +144,7 @@ impl Energy {
         let definition: Definition = file::parse_toml(text)?;
         let names: Vec<&str> =
             INVARIANTS.iter().chain(&MODULI).copied().chain(definition.parameters.keys().map(String::as_str)).collect();
+        // Parameters are variables; they are defined here only to learn whether their names are new ones.
         let mut check = Scope::new(&[INVARIANTS.as_slice(), MODULI.as_slice()].concat());
         for (name, value) in &definition.parameters {
             let key = format!("parameters.{name}");
@@ -290,6 +291,7 @@ impl Energy {
             let problem = "the energy of the fibres depends on more than their stretch";
             return Err(Error::at("energy", problem).of_kind(ErrorKind::Unsupported));
         }
+        // With all their digits, and in parentheses for their signs.
         let values: Vec<String> = self.constants.iter().map(|value| format!("({value:?})")).collect();
         let names: Vec<&str> = INVARIANTS.iter().map(|_| "(c^2)").chain(values.iter().map(String::as_str)).collect();
         Ok(Some((direction, format!("a*2*c*({})", slope.text(&names)))))

@@ -40,7 +40,8 @@ pub const fn strains(dimension: usize) -> usize {
     dimension * (dimension + 1) / 2
 }
 
-/// The difference of entries above and below the diagonal that is rounding, relative to the largest entry.
+/// The difference of entries above and below the diagonal that is rounding, relative to the largest entry. Matrices
+/// that other programs have inverted or turned differ by that much.
 const SYMMETRIC: f64 = 1e-9;
 /// The least eigenvalue relative to the largest that is not rounding.
 const LEAST: f64 = 1e-12;

@@ -5,7 +5,8 @@ use super::response::Tangent;
 use crate::error::{Error, Result};
 use nalgebra::{Matrix3, Matrix6};
 
-/// The largest stress at rest, relative to the stiffness.
+/// The largest stress at rest, relative to the stiffness. Terms of the energy cancel at rest up to rounding, unless a
+/// constant of the file is not what the others ask for.
 const STRESS: f64 = 1e-10;
 /// The largest relative difference of a modulus at rest from that of the material, which files give with a few digits.
 const MODULI: f64 = 1e-3;
@@ -67,6 +68,7 @@ impl Energy {
             self.formula.expression.evaluate(&at)
         };
         let given = of([a, b, c]);
+        // Terms with exchanged stretches are summed in another order, which changes some of the last digits.
         if [[b, a, c], [a, c, b]].map(of).iter().any(|other| (other - given).abs() > 1e-9 * size) {
             return Err(Error::expected("energy", ISOTROPIC, "one that changes if l1, l2 and l3 are exchanged"));
         }

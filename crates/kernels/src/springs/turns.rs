@@ -83,6 +83,7 @@ impl Turns {
         let n = x.len();
         let mut jet = Jet { value: self.value(x), gradient: vec![0.0; n], hessian: vec![0.0; n * n] };
         for (places, weight) in self.iter() {
+            // Second derivatives are those of the closed form of the gradient, by dual numbers.
             let mut variables = points(x, places).map(|point| point.map(Dual::<12>::steady));
             variables.as_flattened_mut().iter_mut().enumerate().for_each(|(k, dual)| dual.slopes[k] = 1.0);
             let slopes = slopes(&variables);

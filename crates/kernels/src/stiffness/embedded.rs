@@ -11,7 +11,8 @@ use super::large::{ElementResponse, free_axes, without_stress};
 use crate::material::{Energy, State, Tangent};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-/// A cell whose tangents are closer to a common line, relative to their lengths, has no plane.
+/// A cell whose tangents are closer to a common line, relative to their lengths, has no plane. What is left of a
+/// tangent then is the rounding of its projection.
 const FLAT: f64 = 1e-12;
 
 /// A deformed cell at a quadrature point.

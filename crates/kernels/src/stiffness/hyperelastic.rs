@@ -56,11 +56,14 @@ impl Hyperelastic for Energy {
     }
 }
 
-/// The largest stress at rest, as a share of Young's modulus.
+/// The largest stress at rest, as a share of Young's modulus. A function that differentiates an energy by differences
+/// leaves some eight digits.
 const AT_REST: f64 = 1e-8;
-/// The largest number of steps of the search for the free stretches.
+/// The largest number of steps of the search for the free stretches. Newton's steps double the digits, so that a search
+/// that takes as many does not end.
 const STEPS: usize = 60;
-/// The step of a difference in a stretch.
+/// The step of a difference in a stretch. Its square, the error of the slope, and the rounding over it are both below
+/// 1e-7, which only slows the last steps.
 const STEP: f64 = 1e-4;
 /// A change of the free stretches after which the next would be below rounding: the slope is known to the square of [`STEP`].
 const LAST: f64 = 1e-8;
@@ -138,6 +141,7 @@ impl EnergyFunction {
                     let expected = "an energy that resists a stretch through the thickness";
                     return Err(Error::expected("energy", expected, format!("a slope of {slope:.3e} Pa")));
                 }
+                // A stretch stays above zero, where the energy has a value.
                 free.iter().for_each(|&k| f[q][(k, k)] = (stretch + change).max(0.1 * stretch));
                 if change.abs() > LAST {
                     left.push(q);

@@ -181,6 +181,7 @@ pub(super) fn without_stress(
             continue;
         }
         let change = -pull / stiffness;
+        // Some fifty rounding errors of a stretch near one; the condensed tangent is that of no stress.
         if change.abs() <= 1e-14 {
             let mut condensed = tangent;
             for row in 0..9 {
@@ -191,6 +192,7 @@ pub(super) fn without_stress(
             }
             return Some((w, stress, condensed));
         }
+        // A stretch stays above zero, where the energy has a value.
         free.iter().for_each(|&k| f[(k, k)] = (f[(k, k)] + change).max(0.1 * f[(k, k)]));
     }
     None

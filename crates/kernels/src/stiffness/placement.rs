@@ -67,6 +67,7 @@ impl Placement {
                 tangent.iter_mut().zip(e).for_each(|(t, e)| *t -= along * e);
             }
             let left = norm(tangent);
+            // What is left of a tangent then is the rounding of its projection.
             if left.is_nan() || left <= 1e-12 * size {
                 return Err(Fault::Flat);
             }

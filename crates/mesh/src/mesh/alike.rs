@@ -82,6 +82,7 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
         sorted[*place as usize] = *key;
         *place += 1;
     }
+    // A large mesh has many sides: one of the long lists is given back.
     drop(keys);
     let mut keys = sorted;
     keys.par_chunk_by_mut(|a, b| lowest(a) == lowest(b)).for_each(<[u64]>::sort_unstable);

@@ -59,6 +59,8 @@ impl BoxMesh {
             {
                 let unit = part.place(at);
                 let place: Vec<f64> = corner.iter().zip(&unit).map(|(c, u)| *c as f64 + u).collect();
+                // Places in units of a millionth of a cell: nodes that cells share are computed apart, and differ by
+                // rounding.
                 let key = place.iter().map(|p| (p * (1u64 << 20) as f64).round() as u64).collect();
                 let next = mesh.point_count();
                 let index = *known.entry(key).or_insert(next);
@@ -106,6 +108,7 @@ impl BoxMesh {
         body.cells = (0..mesh.blocks[0].cells().len()).map(|cell| CellIndex { block: 0, cell }).collect();
         for (k, axis) in ["x", "y", "z"].iter().enumerate().take(mesh.dimension) {
             for (end, at) in [("min", self.origin[k]), ("max", self.origin[k] + self.size[k])] {
+                // The last layer is a product of the size and a share, which may be a rounding beside the end.
                 let near = |&p: &usize| (mesh.point(p)[k] - at).abs() <= 1e-9 * self.size[k];
                 let mut group = Group { points: (0..mesh.point_count()).filter(near).collect(), ..Group::default() };
                 for nodes in mesh.blocks[0].cells() {

@@ -54,6 +54,7 @@ pub(super) fn content(bytes: &[u8]) -> Option<Content> {
     if ["$meshformat", "$nod", "$comments", "$physicalnames"].contains(&first) {
         return known("Gmsh");
     }
+    // A line that begins with a parenthesis may stand in any file: it means Fluent only as the first.
     if let Some((_, name, way)) =
         OTHERS.iter().find(|(mark, ..)| first.starts_with(mark) || (!mark.starts_with('(') && has(mark)))
     {

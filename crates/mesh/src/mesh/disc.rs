@@ -108,6 +108,7 @@ impl DiscMesh {
             let outer = |j: usize| start + n + j % m;
             let (mut i, mut j) = (0, 0);
             while i < n || j < m {
+                // By the middles of the next steps, in whole numbers: no rounding decides between equal angles.
                 if j == m || (i < n && (2 * i + 1) * m < (2 * j + 1) * n) {
                     triangles.extend([inner(i), outer(j), inner(i + 1)]);
                     i += 1;

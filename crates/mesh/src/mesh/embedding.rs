@@ -29,8 +29,11 @@ pub struct Embedding {
 /// The largest distance of a point from the centre of its cell, as a multiple of that of the border in its direction. Meshes of one
 /// curved body differ near its surface, most of all at sharp rims, where cells are thin.
 const FARTHEST: f64 = 3.0;
-/// The multiples that are tried.
+/// The multiples that are tried. The first one is the cell itself, but for rounding; the steps grow, because few points
+/// lie far outside.
 const MULTIPLES: [f64; 9] = [1.0 + 1e-8, 1.02, 1.08, 1.2, 1.4, 1.6, 2.0, 2.5, FARTHEST];
+/// Newton's steps to the place of a point at most: a point that is not found then is outside, where a curved cell is
+/// folded.
 const ITERATIONS: usize = 30;
 /// A shape function below this vanishes at a point: places in cells are found to rounding, and cells that were halved six times have
 /// functions of 1/64.
@@ -155,6 +158,8 @@ impl Bins {
             let functions = &mesh.blocks[cell.block].element.functions.values;
             let values = mesh.cell_nodes(cell).iter().zip(functions).map(|(a, n)| (*a, n.evaluate(&at)));
             // One that is not finite is kept.
+            // A node of a side on which the point lies has a function of zero but for rounding, and is left out of the
+            // sum.
             let row: Vec<(usize, f64)> = values.filter(|(_, n)| !(n.abs() <= 1e-14)).collect();
             row.iter().all(|(_, n)| n.is_finite()).then_some((row, cell, multiple))
         };
@@ -184,7 +189,8 @@ struct CellBox {
     is_straight: bool,
 }
 
-/// The distance of a point from a node that it is, relative to the size of a box.
+/// The distance of a point from a node that it is, relative to the size of a box. Then it has the displacement of that
+/// node to the last digit.
 const SAME: f64 = 1e-9;
 /// The rounding of a place relative to the size of a box.
 const SLACK: f64 = 1e-6;
@@ -244,10 +250,12 @@ fn local(mesh: &Mesh, cell: CellIndex, x: &[f64]) -> Option<(usize, Vec<f64>)> {
             }
         }
         let step = jacobian.lu().solve(&rest)?;
+        // Cells are of size one: a place this far away does not return.
         if !step.iter().all(|step| step.is_finite()) || at.iter().any(|at| at.abs() > 100.0) {
             return None;
         }
         at.iter_mut().zip(&step).for_each(|(at, step)| *at += step);
+        // The next step would be its square, which is no number beside one.
         if step.amax() < 1e-12 {
             break;
         }

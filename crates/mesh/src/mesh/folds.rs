@@ -7,7 +7,8 @@ use crate::stiffness::gather;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Heights below this share of the lengths count as zero.
+/// Heights below this share of the lengths count as zero. A centre in the plane of the shared side is on neither side
+/// of it.
 const FLAT: f64 = 1e-9;
 
 impl Mesh {
@@ -83,6 +84,7 @@ impl Mesh {
         let nodes = self.side_nodes(one);
         let origin = self.point(nodes[0]);
         let from = |x: &[f64]| -> Vec<f64> { x.iter().zip(origin).map(|(x, o)| x - o).collect() };
+        // The farthest node, and below the largest product: of others little but rounding may be left.
         let along = nodes.iter().map(|&p| from(self.point(p)));
         let Some(along) = along.max_by(|a, b| dot(a, a).total_cmp(&dot(b, b))) else { return false };
         let normal = match self.dimension {

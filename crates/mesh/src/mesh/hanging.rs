@@ -8,7 +8,8 @@ use std::collections::{HashMap, HashSet};
 
 /// The largest distance of a hanging point from a side, relative to the extent of the side.
 const TOLERANCE: f64 = 1e-6;
-/// Newton iterations for the nearest position of a curved side.
+/// Newton iterations for the nearest position of a curved side. Sides bend little, so that a point without a position
+/// after them has none near.
 const ITERATIONS: usize = 20;
 
 /// A side on the boundary, or a cell of a curve, on which only its own points should lie.
@@ -41,6 +42,7 @@ impl Mesh {
         }
         let mut hanging = HashSet::new();
         for (host, [low, high]) in hosts.iter().zip(&boxes) {
+            // No farther than a tenth of the shortest edge, so that no neighbour of a side is taken for a point on it.
             let reach = places.rounding.max((TOLERANCE * distance(low, high)).min(0.1 * places.shortest_edge));
             let (from, to) = (low.map(|x| bin(x - reach)), high.map(|x| bin(x + reach)));
             let mut test = |p: usize| {
@@ -101,6 +103,7 @@ impl Mesh {
         };
         let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
         let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
+        // A curved side leaves the box of its nodes, by less than a quarter of its extent unless it is folded.
         let bulge = if host.points.len() > host.cell.corners().len() { 0.25 * distance(&low, &high) } else { 0.0 };
         [low.map(|x| x - bulge), high.map(|x| x + bulge)]
     }
@@ -140,6 +143,7 @@ impl Mesh {
             if !step.iter().all(|step| step.is_finite()) {
                 return false;
             }
+            // Cells are of size one, and the next step would be at rounding.
             if step.iter().all(|step| step.abs() < 1e-10) {
                 // The ends belong to the side, within the tolerance.
                 let centre = host.cell.centre();

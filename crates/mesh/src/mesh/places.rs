@@ -22,8 +22,11 @@ impl Places {
         let points: Vec<[f64; 3]> = (0..mesh.point_count()).map(place).collect();
         let least: [f64; 3] = std::array::from_fn(|k| points.iter().map(|x| x[k]).fold(f64::INFINITY, f64::min));
         let extent = points.iter().flat_map(|x| (0..3).map(|k| x[k] - least[k])).fold(0.0, f64::max);
+        // Coordinates far from the origin, which a program has moved or scaled some times, are known to so many
+        // roundings.
         let rounding = 16.0 * f64::EPSILON * mesh.points.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let shortest_edge = shortest_edge(mesh);
+        // Points are one if they differ by rounding, and never if they are the ends of an edge.
         let unit = (1e-9 * extent).min(0.1 * shortest_edge).max(rounding);
         // Also refuses NaN.
         if !(unit > 0.0 && unit <= 0.1 * shortest_edge) {

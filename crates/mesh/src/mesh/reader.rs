@@ -171,6 +171,7 @@ impl<'a> Reader<'a> {
 
     /// How many items of `numbers` numbers of type `T` the rest of the file can hold, but at most `count`.
     pub fn capacity<T: Number>(&self, count: u64, numbers: usize) -> usize {
+        // Even a short number of text has a digit and a blank.
         let bytes = if self.encoding == Encoding::Text { 2 } else { T::BYTES };
         let room = self.rest().len() / bytes / numbers.max(1) + 1;
         usize::try_from(count).map_or(room, |count| count.min(room))

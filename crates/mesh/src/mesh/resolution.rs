@@ -331,5 +331,6 @@ fn in_one_plane(source: &MeshSource) -> bool {
     let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));
     let (lo, hi) = range(2);
     let extent = (0..2).map(|k| range(k).1 - range(k).0).fold(0.0, f64::max);
+    // A program that turns a plane mesh leaves rounding across it.
     hi - lo <= 1e-9 * extent
 }

@@ -64,7 +64,7 @@ impl<'a> SpringRow<'a> {
 pub(super) const COLUMNS: [&str; 8] = ["kind", "points", "constant", "rest", "unit", "law", "parameters", "nodes"];
 const CONSTANT: usize = 2;
 
-/// Bytes that are gathered before they are written.
+/// Bytes that are gathered before they are written. A write for each line would be a call of the system for each.
 const PIECE: usize = 8192;
 
 /// A table of springs that is being written. The text is that of the crate `csv`, of which the fields of most springs need no quotes.

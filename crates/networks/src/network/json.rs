@@ -5,7 +5,7 @@ use super::record::SpringRecord;
 use crate::text::{push_number, push_whole};
 use std::io::{self, Write};
 
-/// Bytes that are gathered before they are written.
+/// Bytes that are gathered before they are written. A write for each number would be a call of the system for each.
 const PIECE: usize = 8192;
 
 /// Writes a record. Its springs are made while they are written, so that no text or list of all of them is held in memory.

@@ -229,6 +229,7 @@ impl NetworkRecord {
             groups: BTreeMap::new(),
             cell_groups: BTreeMap::new(),
         };
+        // Where building leaves out points or turns cells, springs would name others.
         arrays.build(Gate::default()).ok().filter(|mesh| mesh.points == points && mesh.reversed == 0)
     }
 }

@@ -23,9 +23,10 @@ const VERSION: u32 = 3;
 const RECORD: usize = 64;
 /// Bytes of the checksum.
 const CHECKSUM: u64 = 4;
-/// The longest first line that is read, bytes.
+/// The longest first line that is read, bytes. A file of another kind has no line end that soon, and must not fill the
+/// memory.
 const LONGEST: u64 = 1_000_000;
-/// The most files that are open at the same time.
+/// The most files that are open at the same time. Linux allows a process 1024, of which others are in use.
 const MOST: usize = 1000;
 
 /// What the shards of one network have in common.
@@ -101,6 +102,7 @@ impl NetworkShard<'_> {
         let (d, place) = (self.dimension, |p: usize| self.places.map_or(p, |places| places[p]));
         let numbers = |points: &[usize]| self.numbers.map(|own| points.iter().map(|&p| own[p]).collect::<Vec<u64>>());
         let failed = |e| Error::io("cannot be written", e).in_file(path);
+        // The header states the length of this table, so that it is made first.
         let mut table = SpringTable::bare(Vec::new());
         for spring in self.others {
             let points: Vec<usize> = spring.points.iter().map(|&p| place(p)).collect();
@@ -170,6 +172,8 @@ impl Source {
         if header.format != FORMAT || header.version != VERSION {
             return Err(wrong(format!("\"{}\" of version {}", header.format, header.version)));
         }
+        // A header may state any counts: their product must not overflow. The length tells a file that was cut off
+        // without reading it.
         let expected = (header.shares as u128) * RECORD as u128
             + header.others as u128
             + line.len() as u128
@@ -182,6 +186,7 @@ impl Source {
             return Err(wrong(format!("shard {} of {}", header.shard, header.count)));
         }
         let source = Source { path: path.to_path_buf(), start: line.len() as u64, header };
+        // The whole file before any of it is used, because a merge writes while it reads.
         match source.is_whole(found).map_err(failed)? {
             true => Ok(source),
             false => Err(wrong("one that is damaged: its checksum is not that of its contents".into())),
@@ -247,6 +252,7 @@ impl Shares<'_> {
             std::array::from_fn(|at| u64::from_le_bytes(words[at]));
         let [constant, size, slack, length] = [constant, size, slack, length].map(f64::from_bits);
         let points = [i as usize, j as usize];
+        // The merge relies on the order of the points.
         let is_sound =
             i < j && j < count && points >= self.last && [constant, size, slack, length].iter().all(|x| x.is_finite());
         if !is_sound {
@@ -297,6 +303,8 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
     let may_be_steady = sources.iter().any(|source| source.header.has_slack);
     let written = write_with(output, |to| {
         let mut steady = 0;
+        // The header of a table has its columns: whether some springs have laws is found by summing all shares once
+        // before.
         if may_be_steady {
             each_sum(&sources, |sum| {
                 steady += usize::from(matches!(sum.share.spring(sum.length, run.is_exact), SharedSpring::Steady(_)));
@@ -316,6 +324,7 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
             }
             SharedSpring::None | SharedSpring::Steady(_) => Ok(()),
         })?;
+        // Springs on lengths come first, as in a network that is written at once; the others are summed again for that.
         if steady > 0 {
             each_sum(&sources, |sum| match sum.share.spring(sum.length, run.is_exact) {
                 SharedSpring::Steady(spring) => {

@@ -137,6 +137,7 @@ impl<'a> Saved<'a> {
             return Ok(());
         };
         self.last = Instant::now();
+        // The fits of a run share the file: what others have saved stays.
         let mut all = self.controls.read()?;
         all.fits.insert(self.name.into(), SavedFit { identity: self.identity.clone(), snapshot: snapshot.clone() });
         let text = serde_json::to_string(&all).expect("a state of finite numbers is JSON");
@@ -195,6 +196,7 @@ impl DataSum {
         for numbers in [&target.forces, &target.displacement, &target.weights] {
             self.numbers(numbers);
         }
+        // No support has this number, so that it can stand for what is free.
         let held: Vec<f64> = target.support.prescribed.iter().map(|p| p.unwrap_or(f64::NAN)).collect();
         self.numbers(&held);
     }

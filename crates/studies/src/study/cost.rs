@@ -11,7 +11,8 @@ pub const REFINEMENTS: f64 = 3.0;
 /// measured on bodies of 10 000 to 100 000 unknowns.
 pub const SPARSE: f64 = 0.8;
 pub const SOLUTIONS: f64 = 1e9;
-/// Work that is not measured at this rate takes no time.
+/// A machine that is slow makes so many operations in a second: fewer take no time on any, and its rate need not be
+/// measured for them.
 pub const SLOWEST_RATE: f64 = 1e8;
 /// Seconds for each unknown of a body solved by iterations: to assemble a model, build its levels and prove that it is stable, and for
 /// each load, side by side with others. Measured on a million and on sixty thousand unknowns.

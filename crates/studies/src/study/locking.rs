@@ -5,7 +5,7 @@ use crate::material::{MaterialMap, State};
 use crate::mesh::{CellBlock, Mesh};
 
 /// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
-const LOCKS: f64 = 0.4;
+pub(super) const LOCKS: f64 = 0.4;
 
 /// Cells that lock.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -50,6 +50,7 @@ pub fn deformations(element: &Element) -> usize {
 /// The number of eigenvalues of R that are no rounding.
 pub fn rank(r: &DMatrix<f64>) -> usize {
     let eigenvalues = r.symmetric_eigenvalues();
+    // Rigid motions leave some 1e-15 of the largest.
     let floor = 1e-10 * eigenvalues.amax();
     eigenvalues.iter().filter(|e| **e > floor).count()
 }

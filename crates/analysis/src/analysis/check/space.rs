@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 /// The tolerance of identities of functions of size one: some ten thousand rounding errors.
 const ROUNDING: f64 = 1e-11;
-/// The step of central differences, whose error is its square.
+/// The step of central differences, whose error is its square. The rounding of values over it is as small.
 const STEP: f64 = 1e-5;
 
 pub fn properties(element: &Element) -> Vec<Property> {

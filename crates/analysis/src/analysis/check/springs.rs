@@ -90,6 +90,7 @@ fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Proper
             row /= size;
         });
         let singular = (rows.transpose() * &rows).symmetric_eigenvalues();
+        // A square of singular values: what is below the limit is rounding.
         least = least.min(singular.iter().filter(|s| **s > 1e-12 * singular.amax()).count());
         let gram = (&rows * rows.transpose()).map(|c| c * c).symmetric_eigenvalues();
         worst = worst.max(if gram.min() > 0.0 { gram.max() / gram.min() } else { f64::INFINITY });

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Entries that differ by less than this share of the largest are equal: a tensor is cubic if it is by this much.
+/// Points of networks come from files with six digits or more.
 const CUBIC: f64 = 1e-6;
 /// A strain whose stiffness is below this share of the largest meets no resistance.
 const NOTHING: f64 = 1e-9;

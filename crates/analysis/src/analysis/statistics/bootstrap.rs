@@ -4,7 +4,8 @@ use super::quantile::{median, quantile};
 use crate::random::Random;
 use serde::Serialize;
 
-/// The number of resamples.
+/// The number of resamples. Ends of an interval of 95 % are then those of 25 resamples on either side (Efron and
+/// Tibshirani 1993).
 const RESAMPLES: usize = 1000;
 /// The seed of the resamples: the same values always have the same interval.
 const SEED: u64 = 1979;

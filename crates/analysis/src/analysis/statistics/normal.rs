@@ -9,6 +9,7 @@ pub fn beyond(z: f64) -> f64 {
 /// `erfc(x)` of x from 0 on: the continued fraction, and the power series for small x.
 fn erfc(x: f64) -> f64 {
     let scale = 2.0 / std::f64::consts::PI.sqrt();
+    // The series needs few terms there, and cancels from there on; the continued fraction converges fast beyond.
     if x < 2.0 {
         let (mut term, mut sum) = (x, x);
         for n in 1..80 {

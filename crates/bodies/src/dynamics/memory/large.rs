@@ -65,7 +65,7 @@ impl LargeMemory {
         Ok(memory)
     }
 
-    /// The same memory for explicit steps of the length `step`, s.
+    /// Makes this memory one for explicit steps of the length `step`, s.
     pub(super) fn for_explicit(&self, step: f64) -> ExplicitMemory {
         let points = self.form.points();
         let regions = points.each().fold(0, |most, point| most.max(point.region + 1));

@@ -67,6 +67,7 @@ impl Simulation<'_> {
         self.state.time = self.steps as f64 * self.options.step;
         self.state.displacement.iter_mut().zip(&self.way).for_each(|(u, way)| *u -= way);
         std::mem::swap(&mut self.before, &mut self.state.velocity);
+        // A step of no length forgets what the failed one has prepared.
         self.resistance.prepare(0.0);
         self.refresh();
         Step::explicit(StepOutcome::NoResponse)

@@ -121,6 +121,7 @@ impl<'a> Simulation<'a> {
             });
         }
         let is_plain = simulation.motion.memory.is_none() && !simulation.resistance.is_damped();
+        // Rows hold neither accounts nor damping: other motions keep their state as points.
         if !is_implicit && !options.account && !options.linear && is_plain {
             simulation.rows = row_motion(&simulation.motion, options.step, &simulation.inverse);
         }

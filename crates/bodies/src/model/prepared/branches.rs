@@ -139,6 +139,7 @@ impl Branches {
         let d = self.dimension;
         let pull = |piece: &mut Piece| piece.pull(x, d, rules);
         let sound = match &mut self.pieces[..] {
+            // One piece is not worth the way to other threads.
             [piece] => pull(piece),
             pieces => pieces.par_iter_mut().map(pull).reduce(|| true, |a, b| a & b),
         };

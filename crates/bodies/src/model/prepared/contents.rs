@@ -123,6 +123,7 @@ impl Contents {
             let tension = others[*spring].tension(content);
             weights.iter().zip(&mut tensions[first..]).for_each(|(w, t)| *t += w * tension);
         }
+        // A sum is quicker to ask; that of finite numbers may overflow, and they are asked one by one.
         sound &= tensions.iter().sum::<f64>().is_finite() || tensions.iter().all(|t| t.is_finite());
         for cells in &self.tables {
             cells.visit(space, Pulls { cells, x, tensions, force });

@@ -64,6 +64,7 @@ fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3]
     let mut modulus = BigInt::one();
     let mut lifted = BTreeMap::<u128, BigInt>::new();
     for mut field in Field::all() {
+        // A prime that divides a leading coefficient lowers the degree of an image.
         if [a, b].iter().any(|p| field.residue(&leading(p)) == 0) {
             continue;
         }
@@ -73,9 +74,11 @@ fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3]
         let (image_a, image_b) = (image(a), image(b));
         let image = image_divisor(&image_a, &image_b, layout.widths(), &mut field);
         let last = image[image.len() - 1].0;
+        // Images have divisors at least as large: where theirs is a number, the polynomials have no common divisor.
         if last == 0 {
             return [one(), a.clone(), b.clone()];
         }
+        // Of two primes with divisors of unequal degrees one was unlucky. It shows with more primes which.
         if lifted.last_key_value().is_none_or(|(key, _)| *key != last) {
             (modulus, lifted) = (BigInt::one(), BTreeMap::new());
         }
@@ -138,6 +141,7 @@ fn image_divisor(a: &[(u128, u64)], b: &[(u128, u64)], widths: &[u32], field: &m
         }
         let changed = interpolate(&mut found, &modulus, &image, at, field.value(&lead, at), field);
         modulus = field.times_root(&modulus, at);
+        // A further value that changes nothing says that all is found; the division of the polynomials proves it.
         if !changed || modulus.len() > enough {
             let mut divisor: Grouped = found.into_iter().filter(|(_, c)| !c.is_empty()).collect();
             take_content(&mut divisor, field);

@@ -27,6 +27,7 @@ impl Field {
     fn is_field(&self) -> bool {
         let even = self.prime() - 1;
         let twos = even.trailing_zeros();
+        // 2⁶¹ − 1 is a prime of Mersenne: most divisors need no other, and no test.
         self.below == 1
             || [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].into_iter().all(|base| {
                 let first = self.power(base, even >> twos);
@@ -84,6 +85,7 @@ impl Field {
     /// The next number of a random sequence, which is the same in every run.
     pub fn random(&mut self) -> u64 {
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        // The lowest bits of such a sequence repeat soonest.
         (self.state >> 4) % self.prime()
     }
 

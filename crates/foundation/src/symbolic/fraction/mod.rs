@@ -125,6 +125,7 @@ impl Fraction {
     /// can cancel.
     fn plus(&self, c: &BigRational, other: &Fraction) -> Fraction {
         let [shared, below, other_below] = self.0.denominator.with_cofactors(&other.0.denominator);
+        // In this unit both contents are whole numbers, and so are the coefficients of the sum.
         let unit = BigRational::new_raw(BigInt::one(), self.0.content.denom().lcm(c.denom()));
         let term = (&self.0.numerator * &other_below).scaled(&(&self.0.content / &unit));
         let numerator = &term + &(&other.0.numerator * &below).scaled(&(c / &unit));

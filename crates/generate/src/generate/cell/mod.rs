@@ -28,7 +28,8 @@ use crate::scalar::Scalar;
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// An entry of a tabulation below this share of the largest is a rounding error of zero.
+/// An entry of a tabulation below this share of the largest is a rounding error of zero. Points of rules are known to a
+/// rounding or two, and a term of zero would be a line of code that does nothing.
 const ROUNDING: f64 = 4e-16;
 
 /// A cell in a function that is being written.

@@ -100,6 +100,7 @@ impl<T: Packed> Equations<T> for Factors<T> {
         }
         let State { rhs, constants, rest, .. } = state;
         for (s, (row, k)) in self.gram.chunks_exact(rhs.len()).zip(&*constants).enumerate() {
+            // M is symmetric, and each entry of its lower triangle serves two rows.
             let (before, current) = rest.split_at_mut(s);
             let mut sum = rhs[s].clone().minus_product(&row[s], k);
             for ((entry, other), rest) in row.iter().zip(&*constants).zip(before) {

@@ -3,7 +3,8 @@
 use super::{Equations, State};
 use crate::scalar::Packed;
 
-/// The largest number of iterations between two exchanges. Well-conditioned equations take ten to thirty.
+/// The largest number of iterations between two exchanges. Well-conditioned equations take ten to thirty. Where they do
+/// not end, the caller solves one lane after the other by factors.
 const ITERATIONS: usize = 200;
 
 /// Products with M in the scaling of [`Equations`].

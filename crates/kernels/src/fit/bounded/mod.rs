@@ -15,8 +15,11 @@ use super::constrained::Exchanges;
 use super::normal::slope_tolerance;
 use crate::scalar::Packed;
 
-/// The residual at which the signs of constants are judged, and that of the result, relative to b.
+/// The residual at which the signs of constants are judged, relative to b. Four digits show the sign of nearly every
+/// constant, and a sign that is wrong all the same sends the lane back to judging.
 const JUDGED: f64 = 1e-4;
+/// The residual of the result, relative to b: a few rounding errors, so that no digit of a constant depends on the
+/// iteration.
 const SOLVED: f64 = 1e-15;
 
 /// The equations of any set of constants, in the scaling `M_st scale_s scale_t`, in which all diagonal entries of M are equal.
@@ -108,6 +111,7 @@ impl<T: Packed, E: Equations<T>> Search<'_, T, E> {
                 return true;
             }
             let mut limits = k[0].constant(&f64::INFINITY);
+            // The residual of b = 0 is zero, which a limit of zero would not exceed.
             present
                 .iter()
                 .for_each(|own| limits.as_mut_slice()[own.lane] = (part * part * own.square).max(f64::MIN_POSITIVE));

@@ -6,6 +6,8 @@
 macro_rules! known_order {
     ($n:ident => $body:expr) => {
         match $n {
+            // Deformations of triangles (3), quadrilaterals (5) and tetrahedra (6), and the six springs of the last two
+            // with t (7).
             3 if T::UNROLLED => known_order!(@ $n, 3, $body),
             5 if T::UNROLLED => known_order!(@ $n, 5, $body),
             6 if T::UNROLLED => known_order!(@ $n, 6, $body),
@@ -24,6 +26,10 @@ mod products;
 pub use products::{add_outers, inner, row_products, tie, trace};
 
 use crate::scalar::{Real, Scalar};
+
+/// Relative pivots below this are rounding errors: some fifty units of `f64`, as the eliminations of small matrices leave.
+/// [`at_rounding`] makes it the floor of numbers of another precision.
+pub const FLOOR: f64 = 1e-14;
 
 /// Subtracts the terms of the previous columns from the entries `t..t + B` of a row, in an elimination of order m.
 ///
@@ -89,12 +95,14 @@ pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) 
 fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
     let (a, inverse) = (&mut a[..n * n], &mut inverse[..n]);
     let one = a[0].one();
+    // Its reciprocal is zero beside those of other pivots, and its square does not overflow.
     let huge = one.constant(&1e30);
     let mut least = one.clone();
     for s in 0..n {
         let (before, row) = a.split_at_mut(s * n);
         let row = &mut row[..=s];
         let pivot = eliminate_row(row, before, inverse, n, s);
+        // An entry that is not above zero has no relative pivot; its direction is removed below.
         let diagonal = row[s].choose(&row[s], &one);
         // The quotient is not in the chain from pivot to pivot.
         least = least.least(&(pivot.clone() / &diagonal));

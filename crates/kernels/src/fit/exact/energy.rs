@@ -37,6 +37,7 @@ crate::named!(ExactEnergy {
 });
 
 /// The deformations at which two energies are compared: `I1`, `I2` and `J` of some deformations that are not rotations.
+/// Swelling and shrinking ones differ in every term of the energies, which four points tell apart.
 const DEFORMATIONS: [[f64; 3]; 4] = [[3.4, 3.7, 1.1], [2.8, 2.7, 0.9], [4.1, 5.0, 1.3], [3.3, 3.2, 0.7]];
 /// The difference that rounding may leave, relative to the moduli.
 const SAME: f64 = 1e-10;
@@ -45,6 +46,7 @@ impl ExactEnergy {
     /// The exact energy that is equal to a law apart from its fibres, if there is one.
     pub fn of_law(law: &Energy) -> Option<ExactEnergy> {
         let mu = law.moduli().mu;
+        // At equal I1 and J the energy grows with I2 by μ s/2, which gives the share s of a law.
         let [a, b] = [[3.0, 3.0, 1.0], [3.0, 4.0, 1.0]].map(|at| law.of_invariants(at));
         let share = (b? - a?) / (mu / 2.0);
         let candidates = ExactEnergy::all().map(|energy| energy.with_share(share).unwrap_or(energy));

@@ -14,7 +14,8 @@ use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 use nalgebra::Matrix3;
 
-/// A product of gradients below this share of the product of their lengths is a rounding error.
+/// A product of gradients below this share of the product of their lengths is a rounding error. Sums over the points of
+/// a cell leave some hundred units of `f64`, where right angles have zero.
 const ROUNDING: f64 = 1e-13;
 
 /// The cells of one block, and the memory for their numbers.

@@ -149,7 +149,9 @@ pub fn fit_exact<'a>(
     Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })
 }
 
-/// Heights above the mean plane, as a share of the size of a cell, that may be rounding errors of the coordinates.
+/// The square of the height above the mean plane, as a share of the square of the size of a cell, that may be rounding:
+/// heights of 3e-5, as coordinates of single precision far from the origin have. Both squares are sums, whose
+/// difference is not known below 1e-16.
 const FLAT: f64 = 1e-9;
 
 /// Checks that cells of surfaces and curves are flat, as exact networks need them: the springs measure lengths in space, the finite elements in the

@@ -21,6 +21,7 @@ impl<T: Quantity> CellShape<'_, T> {
     /// The mean length of the edges in each direction, m; times zero if the formula joins no edges.
     pub fn extents(&self) -> Vec<T> {
         let place = |[a, b]: [usize; 2]| self.pairs.iter().position(|p| *p == [a, b] || *p == [b, a]);
+        // A product with zero, because a formula has no other constant of its kind.
         self.corners.extents(|pair| place(pair).map_or_else(|| self.content.clone() * 0.0, |s| self.lengths[s].clone()))
     }
 }

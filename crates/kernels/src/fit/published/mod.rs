@@ -67,6 +67,7 @@ pub fn fit<'a>(
     for material in material.values() {
         let bulk = Elasticity::of(element, *material)?;
         if let Ratio::AtLeast(least) = cover.poisson
+            // The ratio of a plane state is a quotient, so that one at the bound is there up to rounding.
             && bulk.poisson < least - 1e-12
         {
             let expected = format!("a ratio of at least {least:.4} for {}", method.name());

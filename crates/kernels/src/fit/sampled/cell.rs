@@ -19,15 +19,17 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The number of shapes that one thread sums,
+/// The number of shapes that one thread sums. It is fixed, so that the order of the sums, and with it their rounding,
+/// does not depend on the number of threads.
 pub const BLOCK: usize = 256;
-/// and the number of such blocks before they are added to the rest.
+/// The number of such blocks before they are added to the rest, which bounds the memory of their sums.
 pub const BLOCKS: usize = 16;
 /// Numbers of equations that are stored before they are summed: a few hundred kilobytes.
 const HELD: usize = 1 << 15;
 /// The number of parameters of a spring for which no memory is allocated.
 const FEW: usize = 8;
-/// A strain that is nearly zero.
+/// A strain that is nearly zero. Without this floor, a shape that hardly deforms has a force of nearly zero and, by
+/// relative weights, counts more than all others.
 const SLIGHT: f64 = 1e-3;
 /// The rest measures of springs that have their own, relative to the measure at rest. A nonnegative sum of two springs,
 /// one with each of these, is a spring with a rest measure in between.

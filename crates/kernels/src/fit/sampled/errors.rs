@@ -160,6 +160,7 @@ impl SampledCell<'_> {
             Force::FreeRest | Force::Exact { .. } => measures.iter().map(|c| sum(c, &REST_RANGE)).collect(),
             Force::Laws(_) => {
                 let Some(law) = self.law(s) else { return vec![0.0; count] };
+                // Lanes without a shape repeat the last one.
                 measures.resize(count.next_multiple_of(SIDE), measures[count - 1]);
                 let values = 1 + own.len() + own.len() * (own.len() + 1) / 2;
                 let mut wanted = vec![false; values];

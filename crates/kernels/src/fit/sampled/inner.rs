@@ -14,17 +14,22 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
 const PROMISE: f64 = 1e-12;
-/// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more than this share.
+/// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more
+/// than this share. That tells optima apart; those that are kept are finished to the finer share on all shapes.
 const ROUGH_PROMISE: f64 = 1e-8;
-/// Starts whose errors differ by less than this share of the best error have found the same optimum.
+/// Starts whose errors differ by less than this share of the best error have found the same optimum. A local optimum
+/// that is worse by less than that is as good to whoever uses the springs.
 const SAME: f64 = 1e-3;
-/// Starts whose sums of squares differ by less than this share are finished together.
+/// Starts whose sums of squares differ by less than this share are finished together. It is above what
+/// [`ROUGH_PROMISE`] leaves of each of them.
 const EQUAL: f64 = 1e-6;
-/// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one.
+/// Inner parameters without bounds start between these values, evenly in their logarithm; the first start is one. Such
+/// parameters are exponents and rates of strains, numbers whose size is mostly near one.
 const STARTS: [f64; 2] = [0.1, 10.0];
 /// The least number of shapes on which starts search, and the least number of their equations for each unknown.
 const FEW: [usize; 2] = [64, 8];
-/// A prime by which the few shapes are spread over all.
+/// A prime by which the few shapes are spread over all. As it is prime, no shape comes twice unless their number is a
+/// multiple of it, and it meets no period of a list.
 const STRIDE: usize = 1_000_003;
 
 /// The best of several starts.
@@ -54,6 +59,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     let total = cell.shapes(Part::Trained);
     let all = Drawn::new(cell, Part::Trained, (0..total).collect())?;
     let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
+    // More than half of the shapes would save little.
     let few = match starts > 1 && 2 * few < total {
         true => Some(Drawn::new(cell, Part::Trained, (0..few).map(|i| i * STRIDE % total).collect())?),
         false => None,
@@ -107,6 +113,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     let square = |end: &End| if is_sound(end) { end.sums.sums.square } else { f64::INFINITY };
     let best = ends.iter().map(|(end, _)| end).min_by(|a, b| square(a).total_cmp(&square(b)));
     let best = best.filter(|end| is_sound(end)).ok_or_else(without_values)?;
+    // Errors are roots of these squares. An optimum of zero is met only to what ends a search.
     let limit = (square(best).sqrt() * (1.0 + SAME)).powi(2) + PROMISE * best.sums.sums.size;
     let is_best = |(end, _): &&(End, f64)| square(end) <= limit;
     let agreeing = ends.iter().filter(is_best).map(|(_, count)| count).sum::<f64>() / starts as f64;

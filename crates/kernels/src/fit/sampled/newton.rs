@@ -9,17 +9,22 @@ use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::Rank;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// The largest number of steps.
+/// The largest number of steps. A start that is not there then is reported as not converged, and others may be.
 const STEPS: usize = 100;
-/// The damping beyond which no step is expected to help.
+/// The damping beyond which no step is expected to help. Such a step is 1e-12 of that along the slope: if it does not
+/// lower the sum, rounding or the bounds decide.
 const STIFFEST: f64 = 1e12;
-/// Where a step succeeds with less damping than this, the next one has none.
+/// Where a step succeeds with less damping than this, the next one has none. Without damping the last steps are those
+/// of Newton, which converge quadratically.
 const SLIGHTEST: f64 = 1e-7;
-/// The damping below which the promise of a step counts as that of Newton's.
+/// The damping below which the promise of a step counts as that of Newton's. With more damping a step is short, and a
+/// small promise is no sign of an optimum.
 const SLIGHT: f64 = 1e-2;
-/// The least share of the curvature in one unknown that the elimination of the outer ones leaves.
+/// The least share of the curvature in one unknown that the elimination of the outer ones leaves. The difference of the
+/// two may vanish or be below zero by rounding, and a damping of nothing damps nothing.
 const LEFT: f64 = 1e-10;
-/// What is added to the diagonal of equations that are singular, as a share of it.
+/// What is added to the diagonal of equations that are singular, as a share of it. It changes the step where the
+/// equations determine it by no more than the promise that ends the search.
 const RIDGE: f64 = 1e-12;
 
 /// The problem of one start.
@@ -58,6 +63,7 @@ impl Descent<'_> {
     /// Those of drawing a shape.
     pub fn run(&self, shapes: &Drawn, unknowns: Vec<f64>, promised: f64) -> Result<End> {
         let mut end = self.at(shapes, unknowns)?;
+        // A slight damping costs a start that is near an optimum little; it grows where steps fail.
         let mut damping = 1e-3;
         for steps in 0..STEPS {
             end.steps = steps;
@@ -81,6 +87,8 @@ impl Descent<'_> {
             // A law may have no value far from the start.
             let after = self.at(shapes, tried)?;
             let gain = (sums.square - after.sums.sums.square) / promise;
+            // A gain of one is what the quadratic model promises. Near one the model is trusted more, and with hardly
+            // any gain the step is not taken (Nocedal and Wright 2006, chapter 4).
             if gain > 1e-4 && after.is_finite() {
                 end = after;
                 end.steps = steps + 1;

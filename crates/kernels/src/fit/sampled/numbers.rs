@@ -2,7 +2,8 @@
 
 use crate::random::{Latin, Sobol, unit_at};
 
-/// The length of a sequence of Sobol points; the next shapes use another seed.
+/// The length of a sequence of Sobol points; the next shapes use another seed. The generator knows so many points of a
+/// sequence.
 const LONGEST: usize = 1 << 16;
 /// The number of coordinates of a Sobol point.
 const WIDEST: usize = 256;

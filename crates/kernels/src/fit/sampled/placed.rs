@@ -95,6 +95,8 @@ impl ShapeForces<'_, '_> {
             let error = Error::expected(key, expected, format!("det F = {least:.4}{cell}"));
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
+        // A cell that a list makes flatter than usual may become half as flat again, so that displacements of its nodes
+        // leave it a shape.
         Ok((0.5 * least).min(FLAT))
     }
 }

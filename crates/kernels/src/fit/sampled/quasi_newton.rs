@@ -6,18 +6,19 @@
 use crate::error::Result;
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::{Normal, Rank};
+use springfit_numerics::newton::falls_enough;
 
 /// The largest number of steps.
 const STEPS: usize = 500;
-/// The largest number of times that a step is halved.
+/// The largest number of times that a step is halved. After them the step is 1e-12 of itself, which no value shows.
 const HALVINGS: i32 = 40;
 /// The iteration has converged when a step cannot lower the value by more than this share of its scale.
 const PROMISE: f64 = 1e-12;
-/// Where no step lowers the value, it has converged if the promise is less than this share of the scale.
+/// Where no step lowers the value, it has converged if the promise is less than this share of the scale. A sum over
+/// many shapes has lost some digits of sixteen; at a kink the promise is larger.
 const ROUNDING: f64 = 1e-9;
-/// The share of the promised fall that a step must bring.
-const SUFFICIENT: f64 = 1e-4;
-/// The least share of its expected curvature that a step is believed to have.
+/// The least share of its expected curvature that a step is believed to have. The number is Powell's (Nocedal and
+/// Wright 2006, procedure 18.2).
 const DAMPED: f64 = 0.2;
 
 /// The quadratic function from whose curvature the search begins, and whether the parameters may be negative.
@@ -59,6 +60,7 @@ pub fn minimize(
         };
         let (slope, bend) = (dot(&slopes, &step), dot(&step, &product(&curvature, &step)));
         let promise = -slope - 0.5 * bend;
+        // The first promise is that of the quadratic function alone, and says nothing of this one.
         if !(promise > PROMISE * scale.max(own.abs())) && is_scaled {
             return Ok(Some(Found { unknowns: at, converged: true }));
         }
@@ -67,7 +69,7 @@ pub fn minimize(
             let share = 0.5f64.powi(halvings);
             let tried: Vec<f64> = at.iter().zip(&step).map(|(p, d)| p + share * d).collect();
             let (after, slopes_after) = value(&tried)?;
-            if is_finite(after, &slopes_after) && after <= own + SUFFICIENT * share * slope {
+            if is_finite(after, &slopes_after) && falls_enough(own, after, share * slope) {
                 found = Some((tried, after, slopes_after));
                 break;
             }
@@ -80,6 +82,8 @@ pub fn minimize(
         let moved: Vec<f64> = after.iter().zip(&at).map(|(a, b)| a - b).collect();
         let mut change: Vec<f64> = slopes_after.iter().zip(&slopes).map(|(a, b)| a - b).collect();
         (at, own, slopes) = (after, value_after, slopes_after);
+        // The first step shows how the function bends beside the quadratic one: their ratio scales all of B, before
+        // single entries are updated.
         if !is_scaled {
             let (met, expected) = (dot(&change, &moved), dot(&moved, &product(&curvature, &moved)));
             if met > 0.0 && expected > 0.0 {

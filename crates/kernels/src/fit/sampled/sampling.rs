@@ -11,11 +11,13 @@ use std::sync::Arc;
 
 /// Every fifth shape of a list is held out.
 pub const APART: usize = 5;
-/// A deformation gradient of a list with a smaller det F is flat or turns cells inside out.
+/// A deformation gradient of a list with a smaller det F is flat or turns cells inside out. Laws with ln J or 1/J have
+/// no force to fit there.
 pub const FLATTEST: f64 = 1e-3;
 /// The largest entry of a deformation gradient of a list: beyond all materials, and far from where squares of forces overflow.
 const LARGEST: f64 = 1e6;
-/// The sine of the angle between two directions below which they are one.
+/// The sine of the angle between two directions below which they are one. Two such axes span no plane in which a shape
+/// could be turned.
 const PARALLEL: f64 = 1e-6;
 
 /// The source of the shapes.
@@ -177,6 +179,7 @@ impl Sampling {
             }
             check_finite(&key(), direction)?;
             let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // A norm outside of these has lost its digits, as its square is near the least or the largest number.
             if direction.chunks_exact(d).any(|axis| !(norm(axis) > 1e-100 && norm(axis) < 1e100)) {
                 return Err(Error::expected(key(), "a direction", "the zero vector, or one too long"));
             }

@@ -10,13 +10,16 @@ use nalgebra::{DMatrix, DVector};
 
 /// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
 const ACTIVE: f64 = 1e-6;
-/// Singular values of `d ↦ K(d) u` below this fraction of the largest count as zero.
+/// Singular values of `d ↦ K(d) u` below this fraction of the largest count as zero. What rounding leaves in the
+/// directions is inverse to it, and zeros are known to what the solver leaves of the eigenvalues.
 const FREE: f64 = 1e-5;
-/// Newton steps for each weight of the barrier that keeps the other eigenvalues inside.
+/// Newton steps for each weight of the barrier that keeps the other eigenvalues inside. A weight that takes more ends
+/// where it is; the value is tested before the move counts.
 const STEPS: usize = 30;
 /// How much the move may add to the value; the gap may be 1e-8.
 const KEPT: f64 = 2e-9;
-/// The weights of that barrier, one after the other.
+/// The weights of that barrier, one after the other. The last one leaves an error of about its size in the square that
+/// is minimised.
 const WEIGHTS: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 /// Moves κ, an optimum of value t, to the one with the least `‖E‖_F`, to about 1e-6 of the distance. Returns false,
@@ -46,6 +49,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
     let free = projection.symmetric_eigen();
     let directions: Vec<DVector<f64>> = (0..kappa.len())
+        // A projection has the eigenvalues zero and one.
         .filter(|&i| free.eigenvalues[i] > 0.5)
         .map(|i| free.eigenvectors.column(i).into_owned())
         .collect();
@@ -114,6 +118,7 @@ fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVec
             let decrease = -slope.dot(&step);
             let before = value(&w, weight).unwrap_or(f64::INFINITY);
             let mut length = 1.0;
+            // Armijo's rule with a tenth of the slope. A step that is shortened further than that is rounding.
             while length > 1e-10
                 && !value(&(&w + &step * length), weight).is_some_and(|v| v <= before - 0.1 * length * decrease)
             {

@@ -22,8 +22,8 @@ pub use problem::{Optimum, Problem};
 pub use refinement::refine;
 
 use super::dense::{
-    at_half, at_rounding, factorize, inner, least_pivot, longest_step, mirror, row_products, solve, solve_both, tie,
-    trace,
+    FLOOR, at_half, at_rounding, factorize, inner, least_pivot, longest_step, mirror, row_products, solve, solve_both,
+    tie, trace,
 };
 use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
@@ -37,12 +37,10 @@ pub const GAP: f64 = 1e-8;
 pub const EXACT: f64 = 1e-6;
 /// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
 pub const AMBIGUOUS: f64 = 1e6;
-/// The largest number of steps.
+/// The largest number of steps. A lane that is not at the end then has a wider gap, which its certificate tells.
 const STEPS: usize = 120;
 /// How often a step is halved within one iteration.
 const SHORTER: usize = 4;
-/// Relative pivots below this are rounding errors.
-const FLOOR: f64 = 1e-14;
 /// A step keeps at least this share of the distance to the boundary that the path would keep.
 const KEPT: f64 = 0.3;
 /// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first.
@@ -195,6 +193,8 @@ impl<T: Real> Spectral<T> {
                 mu = inside.choose(&followed, &mu);
             }
             let decrement = self.directions(&mut mu, &previous);
+            // On the path the gap is μ times the complexity: at 0.4 of the gap that is asked for, a point beside the
+            // path is within it as well.
             let end = self.value.greatest(&floor).scaled(&(0.4 * at_half::<T>(GAP) / complexity));
             // Centred and at the end of the path: no further change.
             let centred = one.constant(&0.2) - &decrement;
@@ -289,6 +289,7 @@ impl<T: Real> Spectral<T> {
         if self.nonnegative {
             let mut mean = zero.clone();
             for entry in &self.kappa {
+                // A tenth of the mean constant: inside of the domain, and small beside what the optimum has above zero.
                 mean = mean + &entry.magnitude().scaled(&(0.1 / c as f64));
             }
             for entry in &mut self.kappa {
@@ -368,6 +369,7 @@ impl<T: Real> Spectral<T> {
         let square = inner(&self.newton, &self.gradient).negated();
         let (mixed, bend) = (self.newton[c].clone(), self.tangent[c].clone());
         let pull = zero.one() / &*mu;
+        // At most a hundredfold, so that a wrong curvature cannot throw μ back to the start.
         let nearest = (mixed.clone() / &bend).greatest(&pull.clone().scaled(&1e-2)).least(&pull);
         let decrement = quadratic(&square, &mixed, &bend, &pull);
         let least = previous.clone().scaled(&STALLED[1]).greatest(&mu.constant(&STALLED[0]));

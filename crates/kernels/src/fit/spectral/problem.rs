@@ -140,6 +140,7 @@ impl<'a> Problem<'a> {
         for (h, &unknown) in self.h.column_iter().zip(self.unknowns) {
             moved[unknown] += form(&z, &h);
         }
+        // Where no constant is negative these products may be: the bound holds all the same.
         if self.nonnegative {
             moved.iter_mut().for_each(|entry| *entry = entry.max(0.0));
         }

@@ -16,13 +16,14 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const STEPS: usize = 8;
 /// A first step above this, relative to t, does not start near the optimum.
 const LARGEST: f64 = 0.1;
-/// A step below this leaves an error of the order of its square, which is negligible if the gap confirms it,
+/// A step below this leaves an error of the order of its square, which is negligible if the gap confirms it.
 const CONVERGED: f64 = 1e-6;
-/// that is, if the gap is below this, relative to t.
+/// The gap below which it does, relative to t: the square of [`CONVERGED`].
 const CLOSED: f64 = 1e-12;
 /// Steps that end below this are as accurate as rounding allows.
 const SETTLED: f64 = 1e-10;
-/// Eigenvalues of the equations below this count as zero: on degenerate shapes motions are linearly dependent.
+/// Eigenvalues of the equations below this count as zero: on degenerate shapes motions are linearly dependent. The
+/// equations are in units of t, so that their other eigenvalues are of the size of one.
 const SINGULAR: f64 = 1e-9;
 /// Factors of the width within which an eigenvalue counts as active: first the one from the barrier method, then those
 /// that are tried if the steps do not converge.
@@ -40,6 +41,7 @@ pub fn refine(problem: &Problem, optimum: &mut Optimum) {
         let mut kappa = start.kappa.clone();
         let Some(active) = Active::at(problem, &mut kappa, start.value, width) else { continue };
         let set = (active.above, active.below, active.free.clone());
+        // Another width may find the same set, whose steps would be the same.
         if tried.contains(&set) {
             continue;
         }
@@ -74,6 +76,7 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
         if is_inside && value <= optimum.value + rounding {
             let bound = problem.bound(&active.x, &active.y);
             *optimum = Optimum { kappa: kappa.clone(), value, bound: optimum.bound.max(bound) };
+            // Value and bound carry a rounding each, and the value that is foreseen has one added.
             if is_near && value - bound < CLOSED * value + 3.0 * rounding {
                 return true;
             }
@@ -110,6 +113,7 @@ impl Active {
         let spectrum = problem.spectrum.clone();
         let mut active = Active { t, spectrum, above: 0, below: 0, free: Vec::new(), x: empty(), y: empty() };
         let values = &active.spectrum.values;
+        // The end is outside by rounding: distances from t would have no sign.
         if !(values.amax() < t) {
             return None;
         }
@@ -117,6 +121,7 @@ impl Active {
         let near = |distance: f64| distance * distance < width * width * mu * t;
         active.above = values.iter().filter(|e| near(t - **e)).count();
         active.below = values.iter().filter(|e| near(t + **e)).count();
+        // Without an active eigenvalue there is no equation, and one cannot be at both ends.
         if active.above + active.below == 0 || active.above + active.below > p {
             return None;
         }
@@ -293,6 +298,8 @@ fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
     if !system.iter().all(|entry| entry.is_finite()) {
         return None;
     }
+    // Eigenvalues, which tell what is singular, take several times as long: they are for the few systems that need
+    // them.
     let factors = system.clone().lu();
     if factors.lu_internal().diagonal().amin() > SINGULAR {
         return factors.solve(rhs);

@@ -4,9 +4,12 @@ use super::problem::{Optimum, Problem};
 use nalgebra::{DMatrix, DVector};
 use springfit_numerics::convex::{Programme, sparse};
 
-/// How much the optimum over the nonzero constants may exceed that of the conic solver, as a share of `‖b‖²`.
+/// How much the optimum over the nonzero constants may exceed that of the conic solver, as a share of `‖b‖²`. The conic
+/// solver ends at 1e-12, or at 1e-8 where rounding stops it. A larger excess means that a constant was taken to zero
+/// that is not.
 const EXCESS: f64 = 1e-9;
-/// A constant below this share of the largest unknown is zero.
+/// A constant below this share of the largest unknown is zero. Its sign is that of rounding, and would send the search
+/// through another set.
 const ROUNDING: f64 = 1e-13;
 
 /// `min ‖b − A u‖` under `C u = 0` and `u_j ≥ 0` for j in `bounded`; `free` is the optimum without bounds. The conic

@@ -14,7 +14,8 @@ use crate::stiffness::{Fault, Geometry};
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// An unknown below this share of the largest of its kind is a rounding error.
+/// An unknown below this share of the largest of its kind is a rounding error. It becomes zero, so that a spring that
+/// does not pull is stored as one.
 const ROUNDING: f64 = 1e-13;
 /// Tensions below this share of `k c` are rounding errors: tensions are stored as `k c − T`, and what remains of them
 /// is not in equilibrium.
@@ -88,6 +89,7 @@ impl<'a> Cells<'a> {
             true => solve_bounded(&problem, &bounded, free),
             false => (free, true),
         };
+        // Constants and tensions have each their own scale: the largest of one says nothing of the other.
         for sort in [true, false] {
             let own: Vec<usize> = every.iter().copied().filter(|&j| unknowns[j].is_constant == sort).collect();
             let largest = own.iter().map(|&j| optimum.unknowns[j].abs()).fold(0.0, f64::max);

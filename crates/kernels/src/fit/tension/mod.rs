@@ -81,6 +81,7 @@ pub fn fit_tensions(
         Ok(found)
     };
     let mut fitted: Vec<CellTension> = Vec::new();
+    // Several chunks for each thread, so that a slow chunk does not keep the others waiting.
     for round in representatives.chunks(CHUNK * 4 * rayon::current_num_threads()) {
         let parts: Vec<Result<Vec<CellTension>>> = round.par_chunks(CHUNK).map(chunk).collect();
         for part in parts {

@@ -9,7 +9,8 @@ use std::sync::OnceLock;
 
 /// The number of points of the quadrature that integrates the force; it is exact for polynomials up to degree 31.
 const POINTS: usize = 16;
-/// A change of the measure by this share of its value at rest is integrated without subdivision.
+/// A change of the measure by this share of its value at rest is integrated without subdivision. A law hardly bends
+/// along so short a way, which one quadrature knows to rounding.
 const SMOOTH: f64 = 0.1;
 /// The agreement of a quadrature with that of its two halves at which it is accepted, relative to the energy; about 50
 /// rounding errors.

@@ -66,6 +66,8 @@ impl Law {
         let by_parameter: Vec<Expr> = (first..names.len()).map(|v| force.derivative(v)).collect();
         let mut outer = vec![false; parameters.len()];
         for (i, slope) in by_parameter.iter().enumerate() {
+            // Linear in this parameter, with a slope that no outer one before it changes: linear in all of them
+            // together.
             outer[i] = !slope.uses(first + i) && (0..i).all(|j| !outer[j] || !slope.uses(first + j));
         }
         let mut law = Law {
@@ -75,6 +77,7 @@ impl Law {
             parameters,
             body: Body::Formula(Box::new(Formula::new(&force, &by_parameter, first))),
         };
+        // Without its outer parameters a law has no force, or it has a part that none of them scales.
         let inner: Vec<f64> = law.outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
         if STRAINS.iter().any(|s| law.force(1.0 + s, 1.0, &inner) != 0.0) {
             law.linear = false;

@@ -275,6 +275,7 @@ impl Deck {
         // Each instance has as many members again as its part lists.
         let length = length.saturating_mul(self.instances.len().max(1));
         let mut resolved = listing.resolve(length, "element")?;
+        // A line for a range may stand for as many members as it likes: what a deck may name grows with its length.
         let most = (1 << 20) + 2 * length;
         let numbers = std::mem::take(&mut resolved.list.numbers);
         let elements = element_sets.members("element", &numbers, &resolved.cells, &left_out, most)?;

@@ -77,12 +77,14 @@ fn displace(number: usize, x: &[f64; 3], vector: &[f64], is_held: bool, reading:
     let position = position.ok_or_else(|| Error::expected("position", "finite coordinates", listed(x)))?;
     let mut displacement = lengths(vector)?;
     displacement.resize(d, None);
+    // Points of no cell, such as centres of arcs, need not be in the mesh.
     if !is_held && reading.locator.at(&position).is_empty() {
         return Ok(());
     }
     let point = reading.point_at(&position, Some(number))?;
     let places = point * d..(point + 1) * d;
     match reading.claim(point, number) {
+        // Pieces repeat the points at which they meet: there they must agree.
         Some(before) if reading.displacements[places.clone()] != displacement[..] => {
             let expected = format!("the displacement of points[{before}], which is in the same place");
             Err(Error::at("displacement", format!("expected {expected}, found another")))

@@ -207,6 +207,7 @@ impl Samples {
         let value = |place: usize| self.of_place(place)[component];
         let (first, least) = near[0];
         let farthest = near[near.len() - 1].1;
+        // The weight of a place that is met would be infinite, and its value is the answer.
         if least <= 1e-9 * farthest || near.len() == 1 {
             return value(first);
         }

@@ -29,6 +29,7 @@ impl Scattered {
         let text = if ending(path) == "csv" { read_text(path)? } else { String::new() };
         let axes = &AXES[..mesh.dimension];
         let has = |header: &Header, name: &str| Ok::<bool, Error>(header.column(name)?.is_some());
+        // A table that numbers points is one of the mesh; one with places alone stands for itself.
         let mut is_placed = false;
         if ending(path) == "csv" {
             let head = |header: &Header| {

@@ -34,6 +34,7 @@ impl<'a> Columns<'a> {
         let mut side = (surface.triangles.len() as f64).sqrt().clamp(1.0, 2000.0);
         loop {
             let counts = [side as usize; 2];
+            // A surface without extent along an axis has bins of no width, by which nothing may be divided.
             let width = [0, 1].map(|k| (extent[k] / side.floor()).max(f64::MIN_POSITIVE));
             let mut columns = Columns { surface, width, counts, bins: vec![Vec::new(); counts[0] * counts[1]] };
             if columns.fill() || side < 2.0 {

@@ -188,6 +188,8 @@ impl FillMesh {
             let map = map(cube, &patterns[usize::from(*pattern)]);
             for at in self.element.positions.chunks_exact(3) {
                 let place = map.place(at);
+                // Places in units of a millionth of a cube: nodes that cells share are computed apart, and differ by
+                // rounding.
                 let key = std::array::from_fn(|k| (place[k] * (1u64 << 20) as f64).round() as i64);
                 let next = mesh.point_count();
                 let index = *known.entry(key).or_insert(next);
@@ -208,6 +210,7 @@ impl FillMesh {
 fn forecast(edge: f64, surface: &Surface, of_cube: usize) -> Result<()> {
     let cells = surface.volume / edge.powi(3) * of_cube as f64;
     let cubes = (0..3).map(|k| (surface.high[k] - surface.low[k]) / edge + 3.0).product::<f64>();
+    // The volume gives the number of cells only about: what is filled is counted again.
     if cells <= 1.2 * MOST_CELLS as f64 && cubes <= MOST_CUBES {
         return Ok(());
     }

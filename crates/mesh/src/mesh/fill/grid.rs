@@ -13,6 +13,7 @@ pub(super) struct Grid {
 impl Grid {
     /// The cubes around a surface, in the middle of its box.
     pub fn around(surface: &Surface, edge: f64) -> Grid {
+        // A side that is a whole number of edges long has that many cubes, whatever the rounding of the quotient is.
         let counts = [0, 1, 2].map(|k| ((surface.high[k] - surface.low[k]) / edge - 1e-9).ceil().max(1.0) as i32);
         let middle = |k: usize| surface.low[k] / 2.0 + surface.high[k] / 2.0;
         Grid { origin: std::array::from_fn(|k| middle(k) - f64::from(counts[k]) / 2.0 * edge), counts, edge }

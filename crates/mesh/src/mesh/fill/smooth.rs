@@ -79,6 +79,7 @@ fn nodes(element: &Element, cells: &[Vec<usize>], places: &[[f64; 3]], points: &
             let weights = [1.0 - at.iter().sum::<f64>(), at[0], at[1], at[2]];
             let parts = (0..4).map(|a| (cell[a], (weights[a] * WEIGHT).round().max(0.0) as u64));
             let mut key: Vec<(usize, u64)> = parts.filter(|(_, weight)| *weight > 0).collect();
+            // Neighbours name the corners of a common side in other orders.
             key.sort_unstable();
             let next = points.len() / 3;
             let index = *known.entry(key).or_insert(next);
@@ -132,6 +133,7 @@ fn dihedral_angles(x: &[[f64; 3]; 4]) -> [f64; 6] {
         let along = less(&x[b], &x[a]);
         let [m, n] = [c, d].map(|p| cross(along, less(&x[p], &x[a])));
         let sine = cross(m, n);
+        // By sine and cosine: an arccosine alone loses half of the digits near 0° and 180°.
         dot(&sine, &sine).sqrt().atan2(dot(&m, &n)).to_degrees()
     })
 }

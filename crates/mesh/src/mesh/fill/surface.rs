@@ -43,6 +43,7 @@ impl Surface {
     /// It encloses no volume.
     pub fn closed(triangles: Triangles) -> Result<Surface> {
         let [low, high] = triangles.ends();
+        // From a corner of its box: from a distant origin large parts would cancel each other.
         let volume = triangles.corners.iter().map(|&t| triangles.volume(t, low)).sum::<f64>();
         let area = triangles.corners.iter().map(|&t| triangles.area(t)).sum();
         let branched = branched(&triangles);
@@ -103,6 +104,7 @@ fn unwelded(triangles: &Triangles, scale: f64) -> Option<Error> {
     let mut welded = triangles.clone();
     let weld = weld(&mut welded);
     let holes = open(&welded.corners).len();
+    // Most edges stay open: they are holes, and welding is not what is missing.
     if 2 * holes > edges {
         return None;
     }

@@ -38,6 +38,7 @@ pub fn quadratic(element: &Element) -> Result<Arc<Element>> {
     let edges: Vec<[usize; 2]> = if cell.dimension() == 1 { vec![[0, 1]] } else { cell.edges() };
     let middles: Vec<Vec<f64>> = edges.into_iter().map(middle).collect();
     let wanted = |at: &[f64]| {
+        // Reference cells are of size one, and nodes are far apart beside rounding.
         let is_at = |place: &[f64]| place.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9);
         corners.iter().any(|place| is_at(place)) || middles.iter().any(|place| is_at(place))
     };

@@ -41,7 +41,7 @@ impl Mesh {
         self.divided(elements, divisions)
     }
 
-    /// The same cells with quadratic functions: each has a point in the middle of every edge besides its corners. Groups and what conditions
+    /// Gives the cells quadratic functions: each has a point in the middle of every edge besides its corners. Groups and what conditions
     /// select have the new points as in [`Mesh::refined`].
     ///
     /// # Errors
@@ -196,6 +196,8 @@ impl Glue {
             return nodes[*a];
         }
         let mut key: Vec<(usize, i64)> =
+            // A new point is the sum of some nodes with these weights, and the same from whichever cell it is seen;
+            // weights differ by rounding.
             values.iter().map(|&(a, n)| (nodes[a], (n * (1u64 << 30) as f64).round() as i64)).collect();
         key.sort_unstable();
         *self.known.entry(key).or_insert_with(|| {

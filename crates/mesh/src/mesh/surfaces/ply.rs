@@ -103,6 +103,7 @@ impl Scalar {
     /// A number of items, or an index.
     fn index(self, reader: &mut Reader) -> Result<u64> {
         let value = self.real(reader)?;
+        // From there on whole numbers are not exact as numbers with a point.
         if value >= 0.0 && value.fract() == 0.0 && value < 2f64.powi(53) {
             return Ok(value as u64);
         }

@@ -114,6 +114,7 @@ impl Lattice {
             piece.points = (0..self.point_count()).map(|point| place(Lattice::place(counts, point))).collect();
         }
         for cell in (0..self.cell_count()).filter(|&cell| kept(cell)) {
+            // Few cells of a large image may be kept, which is known only once they are counted.
             if piece.types.len() == MOST {
                 return Err(too_many("cells", self.cell_count()));
             }

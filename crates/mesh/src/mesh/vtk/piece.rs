@@ -183,6 +183,7 @@ impl Piece {
             let Some(values) = array.values.as_ref().filter(|values| values.len() == cells && !is_known) else {
                 continue;
             };
+            // Larger numbers are no labels that anyone has given, and their last digits are not exact.
             let whole = |value: &f64| (value.fract() == 0.0 && value.abs() < 1e15).then_some(*value as i128);
             let Some(values) = values.iter().map(whole).collect::<Option<Vec<i128>>>() else { continue };
             let different: HashSet<i128> = values.iter().copied().collect();

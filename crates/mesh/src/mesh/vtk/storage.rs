@@ -134,6 +134,7 @@ impl Storage {
             None => 0,
             Some(whole) => block.saturating_mul(whole).saturating_add(if last == 0 { block } else { last }),
         };
+        // Asked before memory is taken: a short file can claim any size.
         if count > 0 && (block == 0 || last > block || size / compression.most() > total) {
             let expected = format!("blocks that compress to {total} bytes in all");
             return Err(Error::new(format!("expected {expected}, found {count} of {block} bytes, the last of {last}")));

@@ -26,6 +26,7 @@ pub(super) fn next_tag(bytes: &[u8], mut at: usize) -> Option<Tag<'_>> {
             at = start + 4 + rest.windows(3).position(|w| w == b"-->")?;
             continue;
         }
+        // A bracket between quotes does not end the tag.
         let mut quote = None;
         let length = rest.iter().position(|&b| match quote {
             None if b == b'"' || b == b'\'' => {

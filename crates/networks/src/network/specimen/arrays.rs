@@ -16,7 +16,7 @@ pub struct Array {
 /// The arrays of a file by name. Arrays of texts and objects are left out.
 pub struct Arrays(BTreeMap<String, Array>);
 
-/// Bytes that the arrays of a file may have together.
+/// Bytes that the arrays of a file may have together. A header may claim any size, and memory is allocated by it.
 const MOST: u64 = 1 << 36;
 
 impl Arrays {

@@ -32,7 +32,8 @@ const OTHERS: [&str; 18] = [
 /// Where the coordinates of an atom stand after its number, by the style of the atoms: type and molecule come before them.
 const STYLES: [(&str, usize, usize); 5] =
     [("atomic", 1, 2), ("bond", 2, 3), ("molecular", 2, 3), ("angle", 2, 3), ("full", 2, 4)];
-/// A bond is shorter by an image if it is by more than this share.
+/// A bond is shorter by an image if it is by more than this share. In a box of two cells a bond and its image are
+/// equally long, and rounding must not choose between them.
 const SHORTER: f64 = 1e-9;
 
 /// A line with its number.
@@ -125,6 +126,7 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
     }
     let specimen = Specimen { masses, ..Specimen::new(network, points) };
     let mut notes = Vec::new();
+    // Image flags have already put the atoms where bonds are whole.
     let crosses = !is_unwrapped && cell.as_ref().is_some_and(|cell| has_shorter_images(&specimen, cell));
     let is_periodic = options.is_periodic.unwrap_or(crosses) && options.cell.is_none();
     let specimen = match cell {
@@ -138,6 +140,10 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
                 "bounds xlo xhi, ylo yhi, zlo zhi of a network that repeats itself",
                 "none",
             ));
+        }
+        _ if crosses => {
+            notes.push("bonds cross the box of the file, with which the network does not repeat itself".to_string());
+            specimen
         }
         _ => {
             notes.push("no bond crosses the box of the file: the network is a body".to_string());

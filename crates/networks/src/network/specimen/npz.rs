@@ -151,6 +151,7 @@ fn mesh(arrays: &Arrays, points: &[f64], d: usize) -> Result<Option<Mesh>> {
         groups: BTreeMap::new(),
         cell_groups: BTreeMap::new(),
     };
+    // A mesh leaves points of no cell out: its numbers are not those of the springs then.
     Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
 }
 

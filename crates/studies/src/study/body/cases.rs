@@ -130,7 +130,8 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
 /// A displacement that varies agrees with a held point where it differs by at most this share of its largest value: an expression such as
 /// `0.1*(x - 0.3)` is zero to rounding.
 const ROUNDING: f64 = 1e-12;
-/// Loads cancel each other if their sum is smaller than this share of the largest of them.
+/// Loads cancel each other if their sum is smaller than this share of the largest of them. What is left of them is the
+/// rounding of the sums over their faces.
 const CANCELLED: f64 = 1e-12;
 
 /// What an action does to a body.

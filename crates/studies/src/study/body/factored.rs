@@ -105,6 +105,7 @@ impl Factored {
             let start = Clock::start();
             let mut unsolved = factor.as_ref().err().map(|e| e.problem().to_string());
             let factor = factor.as_ref().ok().and_then(Option::as_ref);
+            // Rounding alone gives a singular matrix a factor.
             let factor = factor.filter(|_| stability.standing != Standing::Singular);
             let found = factor.map(|factor| (factor, system.solve(factor, &case.forces)));
             let seconds = assembly + setup + start.seconds();

@@ -56,6 +56,7 @@ impl Gauged {
             let largest = (0..d).map(|k| along(k).abs()).fold(0.0, f64::max);
             let pulls =
                 matches!(load.single(), Some((_, Action::Traction(_) | Action::Pressure(_) | Action::Force(_))));
+            // A force along the axis that is so small beside the others is the rounding of components that cancel.
             Some(along(gauge.axis)).filter(|f| pulls && aside(case) && largest > 0.0 && f.abs() > 1e-6 * largest)
         };
         Ok(Gauged { forces: cases.iter().zip(scene.loads()).map(force).collect(), ..gauged })
@@ -101,6 +102,7 @@ impl Gauged {
             mixed += &x * DVector::from_fn(d, |k, _| u[p * d + k]).transpose();
         }
         let size = moments.trace();
+        // Points in one plane do not tell how the body stretches across it.
         let thin = moments.clone().symmetric_eigenvalues().min() <= 1e-9 * size;
         let gradient = moments.cholesky().filter(|_| !thin)?.solve(&mixed);
         Some((0..d).map(|k| gradient[(k, k)]).collect())

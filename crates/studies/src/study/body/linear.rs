@@ -217,5 +217,6 @@ fn moving_points(support: &Support, stability: &Stability, mesh: &Mesh) -> Vec<u
         *squares.entry(dof / mesh.dimension).or_insert(0.0) += u * u;
     }
     let largest = squares.values().copied().fold(0.0, f64::max);
+    // Points that move by at least half as far as the farthest one show where a soft motion is.
     squares.into_iter().filter(|(_, s)| *s >= 0.25 * largest).map(|(p, _)| p).collect()
 }

@@ -16,7 +16,8 @@ use crate::study::checkpoint::Controls;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{CalibrationRecipe, Scene};
 
-/// Residuals that are as large by chance with a smaller probability are more than noise.
+/// Residuals that are as large by chance with a smaller probability are more than noise. One run in a hundred with
+/// right noise is warned of.
 const UNLIKELY: f64 = 0.01;
 /// What a field has for the error of meshes: one refinement, whose difference is extrapolated.
 const OF_FIELD: usize = 1;

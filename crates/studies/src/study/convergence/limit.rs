@@ -1,7 +1,8 @@
 //! The limit of a sequence of values on meshes whose cells are halved from level to level.
 
 use serde::Serialize;
-/// Values that differ by less than this share are equal: solutions are not more accurate.
+/// Values that differ by less than this share are equal: solutions are not more accurate, and the quotient of such
+/// differences is noise.
 const EQUAL: f64 = 1e-9;
 /// The lowest order from which a limit is extrapolated. At order ½ the extrapolation adds 2.4 times the last
 /// difference.

@@ -3,7 +3,7 @@
 use super::limit::{Limit, limit_of};
 use serde::Serialize;
 
-/// Relative errors up to this share are rounding.
+/// Relative errors up to this share are rounding. An order that is fitted to them would be that of noise.
 const ROUNDING: f64 = 1e-9;
 
 /// A scene on a sequence of meshes.

@@ -10,7 +10,7 @@ use crate::study::body::applied_cases;
 use crate::study::extent::extent;
 use crate::study::scene::Scene;
 
-/// Contents that differ by less than this share are equal up to rounding.
+/// Contents that differ by less than this share are equal up to rounding. Coordinates in files have six digits or more.
 const ROUNDING: f64 = 1e-6;
 /// Bodies whose sizes differ by less than this share may be one curved body with cells of other shapes.
 const CURVED: f64 = 0.1;
@@ -62,6 +62,7 @@ pub fn same_problem(scene: &Scene, reference: &Scene) -> Result<Option<String>> 
     let are_boxes = scene.mesh().generated.is_some() && reference.mesh().generated.is_some();
     let (mut least, mut words) = (0.0, None);
     for ((what, a), (_, b)) in own.sizes().into_iter().zip(other.sizes()) {
+        // Two sizes of zero agree.
         let share = (a - b).abs() / a.abs().max(b.abs()).max(f64::MIN_POSITIVE);
         if share > if are_boxes { ROUNDING } else { CURVED } {
             return fault("mesh", format!("{what}: {a:.6e}"), format!("{b:.6e}"));

@@ -20,11 +20,11 @@ use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
-/// Cells are divided, and do not come nearer to a curved boundary.
+/// This is told of bodies whose cells are divided and do not come nearer to a curved boundary.
 const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh on all levels";
-/// The same of surfaces in space.
+/// This is told of surfaces in space, for the same reason.
 const FACETS: &str = "the surface keeps the flat cells of the coarsest mesh on all levels";
-/// The scene and its reference.
+/// This is told where the scene and its reference are apart.
 const DIFFERS: &str = "the bodies differ by more than rounding";
 /// A level that takes longer is announced, s.
 const LONG: f64 = 10.0;

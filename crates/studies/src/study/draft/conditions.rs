@@ -8,7 +8,8 @@ use crate::text::{not_a_line, rounded, toml as quoted};
 const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "left", "min"];
 /// The share of the points that a group without such a name may hold.
 const MOST_HELD: f64 = 0.4;
-/// What the load strains the body by, about.
+/// What the load strains the body by, about. A stress of a hundredth of the modulus shows on a picture, and small
+/// displacements still hold.
 const STRAIN: f64 = 0.01;
 /// The largest number of pieces besides the first that are held one by one.
 const MOST_PIECES: usize = 20;
@@ -107,6 +108,7 @@ fn others(mesh: &Mesh, pieces: &[Vec<usize>]) -> Vec<String> {
         return Vec::new();
     }
     let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    // The condition holds what is at the end of the piece, whose coordinates a file may have rounded.
     let margin = 1e-6 * longest;
     let condition = |piece: &Vec<usize>| {
         let ends: Vec<[f64; 2]> = (0..mesh.dimension)
@@ -148,6 +150,7 @@ fn is_rigid(mesh: &Mesh, points: &[usize]) -> bool {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     // The square of the sine of the angle between the arms; in the middle of a flat set of points some are off the line.
     let off = |v: Vec<f64>| square(&v) / length - (dot(&v, &longest) / length).powi(2);
+    // Points within a hundredth of a line would hold a rotation about it with too short a lever.
     others.iter().map(arm).any(|v| off(v) > 1e-4)
 }
 
@@ -160,6 +163,7 @@ fn lowest(mesh: &Mesh, pieces: &[Vec<usize>]) -> Option<(Vec<usize>, String)> {
     along.sort_by(f64::total_cmp);
     let gaps: Vec<f64> = along
         .windows(2)
+        // Nearer places are one layer whose coordinates a file has rounded, or whose surface is rough.
         .filter(|pair| pair[1] - pair[0] > 1e-4 * sizes[axis])
         .map(|pair| (pair[0] + pair[1]) / 2.0)
         .collect();

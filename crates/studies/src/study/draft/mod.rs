@@ -1,6 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::{extends, extent};
+use super::locking::LOCKS;
 use super::scene::FillEntry;
 use crate::fit::check_flat;
 use crate::mesh::{CellBlock, Filled, Group, ListedSides, Mesh};
@@ -18,8 +19,6 @@ pub use material::DraftMaterial;
 const LISTED: usize = 40;
 /// The largest mesh whose draft asks for quadratic elements beside it, which take several times the memory.
 const MOST_COMPARED: usize = 10_000;
-/// Poisson's ratio from which on linear cells lock.
-const LOCKS: f64 = 0.4;
 
 /// How the coordinates of a mesh become metres.
 #[derive(Debug, Clone, Copy)]

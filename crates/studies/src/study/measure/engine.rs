@@ -6,7 +6,8 @@ use crate::model::{Specimen, Support};
 use crate::solve::System;
 use crate::study::fits::EngineLimit;
 
-/// Points within this share of the length of a network from its end are at the end.
+/// Points within this share of the length of a network from its end are at the end. Ends of printed or simulated
+/// networks are not flat to rounding.
 const END: f64 = 1e-3;
 
 /// The limit, and how the network is held and pulled, in words; `None` where the method of the engine has no limit.

@@ -10,13 +10,15 @@ use crate::study::time::{RELEASE, Raised};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
-/// Degrees of freedom up to which all motions are counted, by the eigenvalues of the stiffness.
+/// Degrees of freedom up to which all motions are counted, by the eigenvalues of the stiffness. A dense decomposition
+/// of that many takes about a second.
 const FEW: usize = 900;
 /// Motions without resistance that are looked for in larger networks.
 const SOUGHT: usize = 12;
 /// A stiffness below this share of the largest is rounding.
 const NOTHING: f64 = 1e-9;
-/// The share of the largest ω² by which all are shifted, because some motions have no stiffness.
+/// The share of the largest ω² by which all are shifted, because some motions have no stiffness. It is far beyond
+/// rounding, and still far below stiff motions, so that soft ones converge fast.
 const SHIFT: f64 = 1e-4;
 /// Rigid motions are independent if the share of one beside the others is larger than this.
 const INDEPENDENT: f64 = 1e-12;

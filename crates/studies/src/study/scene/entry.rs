@@ -19,8 +19,9 @@ use crate::study::sweep::SweepEntry;
 use schemars::{JsonSchema, schema_for};
 use serde::Deserialize;
 
-/// Errors that iterations may leave: below is rounding, above solves nothing.
+/// The least error that iterations may be asked for: below it is rounding.
 const LEAST_TOLERANCE: f64 = 1e-14;
+/// The largest error that iterations may leave: above it nothing is solved.
 const LARGEST_TOLERANCE: f64 = 1e-3;
 
 #[derive(Debug, Deserialize, JsonSchema)]

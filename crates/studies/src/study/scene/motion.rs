@@ -148,6 +148,7 @@ impl MotionEntry {
     pub fn check(self) -> Result<MotionRecipe> {
         let positive = |key: &str, value: f64| range::positive(key, value, "s");
         let (duration, step) = (positive("duration", self.duration)?, positive("step", self.step)?);
+        // A duration that is meant to be one step may be a rounding below it.
         if duration < step * (1.0 - 1e-9) {
             return Err(Error::expected("duration", format!("at least one step of {step} s"), format!("{duration} s")));
         }

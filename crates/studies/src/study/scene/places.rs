@@ -55,7 +55,7 @@ pub(super) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// Of a mesh; files are relative to the folder, unless their names are of what is in memory.
+    /// The places of a mesh; files are relative to the folder, unless their names are of what is in memory.
     pub(super) fn new(mesh: &'a Mesh, (folder, memory): (&'a Path, &'a InMemory)) -> Places<'a> {
         let extent = extent(mesh).into_iter().fold(0.0, f64::max);
         let (own, remarks) = Default::default();

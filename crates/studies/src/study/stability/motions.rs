@@ -97,6 +97,7 @@ fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRo
     let options = Options { step, integrator: Integrator::SymplecticEuler, ..Options::default() };
     let limit = 2.0 / square.sqrt();
     match Simulation::new(Motion::free(&network, &points, &masses), options) {
+        // The limit of the program is an upper bound of ω, so that it refuses steps up to a thousandth early.
         Err(e) if step > 0.999 * limit => of(Verdict::Refused(e.to_string()))
             .with_way_out("take the step that the error names, or an implicit integrator"),
         Err(_) => of(Verdict::Lost),

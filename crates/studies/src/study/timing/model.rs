@@ -60,6 +60,7 @@ impl<'a> Costed<'a> {
 
     /// The longest explicit step that is stable, s.
     fn longest_step(&self) -> Option<f64> {
+        // With a step that is stable for certain, so that there is a motion that can be asked.
         let tried = self.options(Integrator::SymplecticEuler, f64::MIN_POSITIVE);
         Simulation::new(self.motion(), tried).ok().map(|found| found.longest_step()).filter(|step| step.is_finite())
     }
@@ -69,6 +70,7 @@ impl<'a> Costed<'a> {
         let Ok(mut simulation) = Simulation::new(self.motion(), options) else { return Ok(None) };
         let extent = self.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
         let held = |dof: usize| self.support.prescribed[dof].is_some();
+        // A shape that is in no symmetry of the body.
         let moved = |dof: usize| if held(dof) { 0.0 } else { DISPLACED * extent * (1.0 + dof as f64).sin() };
         let displacement: Vec<f64> = (0..self.points.len()).map(moved).collect();
         let still = vec![0.0; displacement.len()];

@@ -152,6 +152,7 @@ fn starts(found: &[SampledFits]) -> Vec<StartOutcome> {
     let agreeing = |starts: &&[CellStart]| {
         let errors = || starts.iter().map(|start| start.end.error);
         let best = errors().fold(f64::INFINITY, f64::min);
+        // The share by which the search itself tells optima apart.
         errors().filter(|error| *error <= best * (1.0 + 1e-3)).count()
     };
     let worst = cells.min_by_key(agreeing).filter(|starts| starts.len() > 1).unwrap_or_default();

@@ -6,7 +6,8 @@ use crate::whole::{
     WholeSettings, fit_whole,
 };
 
-/// The step to the optimum without ρ from which on linearisation is not enough to know that optimum.
+/// The step to the optimum without ρ from which on linearisation is not enough to know that optimum. A linearisation
+/// errs by about the square of the step, which is then below the intervals that are told.
 const NEAR: f64 = 0.02;
 /// Steps of the search for that optimum.
 const STEPS: usize = 100;

@@ -9,13 +9,14 @@ use crate::whole::{Determination, Object, Target};
 
 /// The change of the logarithm of a modulus over which derivatives are taken. Displacements are smooth in it, and known to 1e-9.
 const DIFFERENCE: f64 = 1e-3;
-/// A step that counts as none.
+/// A step that counts as none. Displacements are known to 1e-9, and moduli follow them to a few digits less.
 const SETTLED: f64 = 1e-6;
-/// A step from which on the derivatives of the last point serve the next one.
+/// A step from which on the derivatives of the last point serve the next one. They have changed by about that share,
+/// and derivatives cost as many solutions as there are unknowns.
 const NEAR: f64 = 0.05;
 /// Steps at most. From the result of the network two or three suffice.
 const STEPS: usize = 20;
-/// Halvings of a step at most.
+/// Halvings of a step at most. Where a thirty-second of a step does not help, rounding decides.
 const HALVINGS: usize = 6;
 
 /// The measured loads of a fit with a finer body.

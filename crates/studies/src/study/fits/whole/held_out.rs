@@ -21,7 +21,7 @@ use rayon::prelude::*;
 const LOADS: usize = 30;
 /// Added to the seed of the recipe, so that the loads are others than those of the fit and of its validation.
 const SEED: u64 = 1000;
-/// Errors below this are those of rounding.
+/// Errors below this are those of rounding. A ratio of two of them would tell nothing.
 const ROUNDING: f64 = 1e-6;
 /// A load is worse than with the finite elements of the mesh if its error is this many times as large.
 const WORSE: f64 = 1.1;
