@@ -23,15 +23,17 @@ const FOUND: f64 = 1e-3;
 /// Lanczos method on `M^(−½) K M^(−½)` gives θ and a residual r; an eigenvalue is within r of θ. The bound is `θ + r`
 /// once r ≤ θ/1000, but never more than Gershgorin's bound `max_i Σ_j |K_ij|/√(m_i m_j)`, which always holds. The
 /// result is reproducible to the last bit.
-pub fn largest_square(
-    entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
-    masses: &[f64],
-    held: &[bool],
-) -> f64 {
+pub fn largest_square(entries: impl Iterator<Item = (usize, usize, f64)>, masses: &[f64], held: &[bool]) -> f64 {
+    largest_of(entries.collect(), masses, held)
+}
+
+/// [`largest_square`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn largest_of(entries: Vec<(usize, usize, f64)>, masses: &[f64], held: &[bool]) -> f64 {
     let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
     let mut place = vec![usize::MAX; held.len()];
     free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
     let scaled = entries
+        .into_iter()
         .filter(|(row, column, _)| !held[*row] && !held[*column])
         .map(|(row, column, value)| (place[row], place[column], value / (masses[row] * masses[column]).sqrt()));
     // Entries at one position are added before their absolute value is used.

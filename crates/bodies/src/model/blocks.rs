@@ -57,7 +57,11 @@ impl BlockStiffness {
         models: usize,
         levels: usize,
     ) -> Result<BlockStiffness> {
-        let moduli = &moduli.into();
+        Self::of_cells(mesh, &moduli.into(), models, levels)
+    }
+
+    /// [`Self::of_body`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn of_cells(mesh: &Mesh, moduli: &CellMap<Hooke>, models: usize, levels: usize) -> Result<BlockStiffness> {
         Ok(match mesh.dimension {
             2 => BlockStiffness::Plane(Arc::new(body(mesh, moduli, models, levels)?)),
             _ => BlockStiffness::Space(Arc::new(body(mesh, moduli, models, levels)?)),

@@ -31,7 +31,11 @@ impl ConsistentMasses {
         density: impl Into<CellMap<f64>>,
         thickness: impl Into<CellMap<f64>>,
     ) -> Result<ConsistentMasses> {
-        let (density, thickness) = (density.into(), thickness.into());
+        Self::of_cells(mesh, density.into(), thickness.into())
+    }
+
+    /// [`Self::of_mesh`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn of_cells(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>) -> Result<ConsistentMasses> {
         let mut all = ConsistentMasses {
             point_count: mesh.point_count(),
             starts: vec![0],

@@ -28,7 +28,11 @@ use std::sync::Arc;
 /// The mesh has cells of several kinds, or cells other than triangles of three and tetrahedra of four nodes in a space
 /// of their own dimension and triangles of three in space; or the network has no such form (kind `Unsupported`).
 pub fn edge_springs(mesh: &Mesh, material: impl Into<MaterialMap>, fit: &ExactFit) -> Result<Network> {
-    let material = material.into();
+    springs_of_edges(mesh, material.into(), fit)
+}
+
+/// [`edge_springs`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn springs_of_edges(mesh: &Mesh, material: MaterialMap, fit: &ExactFit) -> Result<Network> {
     if has_strains(mesh) {
         return strain_springs(mesh, &material, fit);
     }

@@ -28,6 +28,11 @@ pub fn fibre_springs_of_regions(mesh: &Mesh, material: &MaterialMap, laws: &Ener
 /// # Errors
 /// The stress of the fibres depends on more than their stretch, or they point out of a plane (kind `Unsupported`).
 pub fn fibre_springs(mesh: &Mesh, material: impl Into<MaterialMap>, law: &Energy) -> Result<Vec<MeasureSpring>> {
+    springs_of_fibres(mesh, material.into(), law)
+}
+
+/// [`fibre_springs`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn springs_of_fibres(mesh: &Mesh, material: MaterialMap, law: &Energy) -> Result<Vec<MeasureSpring>> {
     of_cells(mesh, &material.into(), |_| law)
 }
 

@@ -92,7 +92,11 @@ pub fn nodal_forces(
     action: &Action,
     thickness: impl Into<CellMap<f64>>,
 ) -> Result<Vec<f64>> {
-    let thickness = &thickness.into();
+    forces_of(mesh, part, action, &thickness.into())
+}
+
+/// [`nodal_forces`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap<f64>) -> Result<Vec<f64>> {
     let nothing = |what: &str| Err(Error::at("load", format!("acts on nothing: the selected part has no {what}")));
     let forces = match action {
         Action::Traction(traction) => {
@@ -244,8 +248,13 @@ pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
 /// The nodal forces `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides
 /// exact for tractions of degree 2 in the position.
 pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: impl Into<CellMap<f64>>) -> Vec<f64> {
+    forces_of_traction(mesh, traction, &thickness.into())
+}
+
+/// [`boundary_forces`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn forces_of_traction(mesh: &Mesh, traction: &Traction, thickness: &CellMap<f64>) -> Vec<f64> {
     let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
-    side_forces(mesh, &sides, Integrand::Load(2), traction, &thickness.into())
+    side_forces(mesh, &sides, Integrand::Load(2), traction, thickness)
 }
 
 fn side_forces(

@@ -33,7 +33,11 @@ pub fn lumped_masses(
     thickness: impl Into<CellMap<f64>>,
     lumping: Lumping,
 ) -> Vec<f64> {
-    let (density, thickness) = (density.into(), thickness.into());
+    lumped(mesh, density.into(), thickness.into(), lumping)
+}
+
+/// [`lumped_masses`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn lumped(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>, lumping: Lumping) -> Vec<f64> {
     let of = |cell: CellIndex| density.at(cell.block, cell.cell) * thickness.at(cell.block, cell.cell);
     let mut masses = vec![0.0; mesh.point_count()];
     match lumping {

@@ -33,7 +33,11 @@ pub fn patch_springs(
     fit: &ExactFit,
     held: &[bool],
 ) -> Result<Vec<MeasureSpring>> {
-    let material = material.into();
+    springs_of_patches(mesh, material.into(), fit, held)
+}
+
+/// [`patch_springs`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn springs_of_patches(mesh: &Mesh, material: MaterialMap, fit: &ExactFit, held: &[bool]) -> Result<Vec<MeasureSpring>> {
     let others = "\"points\" or \"cells\": patches";
     let block = linear_simplices(mesh, "volume", others, "patches")?;
     let element = &block.element;

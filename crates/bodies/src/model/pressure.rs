@@ -22,7 +22,11 @@ pub fn smoothed_pressure(
     u: &[f64],
     linear: bool,
 ) -> Option<Vec<f64>> {
-    let material = material.into();
+    smoothed(mesh, network, material.into(), u, linear)
+}
+
+/// [`smoothed_pressure`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn smoothed(mesh: &Mesh, network: &Network, material: MaterialMap, u: &[f64], linear: bool) -> Option<Vec<f64>> {
     let bulk = Bulk::of(mesh, &material)?;
     let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {

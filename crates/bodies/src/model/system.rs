@@ -44,7 +44,11 @@ pub(super) fn body_entries(mesh: &Mesh) -> usize {
 
 /// The assembled stiffness of the mesh, N/m, with the moduli of all cells or of each. A degree of freedom has the number `point · dimension + direction`.
 pub fn finite_elements(mesh: &Mesh, moduli: impl Into<CellMap<Hooke>>) -> Entries {
-    let moduli = moduli.into();
+    assembled(mesh, moduli.into())
+}
+
+/// [`finite_elements`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn assembled(mesh: &Mesh, moduli: CellMap<Hooke>) -> Entries {
     let d = mesh.dimension;
     let mut entries = Entries::with_capacity(body_entries(mesh));
     each_cell(mesh, |cell, nodes, geometry| {

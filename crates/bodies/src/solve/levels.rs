@@ -179,6 +179,11 @@ impl Levels {
     /// # Errors
     /// As there, and the iterations stall: kind `Limit`.
     pub fn lowest_modes<'a>(&self, masses: impl Into<Masses<'a>>, dimension: usize, count: usize) -> Result<Modes> {
+        self.modes(masses.into(), dimension, count)
+    }
+
+    /// [`Self::lowest_modes`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn modes<'a>(&self, masses: Masses<'a>, dimension: usize, count: usize) -> Result<Modes> {
         let free: Vec<usize> = (0..self.prescribed.len()).filter(|dof| self.prescribed[*dof].is_none()).collect();
         let spread = |x: &[f64]| {
             let mut all = vec![0.0; self.prescribed.len()];
@@ -199,7 +204,7 @@ impl Levels {
             columns.iter_mut().zip(found).for_each(|(x, found)| gather(&found, x));
             Ok(())
         };
-        modes_of(&free, apply, solve, masses.into(), dimension, count)
+        modes_of(&free, apply, solve, masses, dimension, count)
     }
 
     /// The given displacements, and the forces that these cause.

@@ -60,6 +60,17 @@ pub fn lowest_modes<'a>(
     dimension: usize,
     count: usize,
 ) -> Result<Modes> {
+    modes_of_system(system, factor, masses.into(), dimension, count)
+}
+
+/// [`lowest_modes`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn modes_of_system<'a>(
+    system: &System,
+    factor: &Factor,
+    masses: Masses<'a>,
+    dimension: usize,
+    count: usize,
+) -> Result<Modes> {
     if !factor.is_positive_definite() {
         let error = Error::expected("stiffness", "a positive definite matrix", "motions that meet no resistance");
         return Err(error.of_kind(ErrorKind::Infeasible));
@@ -68,7 +79,7 @@ pub fn lowest_modes<'a>(
         factor.solve(x);
         Ok(())
     };
-    modes_of(system.free(), |x| system.apply(x), solve, masses.into(), dimension, count)
+    modes_of(system.free(), |x| system.apply(x), solve, masses, dimension, count)
 }
 
 /// [`lowest_modes`] of a stiffness on the degrees of freedom `free`, positive definite, as its product and what solves with it,

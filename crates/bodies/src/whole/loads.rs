@@ -40,7 +40,11 @@ const PATCH: std::ops::Range<f64> = 0.1..0.5;
 ///   size; both are in equilibrium inside the object;
 /// - "gravity x", …: a body force.
 pub fn made_loads(mesh: &Mesh, support: &Support, thickness: impl Into<CellMap<f64>>) -> Vec<NodalLoad> {
-    let thickness = &thickness.into();
+    made(mesh, support, &thickness.into())
+}
+
+/// [`made_loads`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn made(mesh: &Mesh, support: &Support, thickness: &CellMap<f64>) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let names = ["x", "y", "z"];
     let e = |k: usize| (0..d).map(|l| f64::from(u8::from(k == l))).collect::<Vec<f64>>();
@@ -108,6 +112,11 @@ pub fn random_loads(
     count: usize,
     seed: u64,
 ) -> Vec<NodalLoad> {
+    random(mesh, support, thickness.into(), count, seed)
+}
+
+/// [`random_loads`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn random(mesh: &Mesh, support: &Support, thickness: CellMap<f64>, count: usize, seed: u64) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
@@ -148,7 +157,17 @@ pub fn varied_loads(
     pressure: Pressure,
     (count, seed): (usize, u64),
 ) -> Vec<NodalLoad> {
-    let thickness = &thickness.into();
+    varied(mesh, support, &thickness.into(), pressure, (count, seed))
+}
+
+/// [`varied_loads`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn varied(
+    mesh: &Mesh,
+    support: &Support,
+    thickness: &CellMap<f64>,
+    pressure: Pressure,
+    (count, seed): (usize, u64),
+) -> Vec<NodalLoad> {
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);

@@ -63,7 +63,11 @@ impl<'a> ModuliParts<'a> {
         fit: &ExactFit,
         held: &[bool],
     ) -> Result<ModuliParts<'a>> {
-        let material = material.into();
+        Self::of_map(mesh, material.into(), fit, held)
+    }
+
+    /// [`Self::new`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn of_map(mesh: &'a Mesh, material: MaterialMap, fit: &ExactFit, held: &[bool]) -> Result<ModuliParts<'a>> {
         material.check(&mesh.blocks.iter().map(|block| block.cells().len()).collect::<Vec<_>>())?;
         let curved = match material.state() {
             State::PlaneStress { .. } => Some("plane stress"),

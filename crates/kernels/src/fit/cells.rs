@@ -114,7 +114,19 @@ impl CellFits {
         fit: &Fit,
         progress: &mut dyn FnMut(usize),
     ) -> Result<()> {
-        let moduli = moduli.into();
+        self.refit_block(element, points, connectivity, moduli.into(), fit, progress)
+    }
+
+    /// [`Self::refit`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn refit_block<'a>(
+        &mut self,
+        element: &Element,
+        points: &[f64],
+        connectivity: &[usize],
+        moduli: BlockValues<'a, Hooke>,
+        fit: &Fit,
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<()> {
         check_fit(element, &self.springs, points, connectivity, &moduli)?;
         if !self.springs.points.is_empty() {
             return Err(Error::at("springs", "are those of an exact network, which is not fitted"));

@@ -228,9 +228,14 @@ impl Geometry {
     /// `R_ab = ∫ λ ∇N_a ∇N_bᵀ + μ (∇N_b ∇N_aᵀ + ∇N_a·∇N_b I) dV`, the same matrix without the products with zeros.
     /// Natsupakpong and Çavuşoğlu (2010), (13).
     pub fn stiffness(&self, hooke: impl Into<Hooke>) -> DMatrix<f64> {
+        self.stiffness_of(hooke.into())
+    }
+
+    /// [`Self::stiffness`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+    fn stiffness_of(&self, hooke: Hooke) -> DMatrix<f64> {
         let (n, d) = (self.nodes, self.dimension);
         let size = n * d;
-        let Moduli { lambda, mu } = match hooke.into() {
+        let Moduli { lambda, mu } = match hooke {
             hooke @ Hooke::Anisotropic(_) => return DMatrix::from_vec(size, size, self.entries(&hooke)),
             hooke if self.is_condensed() => return DMatrix::from_vec(size, size, self.entries(&hooke)),
             Hooke::Isotropic(moduli) => moduli,

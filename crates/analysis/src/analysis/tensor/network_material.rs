@@ -111,7 +111,11 @@ pub fn network_material(
     owners: SpringOwners,
     network: &Network,
 ) -> NetworkMaterial {
-    let material = &material.into();
+    material_of(mesh, &material.into(), owners, network)
+}
+
+/// [`network_material`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn material_of(mesh: &Mesh, material: &MaterialMap, owners: SpringOwners, network: &Network) -> NetworkMaterial {
     let start = Clock::start();
     let (stars, dimension) = (Stars::of(mesh), mesh.cell_dimension());
     // Points that only attached cells have are in no sample.

@@ -85,7 +85,18 @@ pub fn fit_exact<'a>(
     fit: &ExactFit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<CellFits> {
-    let material = material.into();
+    fit_block(element, points, connectivity, material.into(), fit, progress)
+}
+
+/// [`fit_exact`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn fit_block<'a>(
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    material: BlockValues<'a, Material>,
+    fit: &ExactFit,
+    progress: &mut dyn FnMut(usize),
+) -> Result<CellFits> {
     match fit.shear {
         ShearSprings::Cells => {}
         ShearSprings::Edges => {

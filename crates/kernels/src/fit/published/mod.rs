@@ -57,7 +57,18 @@ pub fn fit<'a>(
     connectivity: &[usize],
     material: impl Into<BlockValues<'a, Material>>,
 ) -> Result<CellFits> {
-    let material = material.into();
+    fit_block(method, element, springs, points, connectivity, material.into())
+}
+
+/// [`fit`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn fit_block<'a>(
+    method: Method,
+    element: &Element,
+    springs: &Springs,
+    points: &[f64],
+    connectivity: &[usize],
+    material: BlockValues<'a, Material>,
+) -> Result<CellFits> {
     springs.check(element)?;
     check_cells(element, points, connectivity)?;
     let cover = method.cover(element)?;

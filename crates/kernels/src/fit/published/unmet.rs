@@ -51,7 +51,17 @@ pub fn unmet<'a>(
     connectivity: &[usize],
     material: impl Into<BlockValues<'a, Material>>,
 ) -> Result<Unmet> {
-    let material = material.into();
+    unmet_in(method, element, points, connectivity, material.into())
+}
+
+/// [`unmet`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn unmet_in<'a>(
+    method: Method,
+    element: &Element,
+    points: &[f64],
+    connectivity: &[usize],
+    material: BlockValues<'a, Material>,
+) -> Result<Unmet> {
     let cover = method.cover(element)?;
     let corners = Corners::of(element)?;
     let mut unmet = Unmet::default();
