@@ -77,6 +77,53 @@ fn kernels(library: &Path) -> Vec<String> {
     found
 }
 
+/// The functions of a library with the bytes of their code, by the names of their sections: each function has a section of its own.
+fn functions(library: &Path) -> Vec<(String, u64)> {
+    members(library)
+        .iter()
+        .filter(|member| member.starts_with(b"\x7fELF"))
+        .flat_map(|member| sections(member))
+        .collect()
+}
+
+/// The sections of code of an object file in ELF of 64 bits, each with its size. A file of many sections has the counts in the first.
+fn sections(object: &[u8]) -> Vec<(String, u64)> {
+    let word = |at: usize| u64::from_le_bytes(object[at..at + 8].try_into().unwrap());
+    let half = |at: usize| u32::from_le_bytes(object[at..at + 4].try_into().unwrap());
+    let quarter = |at: usize| u16::from_le_bytes(object[at..at + 2].try_into().unwrap());
+    let (table, size) = (word(0x28) as usize, quarter(0x3a) as usize);
+    let count = Some(quarter(0x3c) as usize).filter(|count| *count > 0).unwrap_or(word(table + 0x20) as usize);
+    let names = Some(quarter(0x3e) as usize).filter(|place| *place < 0xffff).unwrap_or(half(table + 0x28) as usize);
+    let names = word(table + names * size + 0x18) as usize;
+    let named = |section: usize| {
+        let at = table + section * size;
+        let name = object[names + half(at) as usize..].split(|byte| *byte == 0).next()?;
+        let function = String::from_utf8_lossy(name).strip_prefix(".text.")?.to_string();
+        Some((function, word(at + 0x20)))
+    };
+    (0..count).filter_map(named).collect()
+}
+
+/// A function with parameters of type is compiled where it is called. What solves and fits has a part without, which is optimised.
+#[test]
+fn solvers_and_fits_are_in_packages_of_the_highest_level_alone() {
+    // Its own code, in bytes, of what hands its arguments on.
+    const SHORT: u64 = 1500;
+    let rooms = ["16springfit_bodies", "17springfit_kernels", "18springfit_analysis", "19springfit_multigrid"];
+    let libraries = libraries();
+    let is_solver = |(name, size): &(String, u64)| {
+        // Readers of records are derived.
+        *size > SHORT && rooms.iter().any(|room| name.starts_with(&format!("_ZN{room}"))) && !name.contains("serde")
+    };
+    for package in ["springfit-studies", "springfit"] {
+        let library = libraries.get(package).unwrap_or_else(|| panic!("{package} is not among {:?}", libraries.keys()));
+        let found: Vec<String> = functions(library).into_iter().filter(is_solver).map(|(name, _)| name).collect();
+        assert!(found.is_empty(), "{package} is compiled at a low level and has these:\n{}", found.join("\n"));
+    }
+    let known = functions(&libraries["springfit-bodies"]).into_iter().filter(is_solver).count();
+    assert!(known > 100, "functions are not recognised: {known}");
+}
+
 #[test]
 fn vector_kernels_are_in_packages_of_the_highest_level_alone() {
     let libraries = libraries();
