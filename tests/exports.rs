@@ -511,6 +511,26 @@ fn a_body_at_rest_is_told_to_a_program_that_would_move_another() {
 }
 
 /// The displacement at rest is that of Newton's method on the model itself; by the record alone the network is the same.
+/// A network whose cells lock is exported with a warning, from a scene as from its file, and one that does not without.
+#[test]
+fn a_network_that_locks_is_told() {
+    let words = "at nu = 0.49 linear cells lock: the finite elements are too stiff, and this network with them";
+    let all = networks(&SCENE.replace("0.3", "0.49").replace("1e4", "1e7"));
+    for target in ["mujoco", "newton", "npz"] {
+        let told = |fit: &str| target_named(target).unwrap().at_rest(&all[fit], None).unwrap().join("; ");
+        assert!(told("exact").contains(words), "{target}: {}", told("exact"));
+        assert!(!told("patches").contains("cells lock"), "{target}: {}", told("patches"));
+    }
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("s.toml"), SCENE.replace("0.3", "0.49")).unwrap();
+    for arguments in ["export s.toml --to npz", "run s.toml --out out", "export out/exact.json --to newton --out n"] {
+        let (code, said) = program(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, Some(0), "{said}");
+        assert!(said.contains("linear cells lock"), "{arguments}: {said}");
+    }
+    assert!(fs::read_to_string(folder.path().join("n/run.py")).unwrap().contains("linear cells lock"));
+}
+
 #[test]
 fn springs_by_their_parts_are_the_network() {
     let outcome = outcome(SCENE);

@@ -176,7 +176,7 @@ fn cells_are_bounded_before_they_are_made() {
     assert_eq!(message(0.01), expected);
     assert!(message(1e-12).contains("expected at most 2000000 cells"));
     let flat = brick([0.0; 3], [1.0, 1.0, 0.01], false, 0);
-    assert_eq!(fill(&obj(&flat), "hex8", 0.5).unwrap().cell_count(), 4);
+    assert_eq!(fill(&obj(&flat), "hex8", 0.01).unwrap().cell_count(), 10_000);
     let needle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let coarse = fill(&obj(needle), "hex8", 2.0).unwrap_err().to_string();
     assert!(
@@ -254,6 +254,19 @@ fn volumes_far_off_and_volumes_of_layers_are_told() {
                 .unwrap();
         filled(&mesh).clone()
     };
+    // Cells of another size than the body make another body.
+    for (cell, size) in [(4.0, [1.0; 3]), (0.3, [1.0, 1.0, 0.1])] {
+        let (boundary, layers) = (FillBoundary::Stepped, FillLayers::Union);
+        let spacing = FillSpacing::Edge(cell);
+        let fill = FillMesh { element: element("hex8"), spacing, boundary, layers, repair: false };
+        let said = fill.build(&obj(&brick([0.0; 3], size, false, 0)), 1.0).unwrap_err().to_string();
+        assert!(
+            said.contains(
+                "cell: expected cells with the volume of the surface within a factor of two, such as edges of at most"
+            ),
+            "{said}"
+        );
+    }
     let coarse = fill(&brick([0.0; 3], [1.0, 1.0, 1.25], false, 0), 1.0);
     assert!(coarse.excess().unwrap().abs() > 10.0 && coarse.far_off().is_some(), "{coarse:?}");
     let fine = fill(&brick([0.0; 3], [1.0, 1.0, 1.25], false, 0), 0.25);

@@ -275,13 +275,43 @@ fn a_body_of_one_cell_across_that_bends_is_told() {
     };
     let words = "about one cell across and bends under load";
     for element in ["tet4", "hex8"] {
-        assert!(notes(element, 1, "[0, 0, 10]", "").contains(words), "{element}");
+        // Errors are relative to quadratic elements, unless the cells are asked for.
+        let told = notes(element, 1, "[0, 0, 10]", "");
+        assert!(!told.contains(words) && told.contains("of quadratic elements on these cells"), "{told}");
+        assert!(notes(element, 1, "[0, 0, 10]", "reference = { from = \"cells\" }\n").contains(words), "{element}");
         assert!(!notes(element, 1, "[10, 0, 0]", "").contains(words), "{element}");
         assert!(!notes(element, 2, "[0, 0, 10]", "").contains(words), "{element}");
         let judged = notes(element, 1, "[0, 0, 10]", "reference = { from = \"quadratic\" }\n");
         assert!(!judged.contains(words) && judged.contains("of quadratic elements on these cells at"), "{judged}");
     }
     assert!(!notes("hex20", 1, "[0, 0, 10]", "").contains(words));
+}
+
+/// Frequencies are off those of quadratic elements on the same cells where these lock, and off those of the cells where they do not or are asked for.
+#[test]
+fn frequencies_are_off_those_of_elements_that_do_not_lock() {
+    let solved = |element: &str, poisson: f64, more: &str| {
+        let text = format!(
+            "mesh = {{ box = {{ element = \"{element}\", size = [0.08, 0.02, 0.02], cells = [6, 2, 2] }} }}\nmaterial = {{ young = 1e4, poisson = {poisson}, density = 1000 }}\n\
+             fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\noutput = {{ frequencies = 4 }}\n{more}"
+        );
+        run(&Scene::parse(&text, Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    let locks = solved("tet4", 0.49, "");
+    let quadratic = locks.frequencies.last().unwrap();
+    assert_eq!((locks.frequencies.len(), quadratic.name.as_str()), (3, "quadratic elements"));
+    let expected = &solved("tet10", 0.49, "").frequencies[0];
+    let [found, expected] = [quadratic, expected].map(|model| model.consistent.clone().unwrap());
+    let differ = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() > 1e-8;
+    assert!(!found.iter().zip(&expected).any(differ), "{found:?} {expected:?}");
+    let cells = locks.frequencies[0].consistent.clone().unwrap();
+    assert!(cells[0] > 1.3 * found[0], "{cells:?} {found:?}");
+    let notes = |outcome: &springfit::study::Outcome| springfit::report::notes(outcome).join("\n");
+    let words = "natural frequencies are compared with those of elements that are too stiff";
+    assert!(!notes(&locks).contains(words), "{}", notes(&locks));
+    let of_cells = solved("tet4", 0.49, "reference = { from = \"cells\" }\n");
+    assert!(of_cells.frequencies.len() == 2 && notes(&of_cells).contains(words), "{}", notes(&of_cells));
+    assert_eq!(solved("tet4", 0.3, "").frequencies.len(), 2);
 }
 
 /// A note says where errors are relative to elements that lock: at large deformation, and under a force on points or a sum of loads with one.

@@ -479,7 +479,7 @@ fn vtk_errors_say_what_was_expected_and_found() {
     assert_eq!(legacy("CELLS 1 4\n3 0 1 4\nCELL_TYPES 1\n5\n"), "cell 0: expected point indices below 4, found 4");
     let count = "cell 0: expected 4 nodes for VTK cell type 10, found 3";
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n"), count);
-    let shape = "cell 0: VTK cell type 41 has no fixed shape or is unknown";
+    let shape = "cell 0: VTK cell type 41 has no fixed shape or is unknown; ParaView's filter Tetrahedralize makes tetrahedra of all cells that VTK knows";
     assert_eq!(legacy("CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n41\n"), shape);
     assert_eq!(legacy("CELLS 1 4\n3 0 x 2\n"), "line 9: CELLS: expected a whole number, found \"x\"");
     assert_eq!(legacy("CELLS 2 8\n3 0 1 2\n"), "the file ends inside CELLS: expected 2 cells, found 1");

@@ -266,6 +266,18 @@ fn a_scene_without_motion_does_none() {
 }
 
 /// States are written at the first step at or after each multiple of `every`, and at the end.
+/// A motion in which nothing acts is told, and one with any of the three is not.
+#[test]
+fn a_motion_of_nothing_is_told() {
+    let still = BLOCK.split("[[motion.force]]").next().unwrap().replace("0.05\n", "0.003\n");
+    let said = |text: &str| report::notes(&outcome(text)).join("\n");
+    let words = "nothing moves: [motion] has neither gravity nor a pull nor a force";
+    assert!(said(&still).contains(words), "{}", said(&still));
+    assert!(said(&edited(&still, "every = 0.01", "gravity = [0, 0, 0]")).contains(words));
+    assert!(!said(&edited(&still, "every = 0.01", "gravity = [0, 0, -1]")).contains(words));
+    assert!(!said(&(still + "[[motion.force]]\ngroup = \"zmax\"\nforce = [0, 0, 1]\n")).contains(words));
+}
+
 #[test]
 fn states_are_written_at_steps() {
     let text = edited(BLOCK, "every = 0.01", "every = 0.0125");

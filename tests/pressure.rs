@@ -356,7 +356,7 @@ fn a_ball_is_filled_through_its_maximum() {
         let body = Body::new(&mesh, &laws);
         let volume = |l: f64| 4.0 / 3.0 * PI * (inner * l).powi(3);
         let stretch = 2.2;
-        let cavity = Cavity::new(&mesh, &sides, volume(stretch), &CellMap::Uniform(1.0)).unwrap();
+        let cavity = Cavity::new(&mesh, &sides, volume(stretch), &CellMap::Uniform(1.0), &support).unwrap();
         let start = cavity.volume_at(&mesh.points);
         assert!((start / volume(1.0) - 1.0).abs() < 2e-3, "{start}");
         let newton = Newton { steps: 20, ..Newton::default() };
@@ -378,6 +378,105 @@ fn a_ball_is_filled_through_its_maximum() {
             let near = of_incompressible_ball(mu, radii, stretch);
             assert!((of_ball(mu, lambda, radii, stretch) / near - 1.0).abs() < 0.06, "{near}");
         }
+    }
+}
+
+/// The part of a ball where the coordinates along these axes are positive, held by the planes of symmetry, and its cavity at rest.
+fn part_of_ball(name: &str, axes: &[usize]) -> (Mesh, Support) {
+    let whole = sphere(name, 1.0, 1.3, [2, 1]);
+    let is_in = |cell: &&[usize]| axes.iter().all(|k| cell.iter().map(|&p| whole.point(p)[*k]).sum::<f64>() > 0.0);
+    let kept: Vec<&[usize]> = whole.blocks[0].cells().filter(is_in).collect();
+    let mut places = std::collections::BTreeMap::new();
+    let mut points = Vec::new();
+    let connectivity = kept.iter().flat_map(|cell| cell.iter()).map(|&p| {
+        *places.entry(p).or_insert_with(|| {
+            points.extend(whole.point(p));
+            points.len() / 3 - 1
+        })
+    });
+    let block = CellBlock { element: whole.blocks[0].element.clone(), connectivity: connectivity.collect() };
+    let mesh = Mesh::of_cells(3, points, vec![block]);
+    let mut support = Support::free(&mesh);
+    for &axis in axes {
+        let points: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[axis].abs() < 1e-9).collect();
+        support.fix(&points, &[axis], 3);
+    }
+    // The axes without planes would be free.
+    for axis in (0..3).filter(|axis| !axes.contains(axis)) {
+        let (next, other) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (k, along) in [(axis, next), (axis, other)] {
+            let on_axis =
+                |p: &usize| (0..3).all(|j| mesh.point(*p)[j] == 0.0 || j == along) && mesh.point(*p)[along] > 0.0;
+            support.fix(&(0..mesh.point_count()).filter(on_axis).collect::<Vec<_>>(), &[k], 3);
+        }
+    }
+    (mesh, support)
+}
+
+/// Planes of symmetry close the cavity of an eighth and of a half of a ball: the share of the volume, and the pressures of the whole ball at each of
+/// its volumes, through the maximum. The forces of 1 Pa are the gradient of the volume in points that stay in the planes.
+#[test]
+fn planes_of_symmetry_close_a_cavity() {
+    let material = Material::new(1e4, 0.3, State::Solid).unwrap();
+    let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
+    let sides = at("x^2 + y^2 + z^2 < 1.15^2");
+    let newton = Newton { steps: 8, ..Newton::default() };
+    let uniform = CellMap::Uniform(1.0);
+    for name in ["hex8", "hex20"] {
+        let whole = sphere(name, 1.0, 1.3, [2, 1]);
+        let held = held_by_symmetry(&whole, 1.0);
+        let cavity = Cavity::new(&whole, &sides, 20.0, &uniform, &held).unwrap();
+        let start = cavity.volume_at(&whole.points);
+        let expected = newton.fill(&Body::new(&whole, &laws), &whole.points, &held, &cavity).unwrap();
+        assert_eq!(expected.ending, Ending::Converged);
+        for (axes, share) in [(&[0, 1, 2][..], 8.0), (&[2][..], 2.0)] {
+            let (mesh, support) = part_of_ball(name, axes);
+            let open = Cavity::new(&mesh, &sides, 20.0 / share, &uniform, &Support::free(&mesh)).unwrap_err();
+            assert!(open.to_string().contains("edges that only one side has"), "{open}");
+            let cavity = Cavity::new(&mesh, &sides, 20.0 / share, &uniform, &support).unwrap();
+            assert!((share * cavity.volume_at(&mesh.points) / start - 1.0).abs() < 1e-12);
+            let found = newton.fill(&Body::new(&mesh, &laws), &mesh.points, &support, &cavity).unwrap();
+            assert_eq!(found.ending, Ending::Converged, "{name} {axes:?}");
+            for (found, expected) in found.pressures.iter().zip(&expected.pressures) {
+                assert!((found / expected - 1.0).abs() < 1e-8, "{name} {axes:?}: {found} {expected}");
+            }
+            let mut random = Random(7);
+            let way: Vec<f64> =
+                support.prescribed.iter().map(|held| if held.is_some() { 0.0 } else { random.next() }).collect();
+            let at =
+                |t: f64| cavity.volume_at(&mesh.points.iter().zip(&way).map(|(x, u)| x + t * u).collect::<Vec<_>>());
+            let slope: f64 = cavity.sides.forces(&mesh.points).iter().zip(&way).map(|(f, u)| f * u).sum();
+            let difference = (8.0 * (at(1e-3) - at(-1e-3)) - (at(2e-3) - at(-2e-3))) / 12e-3;
+            assert!((slope / difference - 1.0).abs() < 1e-9, "{name} {axes:?}: {slope} {difference}");
+        }
+    }
+}
+
+/// A tube between two planes in which its ends are held has the volume between them; one that is held elsewhere, or of which an end moves, is open.
+#[test]
+fn a_tube_ends_in_planes() {
+    for shift in [0.0, 1e3] {
+        let block = mapped(grid("hex8", &[3.0, 3.0, 2.0], &[3, 3, 2]), |x| vec![x[0] + shift, x[1], x[2] + shift]);
+        let is_wall = |cell: &&[usize]| {
+            let middle = |k: usize| cell.iter().map(|&p| block.point(p)[k]).sum::<f64>() / 8.0;
+            (middle(0) - shift - 1.5).abs() > 0.5 || (middle(1) - 1.5).abs() > 0.5
+        };
+        let connectivity = block.blocks[0].cells().filter(is_wall).flatten().copied().collect();
+        let element = block.blocks[0].element.clone();
+        let mesh = Mesh::of_cells(3, block.points.clone(), vec![CellBlock { element, connectivity }]);
+        let inner = format!("abs(x - {shift} - 1.5) < 0.6 && abs(y - 1.5) < 0.6");
+        let (inner, uniform) = (at(&inner), CellMap::Uniform(1.0));
+        let at_end = |k: f64, p: &usize| mesh.point(*p)[2] == shift + k;
+        let ends = |k: f64| (0..mesh.point_count()).filter(|p| at_end(k, p)).collect::<Vec<_>>();
+        let mut support = Support::free(&mesh);
+        support.fix(&ends(0.0), &[0, 1, 2], 3);
+        let open = |support: &Support| Cavity::new(&mesh, &inner, 3.0, &uniform, support).unwrap_err().to_string();
+        assert!(open(&support).contains("8 edges that only one side has"), "{}", open(&support));
+        support.fix(&ends(2.0), &[2], 3);
+        let cavity = Cavity::new(&mesh, &inner, 3.0, &uniform, &support).unwrap();
+        assert!((cavity.volume_at(&mesh.points) - 2.0).abs() < 1e-9, "{shift}");
+        support.prescribed[3 * ends(2.0)[5] + 2] = Some(0.1);
+        assert!(open(&support).contains("8 edges"), "{}", open(&support));
     }
 }
 
@@ -513,7 +612,8 @@ fn sides_inside_a_body_are_refused() {
         let pressure = Component::Constant(1.0);
         let error = PressedFaces::new(&mesh, &part, &pressure, &CellMap::Uniform(1.0)).unwrap_err().to_string();
         assert!(error.contains("6 of 6 inside it, with cells on both sides"), "{error}");
-        let error = Cavity::new(&mesh, &part, 2.0, &CellMap::Uniform(1.0)).unwrap_err().to_string();
+        let error =
+            Cavity::new(&mesh, &part, 2.0, &CellMap::Uniform(1.0), &Support::free(&mesh)).unwrap_err().to_string();
         assert!(error.contains("with cells on both sides"), "{error}");
     }
 }
@@ -526,10 +626,11 @@ fn a_cavity_at_its_own_volume_stays() {
     let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
     let body = Body::new(&mesh, &laws);
     let sides = at("x^2 + y^2 + z^2 < 1.15^2");
-    let start = Cavity::new(&mesh, &sides, 1.0, &CellMap::Uniform(1.0)).unwrap().volume_at(&mesh.points);
+    let held = held_by_symmetry(&mesh, 1.0);
+    let start = Cavity::new(&mesh, &sides, 1.0, &CellMap::Uniform(1.0), &held).unwrap().volume_at(&mesh.points);
     for growth in [1.0, 1.0 + 1e-12, 1.0 + 1e-9, 1.0 - 1e-9, 1.0 + 1e-6] {
-        let cavity = Cavity::new(&mesh, &sides, growth * start, &CellMap::Uniform(1.0)).unwrap();
-        let found = Newton::default().fill(&body, &mesh.points, &held_by_symmetry(&mesh, 1.0), &cavity).unwrap();
+        let cavity = Cavity::new(&mesh, &sides, growth * start, &CellMap::Uniform(1.0), &held).unwrap();
+        let found = Newton::default().fill(&body, &mesh.points, &held, &cavity).unwrap();
         assert_eq!(found.ending, Ending::Converged, "{growth}: {:?}", found.residuals);
         assert!(found.pressures[0].abs() < 1e5 * (growth - 1.0).abs() + 1e-6, "{growth}: {:?}", found.pressures);
     }

@@ -158,3 +158,49 @@ fn points_are_about_as_many_as_asked_for() {
         }
     }
 }
+
+/// A surface whose triangles share no corner is told as one that is not welded, and the first scene of a surface that encloses a volume offers to fill it.
+#[test]
+fn a_surface_that_is_not_welded_is_told() {
+    let folder = TempDir::new().unwrap();
+    let whole = sphere();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("loose.off", &off(&unwelded(&whole, 1e-7, &mut Random(1))));
+    write("apart.off", &off(&whole));
+    write("brick.obj", &brick([0.0; 3], [1.0; 3], false, 0));
+    write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    let said = |words: &[&str]| {
+        let output = springfit(folder.path(), words);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+    };
+    let fit =
+        |name: &str| said(&["fit", name, "--young", "1", "--poisson", "0.3", "--thickness", "1mm", "-o", "x.json"]);
+    for (name, is_loose, offer) in [
+        ("loose.off", true, Some("points = 1000, element = \"hex8\", repair = true }")),
+        ("apart.off", true, Some("repair = true }")),
+        ("brick.obj", false, Some("points = 1000, element = \"hex8\" }")),
+        ("sheet.obj", false, None),
+    ] {
+        assert_eq!(
+            fit(name).contains("the surface is not welded: most of its cells share no corner"),
+            is_loose,
+            "{name}: {}",
+            fit(name)
+        );
+        let scene = said(&["new", name]);
+        let offered = scene.lines().find(|line| line.starts_with("# fill = "));
+        assert_eq!(offered.is_some(), offer.is_some(), "{name}: {scene}");
+        let Some((line, expected)) = offered.zip(offer) else { continue };
+        assert!(line.contains(expected), "{name}: {line}");
+        // What is offered is read, and fills.
+        let filled = scene
+            .replace("# fill", "fill")
+            .lines()
+            .filter(|line| !line.starts_with("file ") && !line.contains("thickness") && !line.contains("plane "))
+            .collect::<Vec<_>>()
+            .join("\n");
+        write("filled.toml", &filled);
+        assert!(said(&["run", "filled.toml", "--explain"]).contains("hex8"), "{name}");
+    }
+}

@@ -268,10 +268,10 @@ fn thin_walls_of_a_scan_stay() {
     let plate = box_with_dent(1e-4, 0.0);
     let mut scan = plate.clone();
     scan.remove(1600 + 40);
-    let (_, filled) = fill(&scan, FillSpacing::Edge(0.05), FillBoundary::Stepped).unwrap();
-    let repair = filled.repair.unwrap();
-    assert!((repair.volume / volume(&plate) - 1.0).abs() < 0.01, "{repair:?}");
-    assert_eq!((repair.holes, repair.welded.0), (1, 0));
+    // No cubes of this size are the plate. Welded to one side or open it would enclose nothing.
+    assert!((volume(&plate) / 1e-4 - 1.0).abs() < 1e-3);
+    let said = fill(&scan, FillSpacing::Edge(0.05), FillBoundary::Stepped).map(|_| ()).unwrap_err().to_string();
+    assert!(said.contains("within a factor of two") && said.ends_with("m³ of 1.000e-4 m³"), "{said}");
     let shell = sphere();
     let hollow = [shell.clone(), turned(moved(&shell, 0.97, [0.0; 3]), |_| true).0].concat();
     let (_, filled) =

@@ -6,7 +6,7 @@ use super::job::spatial;
 use super::target::{Stands, Target};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Network, Support};
-use crate::report::{NetworkRecord, NodalLoadRecord, Parts};
+use crate::report::{NetworkRecord, NodalLoadRecord, Parts, of_locking};
 use crate::solve::{Ending, Newton, System, factor_cost_of, is_definite};
 use nalgebra::DMatrix;
 
@@ -48,12 +48,14 @@ impl Target {
     /// What a reader must know of the body at rest under the exported gravity, and under each load beside it, in sentences: that the network is not
     /// stable, that no equilibrium was found, that it is deformed beyond what the program moves as the network would. Bodies that are
     /// not held are not solved, and neither are those that would take more than some seconds; of the latter a sentence says so. First is whether
-    /// the program ends its sweeps too early for the constants.
+    /// the program ends its sweeps too early for the constants, and whether the cells of the fit lock.
     ///
     /// # Errors
     /// Cells turn inside out under gravity alone; kind `Unsupported`.
     pub fn at_rest(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<String>> {
-        Ok(self.is_softer(network).into_iter().chain(self.solved(network, gravity)?).collect())
+        let name = network.provenance.fit.as_ref().map_or("", |fit| &fit.name);
+        let locks = of_locking(name, &network.notes).map(str::to_string);
+        Ok(self.is_softer(network).into_iter().chain(locks).chain(self.solved(network, gravity)?).collect())
     }
 
     /// What the equilibria of the network tell.

@@ -4,14 +4,14 @@ use super::note::{Note, Weight};
 use super::table::Digits::{Signed, Significant};
 use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
-use crate::study::{BODY, FrequencyOutcome, Outcome, Standard, locks_at};
+use crate::study::{BODY, FrequencyOutcome, Outcome, QUADRATIC, Standard, locks_at};
 
 /// The words for both kinds of masses.
 const CONSISTENT: &str = "consistent";
 const LUMPED: &str = "lumped";
 
-/// Two rows per model, with consistent and with lumped masses, and how far they are off the finite elements with consistent masses: those with
-/// lumped masses err as much at higher frequencies as the networks that are compared with them.
+/// Two rows per model, with consistent and with lumped masses, and how far they are off the finite elements with consistent masses, or off
+/// quadratic elements where the cells lock: those with lumped masses err as much at higher frequencies as the networks that are compared with them.
 pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
     let rows: Vec<(&str, &str, &[f64])> = models
         .iter()
@@ -24,7 +24,8 @@ pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
         })
         .collect();
     let most = rows.iter().map(|(.., found)| found.len()).max().unwrap_or(0);
-    let reference = rows.iter().position(|(name, _, found)| *name == BODY && !found.is_empty());
+    let of = |model: &str| rows.iter().position(|(name, _, found)| *name == model && !found.is_empty());
+    let reference = of(QUADRATIC).or_else(|| of(BODY));
     let pair = |i: usize| {
         let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string()).priority(First);
         [column("f", "Hz"), column("off", "%")]
@@ -46,7 +47,7 @@ pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
     let cells: Vec<_> = if most > 0 { rows.iter().enumerate().map(row).collect() } else { Vec::new() };
     let note = reference
         .filter(|_| most > 0)
-        .map(|reference| format!("off is relative to the finite elements with {} masses", rows[reference].1));
+        .map(|reference| format!("off is relative to the {} with {} masses", rows[reference].0, rows[reference].1));
     Table::new("frequencies", format!("Natural frequencies{}", rigid(models)), columns, cells).with_notes(note)
 }
 
@@ -66,11 +67,12 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<Note> {
         model.reason.as_ref().map(|why| Note::of_model(Weight::Broken, &model.name, words(why)))
     };
     let is_compared = !outcome.frequencies.is_empty();
+    let has_quadratic = outcome.frequencies.iter().any(|model| model.name == QUADRATIC);
     let has_finer =
         outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.standard == Standard::FinerBody));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
-    let compared = (has_finer && outcome.frequencies.len() > 1).then(|| words.to_string());
-    let locking = is_compared.then(|| locks_at(&outcome.mesh, &outcome.material)).flatten().map(|poisson| {
+    let compared = (has_finer && !has_quadratic && outcome.frequencies.len() > 1).then(|| words.to_string());
+    let locking = (is_compared && !has_quadratic).then(|| locks_at(&outcome.mesh, &outcome.material)).flatten().map(|poisson| {
         format!(
             "at nu = {poisson} linear cells lock: natural frequencies are compared with those of elements that are too stiff, whose \
              frequencies are too high"

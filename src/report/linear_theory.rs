@@ -3,7 +3,7 @@
 use super::note::{Note, Weight};
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome, extent, is_one_cell_across};
+use crate::study::{BodyLoad, ModelMotion, Outcome, bends, extent, is_one_cell_across};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -67,13 +67,15 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.
-const BENDS: f64 = 1.5;
+/// Whether a body of one cell across bends under some load, which linear cells resist too much.
+pub(super) fn bends_too_little(outcome: &Outcome) -> bool {
+    outcome.loads.iter().any(|load| load.deformation.is_some_and(bends)) && is_one_cell_across(&outcome.mesh)
+}
 
-/// That a body of one cell across bends, which linear cells resist too much.
+/// That a body of one cell across bends, which linear cells resist too much, and that errors are relative to these cells.
 pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
     let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
-    let bends = |load: &&BodyLoad| load.deformation.is_some_and(|of| of.rotation > BENDS * of.strain);
+    let bends = |load: &&BodyLoad| load.deformation.is_some_and(bends);
     let loads: Vec<&str> =
         outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
     (!loads.is_empty() && is_one_cell_across(&outcome.mesh)).then(|| {

@@ -108,6 +108,11 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<Note> {
     let steps = step_notes(&motion.recipe).into_iter().map(|words| Note::of_body(Weight::Detail, words));
     let lost = loss(motion).map(|words| Note::of_body(Weight::Reference, words));
     let mut notes: Vec<Note> = steps.chain(lost).collect();
+    let MotionRecipe { gravity, pulls, forces, .. } = &motion.recipe;
+    if pulls.is_empty() && forces.is_empty() && gravity.iter().all(|g| *g == 0.0) {
+        let words = "nothing moves: [motion] has neither gravity nor a pull nor a force, and those of [[load]] do not act in it";
+        notes.push(Note::of_body(Weight::Broken, words));
+    }
     for model in &motion.models {
         let mut broken = |words: String| notes.push(Note::of_model(Weight::Broken, &model.name, words));
         if let (Some(growth), Some(fit)) = (model.growth, model.fit) {

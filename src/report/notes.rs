@@ -39,6 +39,12 @@ fn of_summary(outcome: &Outcome) -> impl Iterator<Item = String> {
     distrust(outcome).into_iter().chain(quality).chain(outcome.mesh.annotations.notes())
 }
 
+/// The sentences of a record of the network `name` which say that its cells lock, so that it is too stiff with them.
+pub fn of_locking<'n>(name: &'n str, notes: &'n [String]) -> impl Iterator<Item = &'n str> {
+    let sentence = move |note: &'n String| note.strip_prefix(name)?.strip_prefix(": ");
+    notes.iter().filter_map(sentence).filter(|words| words.contains("cells lock"))
+}
+
 fn all(outcome: &Outcome) -> Vec<Note> {
     let of_body = |weight: Weight| move |words: String| Note::of_body(weight, words);
     let mut notes: Vec<Note> = spurious(outcome).into_iter().map(of_body(Weight::Broken)).collect();

@@ -6,6 +6,7 @@ use super::load_record::{LoadRecord, MeasuredRecord};
 use super::table::Digits::{Fixed, Significant};
 use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
+use super::verdict::{LOCKS, TOO_STIFF};
 use crate::study::statistics::median;
 use crate::study::{BODY, Times};
 
@@ -79,13 +80,19 @@ pub(super) fn measured<'a>(report: &'a Report, load: &str) -> Option<&'a Measure
     report.measured.iter().find(|known| known.load == load)
 }
 
+/// What heads the errors under a load after its name: what they are relative to, unless that is finite elements of the mesh that are right.
+pub(super) fn standard(report: &Report, load: &str) -> &'static str {
+    let of_cells = if [LOCKS, TOO_STIFF].contains(&&*report.finite_elements_verdict) { ", cells" } else { "" };
+    measured(report, load).map_or(of_cells, |known| known.standard.heading())
+}
+
 /// The error of the finite elements under a load.
 fn error_of_body(report: &Report, load: &str) -> Option<f64> {
     measured(report, load).map_or(Some(0.0), |known| known.fem_e_max)
 }
 
 fn of_load<'a>(report: &'a Report, place: usize, load: &LoadRecord) -> Shown<'a> {
-    let standard = measured(report, &load.name).map_or("", |known| known.standard.heading());
+    let standard = standard(report, &load.name);
     let column = Column::numbers("e_max").unit("%").group(format!("{}{standard}", load.name));
     let error = move |fit: &FitRecord| fit.loads.get(place).and_then(|load| load.e_max);
     Shown::new(column, move |fit| Cell::number(error(fit), Fixed(2)))

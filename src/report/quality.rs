@@ -76,6 +76,18 @@ pub(super) fn quality_lines(quality: &Quality) -> Vec<String> {
             "{cells} {lie} over others on the same side of an edge or face that they share: the body is there twice"
         ));
     }
+    if quality.crossing > 0 {
+        let have = if quality.crossing == 1 { "has" } else { "have" };
+        let cells = counted(quality.crossing, "cell");
+        lines.push(format!("{cells} {have} parts of another piece of the mesh inside: the body is there twice"));
+    }
+    if quality.unwelded {
+        lines.push(
+            "the surface is not welded: most of its cells share no corner with another and move apart; filling it with repair = true (--fill with --repair) \
+             welds it and makes a solid of what it encloses"
+                .into(),
+        );
+    }
     if let Some(count) = quality.pieces.filter(|count| *count > 1) {
         lines.push(format!("the mesh has {count} pieces that share no node"));
     }

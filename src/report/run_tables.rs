@@ -5,7 +5,7 @@ use super::frequencies::frequencies;
 use super::json::Report;
 use super::load_record::LoadRecord;
 use super::motion::motions;
-use super::overview::{loads, measured, overview};
+use super::overview::{loads, measured, overview, standard};
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::Third;
 use super::table::{Cell, Column, Table};
@@ -77,7 +77,7 @@ fn errors(report: &Report) -> Table {
     let is_read = |load: usize| report.gauge.get(load).is_some_and(Option::is_some);
     let mut columns = vec![Column::words("fit")];
     for (i, load) in loads.iter().enumerate() {
-        let standard = measured(report, &load.name).map_or("", |known| known.standard.heading());
+        let standard = standard(report, &load.name);
         let column = |title| Column::numbers(title).unit("%").group(format!("{}{standard}", load.name));
         columns.extend(["e_rms", "e_max", "e_tip", "e_energy"].map(column));
         if is_read(i) {

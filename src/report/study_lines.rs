@@ -7,7 +7,7 @@ use crate::study::{CaseRecord, ComparedCase, Comparing, MethodRecord};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -48,6 +48,19 @@ pub trait Line: Serialize + DeserializeOwned {
     fn line(&self) -> String {
         serde_json::to_string(self).expect("keys are text") + "\n"
     }
+}
+
+/// The names of what differs between two lists of names with sums; `None` of sums alone, which do not say it.
+fn changed(found: &str, expected: &str) -> Option<String> {
+    let parts = |text: &str| -> BTreeMap<String, String> {
+        let part = |part: &str| part.rsplit_once(' ').map(|(name, sum)| (name.to_string(), sum.to_string()));
+        text.split("; ").filter_map(part).collect()
+    };
+    let (found, expected) = (parts(found), parts(expected));
+    let names: BTreeSet<&String> = found.keys().chain(expected.keys()).collect();
+    let other = names.into_iter().filter(|name| found.get(*name) != expected.get(*name));
+    let other: Vec<&str> = other.map(String::as_str).collect();
+    (!found.is_empty() && !other.is_empty()).then(|| other.join(", "))
 }
 
 /// What tells a study with these values from others.
@@ -183,9 +196,13 @@ impl<R: Line> StudyLines<R> {
             // Studies that are no longer asked for stay in the file.
             let Some(sum) = expected(&mark) else { continue };
             if record.inputs() != sum {
-                let words = "expected a study of this file and those that it names, found one of others, or of these before a change or by \
-                             another version: choose another folder";
-                return Err(fault(words.into()));
+                let found = match changed(record.inputs(), &sum) {
+                    Some(names) => format!("one with another {names}"),
+                    None => "one of others, or of these before a change or by another version".into(),
+                };
+                return Err(fault(format!(
+                    "expected a study of this file and those that it names, found {found}: choose another folder"
+                )));
             }
             self.records.insert(mark, record);
         }

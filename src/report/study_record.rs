@@ -27,7 +27,7 @@ impl StudyRecord {
         let report = |outcome: &Outcome| serde_json::to_value(Report::of(outcome)).expect("keys are text");
         StudyRecord {
             settings: study.values(),
-            inputs: format!("{:016x}", sweep.sum(study)),
+            inputs: sweep.inputs(study),
             report: outcome.as_ref().ok().map(report),
             error: outcome.as_ref().err().map(|error| error.to_string()),
         }
@@ -42,7 +42,7 @@ impl StudyRecord {
     pub fn sums(sweep: &Sweep) -> impl Fn(&str) -> Option<String> + use<'_> {
         let places: HashMap<String, usize> =
             sweep.studies().iter().enumerate().map(|(i, study)| (mark_of(&study.values()), i)).collect();
-        move |mark| places.get(mark).map(|&place| format!("{:016x}", sweep.sum(&sweep.studies()[place])))
+        move |mark| places.get(mark).map(|&place| sweep.inputs(&sweep.studies()[place]))
     }
 }
 

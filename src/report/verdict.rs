@@ -1,11 +1,13 @@
 //! What a reader must know first of a network, in a few words.
 
-use super::linear_theory::distrust;
+use super::linear_theory::{bends_too_little, distrust};
 use super::materials::{difference, is_material};
 use crate::study::{FitOutcome, Outcome, locks_at};
 
 /// A network or the finite elements whose cells lock.
-const LOCKS: &str = "locks";
+pub(super) const LOCKS: &str = "locks";
+/// The finite elements of a body that bends and is one cell across.
+pub(super) const TOO_STIFF: &str = "too stiff";
 
 /// The dearest that is true of a network: that no figure is to be trusted, that it does not stand or has no equilibrium, that cells are inverted,
 /// that constants are not the optimum, that it locks, that it is not the material; otherwise its status.
@@ -36,5 +38,11 @@ pub(super) fn finite_elements_verdict(outcome: &Outcome) -> String {
     if distrust(outcome).is_some() {
         return "not trusted".into();
     }
-    locks_at(&outcome.mesh, &outcome.material).map_or(String::new(), |_| LOCKS.into())
+    if locks_at(&outcome.mesh, &outcome.material).is_some() {
+        LOCKS.into()
+    } else if bends_too_little(outcome) {
+        TOO_STIFF.into()
+    } else {
+        String::new()
+    }
 }

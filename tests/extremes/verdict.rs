@@ -71,7 +71,7 @@ pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
     }
     let mut is_trusted = outcome.fits.iter().all(|fit| ["stable", "converged", "fitted"].contains(&fit.status()));
     is_trusted &= models().all(|model| model.ending == MotionEnding::Complete && model.unsolved == 0);
-    is_trusted &= outcome.frequencies.iter().all(|model| model.frequencies.is_some());
+    is_trusted &= outcome.frequencies.iter().all(|model| model.frequencies.is_some() || model.consistent.is_some());
     is_trusted &= outcome.fits.iter().all(|fit| fit.unreached == 0);
     let masses = outcome.masses.iter().flatten();
     if let Some(mass) = masses.copied().find(|m| !m.is_finite()) {

@@ -181,11 +181,28 @@ fn a_sweep_does_not_go_on_from_other_inputs() {
         write(name, text);
         let output = sweep(" --resume");
         assert_eq!(output.status.code(), Some(2), "{name}: {}", said(&output));
-        assert!(said(&output).contains("of this file and those that it names"), "{}", said(&output));
+        let words =
+            format!("of this file and those that it names, found one with another {name}: choose another folder");
+        assert!(said(&output).contains(&words), "{}", said(&output));
         match before {
             Some(bytes) => fs::write(folder.join(name), bytes).unwrap(),
             None => fs::remove_file(folder.join(name)).unwrap(),
         }
         assert!(sweep(" --resume").status.success());
     }
+    let output = sweep(" --resume --set material.young=2e4");
+    assert!(said(&output).contains("found one with another --set: choose"), "{}", said(&output));
+    let text = fs::read_to_string(folder.join("s.toml")).unwrap();
+    write("s.toml", &text.replace("1e4", "3e4"));
+    assert!(
+        said(&sweep(" --resume")).contains("found one with another scene: choose"),
+        "{}",
+        said(&sweep(" --resume"))
+    );
+    // More values of the sweep are another sweep of the same studies, also from another folder.
+    write("s.toml", &text.replace("0.2]", "0.2, 0.3]"));
+    let more = springfit(Path::new("/"), &format!("sweep {0}/s.toml --out {0}/out --resume", folder.display()))
+        .output()
+        .unwrap();
+    assert!(more.status.success(), "{}", said(&more));
 }

@@ -157,6 +157,11 @@ fn cells_that_are_no_part_of_the_body_are_counted() {
     let notes = mesh.annotations.notes().join("\n");
     assert!(notes.contains("that they make: MASS (1), 2 lines of REBAR, 1 quadrangle of SKIN"), "{notes}");
     assert!(notes.contains("not taken from it: *BOUNDARY (2), *CLOAD (1)"), "{notes}");
+    // Polygons are no sides of cells, also where they have a label.
+    let grid = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n\
+                CELLS 3 20\n8 0 1 2 3 4 5 6 7\n4 0 1 2 3\n5 0 1 2 3 4\nCELL_TYPES 3\n12\n9\n7\nCELL_DATA 3\nSCALARS part int 1\nLOOKUP_TABLE default\n1 2 3\n";
+    let notes = read(grid, "vtk").annotations.notes().join("\n");
+    assert!(notes.contains("that they make: 1 polygon of part=3") && !notes.contains("quadrangle"), "{notes}");
     let (folder, deck_file) = (tempfile::tempdir().unwrap(), "rebar.inp");
     fs::write(folder.path().join(deck_file), deck(1) + more).unwrap();
     let scene = "mesh = { file = \"rebar.inp\" }\nfit = [{ objective = \"exact\" }]\n[[material]]\nyoung = 1e9\npoisson = 0.2\n\
@@ -309,7 +314,13 @@ fn instances_of_a_part_are_pieces_with_groups_of_their_own() {
     let assembly = "*ASSEMBLY, NAME=A\n*INSTANCE, NAME=one, PART=Cube\n*END INSTANCE\n*INSTANCE, NAME=two, PART=Cube\n5., 0., 0.\n\
                     5., 0., 0., 5., 0., 1., 90.\n*END INSTANCE\n*NODE\n1, 9., 9., 9.\n*NSET, NSET=ends, INSTANCE=one\n5\n*NSET, NSET=ends, INSTANCE=two\n5\n\
                     *NSET, NSET=lefts\none.Left, two.Left\n*NSET, NSET=reference\n1\n*ELSET, ELSET=both, INSTANCE=two\n1\n*SURFACE, NAME=top, TYPE=ELEMENT\n\
-                    both, S1\n*END ASSEMBLY\n";
+                    both, S1\n*ELSET, ELSET=whole, INSTANCE=one\n1\n*SURFACE, NAME=Base\nwhole, \n*SURFACE, NAME=union, COMBINE=UNION\ntop, Base\n*END ASSEMBLY\n";
+    let combined = |way: &str| parsed(&(part.clone() + &assembly.replace("UNION\ntop, Base", way)), "inp").unwrap_err();
+    assert!(combined("UNION\ntop, Bases").contains("expected a surface that is listed before, found \"Bases\""));
+    assert!(
+        combined("DIFFERENCE\ntop, Base")
+            .contains("*SURFACE: expected COMBINE=UNION, found COMBINE=DIFFERENCE: list the sides")
+    );
     let mesh = read(&(part + assembly), "inp");
     assert_eq!((mesh.cell_count(), mesh.point_count(), mesh.quality.pieces), (2, 16, Some(2)));
     let points = |name: &str| -> Vec<Vec<f64>> {
@@ -320,6 +331,7 @@ fn instances_of_a_part_are_pieces_with_groups_of_their_own() {
     assert_eq!((points("lefts").len(), points("one.Left").len(), points("two.Left").len()), (8, 4, 4));
     assert!(!mesh.groups.contains_key("reference") && !mesh.groups.contains_key("Left"));
     assert_eq!((mesh.groups["both"].cells.len(), mesh.groups["top"].sides.len()), (1, 1));
+    assert_eq!((mesh.groups["Base"].sides.len(), mesh.groups["union"].sides.len()), (6, 7));
 }
 
 /// Parts of files that no mesh needs, damaged or cut, and what other programs write otherwise.
@@ -401,10 +413,60 @@ fn content_decides_and_not_the_ending() {
         ("(0 \"Fluent\")\n(2 3)\n", "Fluent", "--input-format ansys"),
         ("MESH dimension 3 ElemType Tetrahedra Nnode 4\n", "GiD", "GiD's export"),
         ("*KEYWORD\n*NODE\n", "LS-DYNA", "LS-PrePost"),
+        (
+            "<?xml version=\"1.0\"?>\n<VTKFile version=\"0.1\" type=\"Collection\">\n",
+            "a list of files",
+            "name one of the files",
+        ),
+        ("<VTKFile type='PUnstructuredGrid'>\n", "a list of files", "name one of the files"),
+        ("<VTKFile type=\"vtkMultiBlockDataSet\">\n", "a list of files", "name one of the files"),
     ] {
         for ending in ["inp", "msh", "bdf", "txt"] {
             let said = parsed(text, ending).unwrap_err();
             assert!(said.contains(name) && said.contains(way), "{ending}: {said}");
+        }
+    }
+}
+
+/// Pieces that share no node and lie in each other are told, and pieces that touch are not.
+#[test]
+fn pieces_inside_each_other_are_told() {
+    let two = |kind: usize, shift: f64| {
+        let (cell, corners): (u8, &[[f64; 3]]) = match kind {
+            0 => (10, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            _ => (
+                12,
+                &[
+                    [0., 0., 0.],
+                    [1., 0., 0.],
+                    [1., 1., 0.],
+                    [0., 1., 0.],
+                    [0., 0., 1.],
+                    [1., 0., 1.],
+                    [1., 1., 1.],
+                    [0., 1., 1.],
+                ],
+            ),
+        };
+        let n = corners.len();
+        let mut text =
+            format!("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n", 2 * n);
+        for s in [0.0, shift] {
+            corners.iter().for_each(|x| text += &format!("{} {} {}\n", x[0] + s, x[1], x[2]));
+        }
+        let nodes = |first: usize| (first..first + n).map(|p| p.to_string()).collect::<Vec<_>>().join(" ");
+        text += &format!("CELLS 2 {}\n{n} {}\n{n} {}\nCELL_TYPES 2\n{cell} {cell}\n", 2 * n + 2, nodes(0), nodes(n));
+        springfit::report::mesh_notes(&read(&text, "vtk")).join("\n")
+    };
+    let words = "have parts of another piece of the mesh inside: the body is there twice";
+    for kind in [0, 1] {
+        assert!(
+            two(kind, 0.3).contains(&format!("2 cells {words}")) || two(kind, 0.3).contains("1 cell has parts"),
+            "{}",
+            two(kind, 0.3)
+        );
+        for apart in [1.0, 1.5] {
+            assert!(!two(kind, apart).contains("of another piece"), "{kind}: {}", two(kind, apart));
         }
     }
 }

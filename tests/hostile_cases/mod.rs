@@ -189,16 +189,61 @@ fn what_errors_are_relative_to_is_said() {
         said.contains("those of the finer body with them: errors are relative to what is still too stiff"),
         "{said}"
     );
+    let said = run(&(LOCKING.to_string() + "[reference]\nfrom = \"cells\"\n"));
+    assert!(said.contains("shear, cells"), "{said}");
     let point =
         LOCKING.replace("group = \"xmax\"\ntraction", "where = \"x > 0.00999 && y > 0.00099 && z > 0.00099\"\nforce");
+    // What is not trusted is told before what it is relative to.
+    let point = point.replace("[0, 10, 0]", "[0, 1e-9, 0]");
     let said = run(&point);
     assert!(said.contains("acts on points alone") && !said.contains("quadratic elements on"), "{said}");
+    assert!(said.contains("shear, cells"), "{said}");
     let large = "mesh = { box = { element = \"tet4\", size = [1, 0.1, 0.1], cells = [80, 8, 8] } }\nmaterial = { young = 1e4, poisson = 0.45 }\n\
                  fit = [{ objective = \"exact\" }]\nfix = [{ group = \"xmin\" }]\nload = [{ group = \"xmax\", traction = [1, 0, 0] }]\n";
     let said = run(large);
     assert!(
-        said.contains("quadratic elements would take more than 3 times as long") && !said.contains(", quadratic"),
+        said.contains("quadratic elements would take more than 3 times as long") && said.contains("load 1, cells"),
         "{said}"
+    );
+}
+
+/// A bar of one cell across that is bent is compared with quadratic elements, with Euler's and Timoshenko's deflection in reach, and one that is pulled with
+/// its cells.
+#[test]
+fn a_bent_bar_of_one_cell_across_is_compared_with_quadratic_elements() {
+    let text = |element: &str, traction: &str, more: &str| {
+        format!(
+            "mesh = {{ box = {{ element = \"{element}\", size = [0.2, 0.02, 0.01], cells = [10, 2, 1] }} }}\nmaterial = {{ young = 1e6, poisson = 0.3 }}\n\
+             fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\nload = [{{ name = \"load\", group = \"xmax\", traction = {traction} }}]\n{more}"
+        )
+    };
+    let solved = |element: &str, traction: &str, more: &str| {
+        run(&Scene::parse(&text(element, traction, more), Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap()
+    };
+    for element in ["tet4", "hex8"] {
+        let bent = solved(element, "[0, 0, 1]", "");
+        let measured = bent.loads[0].measured.unwrap();
+        assert!(matches!(measured.standard, Standard::Quadratic | Standard::QuadraticHalved), "{measured:?}");
+        // The exact network is as stiff as the cells: w = F L³/(3 E I) with F = 1 Pa · A, I = A h²/12 is the deflection of a slender bar.
+        let deflection = 0.2f64.powi(3) / (3.0 * 1e6 * 0.01f64.powi(2) / 12.0);
+        let found = bent.loads[0].fem.iter().skip(2).step_by(3).copied().fold(0.0, f64::max);
+        let off = 100.0 * (1.0 - found / deflection);
+        let error = bent.fits[0].loads[0].error.unwrap().tip;
+        assert!(error > 20.0 && (error - off).abs() < 3.0, "{element}: {error} {off}");
+        assert!(solved(element, "[1, 0, 0]", "").loads[0].measured.is_none());
+        assert!(solved(element, "[0, 0, 1]", "reference = { from = \"cells\" }\n").loads[0].measured.is_none());
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let said = |more: &str| {
+        fs::write(folder.path().join("s.toml"), text("tet4", "[0, 0, 1]", more)).unwrap();
+        let (output, said) = springfit(folder.path(), "run s.toml --out out");
+        String::from_utf8_lossy(&output.stdout).into_owned() + &said
+    };
+    let (judged, of_cells) = (said(""), said("reference = { from = \"cells\" }\n"));
+    assert!(judged.contains("load, quadratic") && judged.contains("too stiff"), "{judged}");
+    assert!(
+        of_cells.contains("load, cells") && of_cells.contains("about one cell across and bends under load"),
+        "{of_cells}"
     );
 }
 

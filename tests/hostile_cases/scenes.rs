@@ -89,6 +89,19 @@ fn conditions_that_select_nothing_or_all_are_told() {
     assert!(!notes(&at("x < 0.3")).contains("cuts"), "{said}");
 }
 
+/// A thickness that the deck states is offered where none is given.
+#[test]
+fn the_thickness_of_a_deck_is_offered() {
+    let folder = tempfile::tempdir().unwrap();
+    let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n*SHELL SECTION, ELSET=P, MATERIAL=S\n0.002\n";
+    fs::write(folder.path().join("plate.inp"), deck).unwrap();
+    let text = "[mesh]\nfile = \"plate.inp\"\n[material]\nyoung = 1e9\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
+    let said = |text: &str| springfit::report::notes(&outcome(text, folder.path()).unwrap()).join("\n");
+    let words = "assumed to be 1 m; \"thickness\" in the material sets it, and the file states 0.002 in its unit";
+    assert!(said(text).contains(words), "{}", said(text));
+    assert!(!said(&text.replace("poisson", "thickness = 0.002\npoisson")).contains("assumed"), "{}", said(text));
+}
+
 /// A grid of E from 10 to 40 kPa along x, in the unit of the file, on a body of 40 mm.
 fn map(unit: f64, steps: usize) -> String {
     let mut text = String::from("x,y,z,E\n");
@@ -121,7 +134,9 @@ fn material_data_in_another_unit_are_refused() {
         assert!((least - 11875.0).abs() < 2000.0 && (most - 38125.0).abs() < 2000.0, "{steps}: {least} to {most}");
         let far = "map.csv: scale: expected places about as far apart as the body is long";
         let near = "expected values around every cell";
-        for (scale, words) in [("", far), (", scale = \"km\"", far), (", scale = \"um\"", near)] {
+        for (scale, words) in
+            [("", far), (", scale = \"cm\"", far), (", scale = \"km\"", far), (", scale = \"um\"", near)]
+        {
             let said = refused(&scene(scale), folder.path());
             assert!(said.contains(words), "{scale}: {said}");
         }

@@ -3,6 +3,7 @@
 use springfit::element::Element;
 use springfit::error::Error;
 use springfit::material::{Energy, Material};
+use springfit::mesh::{Mesh, MeshSource};
 use springfit::study::{Scene, Setting};
 use std::fs;
 use std::path::Path;
@@ -63,6 +64,29 @@ fn long_keys_names_and_expressions_of_files_are_cut() {
         }
     }
     println!("{checked} messages");
+}
+
+/// Names of groups are listed whole, and are refused where they could not be.
+#[test]
+fn long_names_of_groups_are_refused() {
+    let deck = |name: &str| {
+        format!(
+            "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4,ELSET={name}\n1,1,2,3,4\n*NSET,NSET=N{name}\n1\n"
+        )
+    };
+    let read = |length: usize| {
+        let source = MeshSource::parse(deck(&long(length)).as_bytes(), "inp").unwrap();
+        Mesh::resolve(&source, &[], 1.0)
+    };
+    assert_eq!(read(999).unwrap().groups.len(), 2);
+    for length in [1000, 1_000_000] {
+        let error = read(length).unwrap_err().to_string();
+        is_short(&error);
+        assert!(
+            error.contains(&format!("groups: expected names of at most 1000 characters, found one of {}", length + 1)),
+            "{error}"
+        );
+    }
 }
 
 /// A list of known names is not cut, and its words are not either.

@@ -43,7 +43,11 @@ pub(super) fn content(bytes: &[u8]) -> Option<Content> {
         return known("legacy VTK");
     }
     if first.starts_with('<') && text.contains("<vtkfile") {
-        return known("VTK XML");
+        return if lists_files(&text) {
+            Some(Content::Other("a list of files of VTK", LISTED))
+        } else {
+            known("VTK XML")
+        };
     }
     if first == "ply" {
         return known("PLY");
@@ -74,6 +78,18 @@ pub(super) fn content(bytes: &[u8]) -> Option<Content> {
         return Some(Content::Other("a mesh of AVS (UCD)", way));
     }
     None
+}
+
+/// The way from a file that lists others.
+const LISTED: &str = "none is needed: name one of the files that it lists";
+
+/// Whether an XML file of VTK has no cells of its own, but names of files: collections, blocks, and parallel pieces.
+fn lists_files(text: &str) -> bool {
+    let kinds = ["collection", "vtkmultiblock", "vtkpartitioned", "vtkhierarchical", "vtkoverlapping"];
+    let parallel = ["punstructuredgrid", "ppolydata", "pimagedata", "pstructuredgrid", "prectilineargrid"];
+    let kind = text.split("<vtkfile").nth(1).and_then(|rest| rest.split('>').next()).unwrap_or_default();
+    let kind = kind.split("type=").nth(1).map_or("", |value| value.trim_start_matches(['"', '\'']));
+    kinds.iter().chain(&parallel).any(|name| kind.starts_with(name))
 }
 
 /// Keywords begin with a star, and comments with two.

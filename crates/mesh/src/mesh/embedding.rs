@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::springs::distance;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The shape functions of the cells of a mesh at given points: with `P_pa` the function of its point a at point p, values at
 /// its points become `Σ_a P_pa u_a` at the given points, and forces on these become `Σ_p P_pa f_p` on its own points, which do the
@@ -38,6 +38,8 @@ const ITERATIONS: usize = 30;
 /// A shape function below this vanishes at a point: places in cells are found to rounding, and cells that were halved six times have
 /// functions of 1/64.
 const VANISHING: f64 = 1e-6;
+/// A point that is as far inside a cell, relative to the size of the cell, is not on a side that two bodies share, but for coarse digits.
+const DEEP: f64 = 1e-3;
 
 impl Embedding {
     /// Finds the cells of `points`, `[points × dimension]`, m.
@@ -100,6 +102,23 @@ impl Embedding {
     }
 }
 
+/// The cells of a mesh that have a part of another piece inside them: a point, the middle of a cell, or a place half way from there to a node.
+/// `piece_of` is the piece of each point.
+pub(super) fn cells_of_two_pieces(mesh: &Mesh, piece_of: &[usize]) -> HashSet<CellIndex> {
+    let bins = Bins::of(mesh);
+    let cells: Vec<CellIndex> = mesh.cell_indices().filter(|cell| mesh.is_of_body(*cell)).collect();
+    let piece = |cell: CellIndex| piece_of[mesh.cell_nodes(cell)[0]];
+    let at = |x: &[f64], own: usize| bins.around(mesh, x, |cell| piece(cell) != own);
+    let of_points = (0..mesh.point_count()).into_par_iter().filter_map(|p| at(mesh.point(p), piece_of[p]));
+    let of_cell = |&cell: &CellIndex| {
+        let middle = mesh.mean_place(mesh.cell_nodes(cell));
+        let half_way = |&p: &usize| mesh.point(p).iter().zip(&middle).map(|(a, b)| 0.5 * (a + b)).collect::<Vec<f64>>();
+        let places = std::iter::once(middle.clone()).chain(mesh.cell_nodes(cell).iter().map(half_way));
+        places.filter_map(|x| at(&x, piece(cell))).collect::<Vec<CellIndex>>()
+    };
+    of_points.chain(cells.par_iter().flat_map_iter(of_cell)).collect()
+}
+
 /// The shape functions at a point that do not vanish, the cell, and the index of the least multiple of it that has the point.
 type Found = (Vec<(usize, f64)>, CellIndex, usize);
 
@@ -129,6 +148,20 @@ impl Bins {
             }
         }
         Bins { width: mean, boxes, cells }
+    }
+
+    /// An accepted cell that has x inside, farther from its sides than [`DEEP`].
+    fn around(&self, mesh: &Mesh, x: &[f64], accepts: impl Fn(CellIndex) -> bool) -> Option<CellIndex> {
+        let place = spatial(x);
+        let near = self.cells.get(&bin(&place, self.width))?.iter().map(|&index| &self.boxes[index]);
+        let is_deep = |of: &&CellBox| {
+            let cell = mesh.blocks[of.cell.block].element.cell;
+            local(mesh, of.cell, x).is_some_and(|(_, at)| {
+                let grown: Vec<f64> = at.iter().zip(cell.centre()).map(|(a, c)| c + (a - c) / (1.0 - DEEP)).collect();
+                cell.contains(&grown)
+            })
+        };
+        near.filter(|of| of.least(&place) == 0 && accepts(of.cell)).find(is_deep).map(|of| of.cell)
     }
 
     /// The shape functions at x of the cell that has it, or is nearest to having it, and whether it has it. Cells whose boxes have x come

@@ -11,13 +11,14 @@ use std::collections::{BTreeMap, HashMap};
 type Edge = [usize; 2];
 
 impl Mesh {
-    /// The middle of an edge that one of these sides has and no other continues, `[dimension]`, m, and the number of such edges; in the plane the
-    /// points at which a line of sides ends. `None` if the sides close a space.
-    pub fn rim(&self, sides: &[SideIndex]) -> Option<(Vec<f64>, usize)> {
+    /// The edges that one of these sides has and no other continues, each by its two points; in the plane the points at which a line of sides ends.
+    /// There are none if the sides close a space.
+    pub fn rim(&self, sides: &[SideIndex]) -> Vec<Vec<usize>> {
         // How much more often a part of the rim is passed forwards than backwards: of an edge of a solid, or of a point of the plane.
         let mut passed: BTreeMap<Vec<usize>, i64> = BTreeMap::new();
         for side in sides {
-            let corners = self.side_corners(side)?;
+            // Without nodes at its corners an element has no edges either.
+            let Some(corners) = self.side_corners(side) else { continue };
             if self.dimension == 2 {
                 *passed.entry(vec![corners[0]]).or_default() += 1;
                 *passed.entry(vec![corners[1]]).or_default() -= 1;
@@ -27,9 +28,7 @@ impl Mesh {
                 *passed.entry(vec![a, b]).or_default() += if is_forward { 1 } else { -1 };
             }
         }
-        let mut open = passed.into_iter().filter(|(_, times)| *times != 0).map(|(points, _)| points);
-        let first = open.next()?;
-        Some((self.mean_place(&first), 1 + open.count()))
+        passed.into_iter().filter(|(_, times)| *times != 0).map(|(points, _)| points).collect()
     }
 
     /// The middle of the first of these sides that has cells on both sides of it, `[dimension]`, m, and the number of such sides; `None` if all are on the

@@ -1,5 +1,6 @@
-//! Cells that lie over others on the same side of what they share.
+//! Cells that lie over others: on the same side of what they share, or in another piece of the mesh.
 
+use super::embedding::cells_of_two_pieces;
 use super::mesh::{CellIndex, Mesh, SideIndex};
 use super::places::spatial;
 use std::collections::HashSet;
@@ -7,7 +8,23 @@ use std::collections::HashSet;
 /// Directions whose angle has a larger cosine are the same: 4e-5 rad, so that sheets that touch at a sharp edge are two.
 const SAME: f64 = 1.0 - 1e-9;
 
+/// The largest mesh whose pieces are compared: it takes about a second.
+const MOST_CELLS: usize = 300_000;
+
 impl Mesh {
+    /// The number of cells that have points or middles of cells of another of these pieces inside them; 0 of surfaces and curves in space, and
+    /// of larger meshes than [`MOST_CELLS`].
+    pub(super) fn crossing(&self, pieces: &[Vec<usize>]) -> usize {
+        if pieces.len() < 2 || self.cell_dimension() < self.dimension || self.cell_count() > MOST_CELLS {
+            return 0;
+        }
+        let mut piece_of = vec![0; self.point_count()];
+        for (piece, points) in pieces.iter().enumerate() {
+            points.iter().for_each(|&p| piece_of[p] = piece);
+        }
+        cells_of_two_pieces(self, &piece_of).len()
+    }
+
     /// Adds the cells of `sides`, which have the same points, that lie over another of them. In solids pairs are not tested: their cells are on
     /// both sides of what they share unless some are reversed, which is tested apart.
     pub(super) fn add_overlapping(&self, sides: &[SideIndex], found: &mut HashSet<CellIndex>) {

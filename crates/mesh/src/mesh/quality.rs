@@ -89,8 +89,12 @@ pub struct Quality {
     pub hanging: Option<usize>,
     /// The number of cells that lie over others on the same side of an edge or a face that they share.
     pub overlapping: usize,
+    /// The number of cells that have points or middles of cells of another piece of the mesh inside them.
+    pub crossing: usize,
     /// The fill of a surface, beside it.
     pub filled: Option<Filled>,
+    /// Whether most cells of a surface in space share no node with another, though they have corners at the same places or on the same edges.
+    pub unwelded: bool,
     /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
     pub pieces: Option<usize>,
 }

@@ -62,6 +62,7 @@ impl Mesh {
             }
             _ => 3,
         };
+        check_names(source)?;
         check_size(source.points.iter().flatten().map(|x| x * scale))?;
         let points = source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect();
         let annotations = source.annotations.clone();
@@ -113,7 +114,7 @@ impl Mesh {
             let is_attached = is_attached(block);
             let cells = block.connectivity.chunks_exact(block.nodes_per_cell);
             let is_left_out = |nodes: &&[usize]| !(block.is_marker && nodes.iter().all(|&p| is_of_cell[p]));
-            let left_out = match block.is_marker && block.groups.is_empty() {
+            let left_out = match block.is_marker && (block.groups.is_empty() || block.is_of_polygons()) {
                 _ if is_attached => 0,
                 true => cells.len(),
                 false => cells.filter(is_left_out).count(),
@@ -165,7 +166,14 @@ impl Mesh {
         let mut overlapping = HashSet::new();
         self.quality.hanging = places.map(|places| self.hanging(&places, &mut overlapping));
         self.quality.overlapping = overlapping.len();
-        self.quality.pieces = Some(self.pieces().len());
+        let pieces = self.pieces();
+        self.quality.crossing = self.crossing(&pieces);
+        let pieces = pieces.len();
+        self.quality.pieces = Some(pieces);
+        let touch = |count: Option<usize>| count.is_some_and(|count| count > 0);
+        self.quality.unwelded = (self.cell_dimension(), self.dimension) == (2, 3)
+            && 2 * pieces > self.cell_count()
+            && (touch(self.quality.coincident) || touch(self.quality.hanging));
         Ok(())
     }
 
@@ -269,6 +277,22 @@ impl Mesh {
         let cells: Vec<CellIndex> = faulty.into_iter().map(|(cell, _)| cell).collect();
         let new = self.remove(&cells)?;
         Ok(turned.into_iter().map(|at| CellIndex { cell: new[at.block][at.cell], ..at }).collect())
+    }
+}
+
+/// The longest name of a group, characters: tables and scenes list names whole.
+const LONGEST_NAME: usize = 1000;
+
+/// That the names of groups can be listed.
+fn check_names(source: &MeshSource) -> Result<()> {
+    let lengths = source.blocks.iter().flat_map(|block| &block.groups).map(|name| (name.chars().count(), name));
+    match lengths.max().filter(|(length, _)| *length > LONGEST_NAME) {
+        Some((length, name)) => {
+            let beginning: String = name.chars().take(40).collect();
+            let found = format!("one of {length}, which begins with \"{beginning}\"");
+            Err(Error::expected("groups", format!("names of at most {LONGEST_NAME} characters"), found))
+        }
+        None => Ok(()),
     }
 }
 

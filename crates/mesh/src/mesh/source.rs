@@ -50,14 +50,19 @@ pub struct SourceBlock {
 }
 
 impl SourceBlock {
+    /// Whether the cells are polygons, which no cell has as sides.
+    pub(super) fn is_of_polygons(&self) -> bool {
+        self.dimension == 2 && ![3, 6, 7, 10, 4, 8, 9, 16].contains(&self.nodes_per_cell)
+    }
+
     /// What one of the cells is, in words, with the groups that it is in.
     pub(super) fn title(&self) -> String {
         let shape = match (self.dimension, self.nodes_per_cell) {
             (0, _) => "point",
             (1, _) => "line",
+            (2, _) if self.is_of_polygons() => "polygon",
             (2, 3 | 6 | 7 | 10) => "triangle",
-            (2, 4 | 8 | 9 | 16) => "quadrangle",
-            (2, _) => "polygon",
+            (2, _) => "quadrangle",
             _ => "solid cell",
         };
         match &self.groups[..] {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Section};
 
 /// The constants of a material, as an input gives them.
 #[derive(Debug, Clone, Copy)]
@@ -64,17 +64,23 @@ impl BodyConstants {
     }
 }
 
-/// A sentence about what is assumed of the body because no input gives it, if anything is.
+/// A sentence about what is assumed of the body because no input gives it, if anything is; it has what a deck states.
 pub fn assumed(mesh: &Mesh, thickness: Option<f64>, area: Option<f64>) -> Option<String> {
-    match mesh.cell_dimension() {
+    let (words, key, of): (_, _, fn(&Section) -> Option<f64>) = match mesh.cell_dimension() {
         2 if thickness.is_none() => {
-            Some("the thickness of the plane body is assumed to be 1 m; \"thickness\" in the material sets it".into())
+            ("the thickness of the plane body is assumed to be 1 m", "thickness", |s| s.thickness)
         }
-        1 if area.is_none() => {
-            Some("the cross-section of the rods is assumed to be 1 m²; \"area\" in the material sets it".into())
-        }
-        _ => None,
-    }
+        1 if area.is_none() => ("the cross-section of the rods is assumed to be 1 m²", "area", |s| s.area),
+        _ => return None,
+    };
+    let stated: Vec<f64> = mesh.annotations.sections.iter().filter_map(of).collect();
+    let ends = stated.iter().copied().reduce(f64::min).zip(stated.iter().copied().reduce(f64::max));
+    let stated = match ends {
+        None => String::new(),
+        Some((least, most)) if least == most => format!(", and the file states {least} in its unit"),
+        Some((least, most)) => format!(", and the file states {least} to {most} in its unit"),
+    };
+    Some(format!("{words}; \"{key}\" in the material sets it{stated}"))
 }
 
 fn is_surface(mesh: &Mesh) -> bool {

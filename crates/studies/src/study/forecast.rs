@@ -36,6 +36,9 @@ const ASKED_OF_NETWORK: usize = 200;
 /// Bytes of a spring of a network, and of what its fit holds at the same time.
 const SPRING: f64 = 100.0;
 
+/// Bytes that a run has whatever its size, most of them of the program itself.
+const OWN: f64 = 3e7;
+
 /// A stage with what it will take.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExpectedStage {
@@ -197,9 +200,9 @@ impl Forecast {
         self.stages.iter().filter_map(|stage| stage.seconds).sum()
     }
 
-    /// The largest memory of a stage, bytes.
+    /// The largest memory of a stage, with what a run has besides, bytes.
     pub fn bytes(&self) -> f64 {
-        self.stages.iter().filter_map(|stage| stage.bytes).fold(0.0, f64::max)
+        OWN + self.stages.iter().filter_map(|stage| stage.bytes).fold(0.0, f64::max)
     }
 
     /// The stages whose time is not known.

@@ -3,6 +3,7 @@
 use crate::element::Element;
 use crate::material::{MaterialMap, State};
 use crate::mesh::{CellBlock, Mesh};
+use crate::model::Deformation;
 
 /// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
 pub(super) const LOCKS: f64 = 0.4;
@@ -61,4 +62,12 @@ pub fn is_one_cell_across(mesh: &Mesh) -> bool {
     let of_body = mesh.cell_indices().filter(|cell| mesh.is_of_body(*cell));
     let outer = of_body.filter(|cell| mesh.cell_nodes(*cell).iter().all(|&p| is_outer[p])).count();
     2 * outer >= count
+}
+
+/// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.
+const BENDS: f64 = 1.5;
+
+/// Whether a body that is deformed so much bends or is twisted.
+pub fn bends(deformation: Deformation) -> bool {
+    deformation.rotation > BENDS * deformation.strain
 }

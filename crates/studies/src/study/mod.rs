@@ -77,14 +77,14 @@ pub use fits::{
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
 pub use learning::{LearningPoint, learning_curve};
-pub use locking::{is_one_cell_across, locks_at};
+pub use locking::{bends, is_one_cell_across, locks_at};
 pub use masses::{PointMasses, point_masses};
 pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use outcome::{
     BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
     MotionEnding, MotionOutcome, Outcome, Reading, Record, Standard, TimedForce, TimedPull, standing_word,
 };
-pub use own_name::BODY;
+pub use own_name::{BODY, QUADRATIC};
 pub use paper::{
     Column, Index, Paper, PaperRow, PaperTable, Surface, check_experiments, file_stem, heading, run_paper,
     write_experiments,

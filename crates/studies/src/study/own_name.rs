@@ -4,6 +4,8 @@ use crate::error::{Error, Result};
 
 /// The name of the finite elements among the models of a scene.
 pub const BODY: &str = "finite elements";
+/// The name of quadratic elements on the cells of a mesh that lock.
+pub const QUADRATIC: &str = "quadratic elements";
 
 /// Checks that `name` is not among `others`.
 ///

@@ -2,6 +2,7 @@
 
 use super::deck::{Block, Deck, Element};
 use super::keyword::fields;
+use super::model::Surface;
 use super::sets::{On, Patch, Place, Sets};
 use super::surfaces::place;
 use super::types;
@@ -52,6 +53,10 @@ impl Deck {
             Block::Surface(of_nodes) => {
                 self.read_patch(lines, line, of_nodes)?;
                 Block::Surface(of_nodes)
+            }
+            Block::Union => {
+                self.read_union(lines, line)?;
+                Block::Union
             }
             Block::Instance => {
                 self.placement.push(reals(lines, line)?);
@@ -233,6 +238,24 @@ impl Deck {
         };
         let surface = self.model.surfaces.last_mut().expect("a surface has been opened");
         surface.patches.push(Patch { on, place });
+        Ok(())
+    }
+
+    /// Reads a line of a surface that consists of others before it: their names, in an assembly after those of their instances.
+    fn read_union(&mut self, lines: &Lines, line: &[u8]) -> Result<()> {
+        let Some((last, before)) = self.model.surfaces.split_last_mut() else { return Ok(()) };
+        for field in fields(line).filter(|field| !field.is_empty()) {
+            let text = String::from_utf8_lossy(field);
+            let text = text.trim_matches('"');
+            let is_named = |surface: &&Surface| match &surface.instance {
+                None => surface.name.eq_ignore_ascii_case(text),
+                Some(instance) => format!("{instance}.{}", surface.name).eq_ignore_ascii_case(text),
+            };
+            match before.iter().find(is_named) {
+                Some(surface) => last.patches.extend_from_slice(&surface.patches),
+                None => return Err(lines.expected("a surface that is listed before", &quoted(field))),
+            }
+        }
         Ok(())
     }
 

@@ -52,6 +52,8 @@ pub(super) enum Block {
     NodeSet(usize, bool),
     ElementSet(usize, bool),
     Surface(bool),
+    /// The surfaces of which one consists.
+    Union,
     Instance,
     System,
     Datum(Datum),
@@ -167,7 +169,14 @@ impl Deck {
                 if kind == "ELEMENT" || kind == "NODE" {
                     let name = keyword.required(lines, "NAME")?.to_string();
                     self.model.surfaces.push(Surface { name, instance: None, line, patches: Vec::new() });
-                    self.block = Block::Surface(kind == "NODE");
+                    self.block = match keyword.value("COMBINE").map(str::to_ascii_uppercase).as_deref() {
+                        None => Block::Surface(kind == "NODE"),
+                        Some("UNION") => Block::Union,
+                        Some(other) => {
+                            let found = format!("COMBINE={other}: list the sides of the surface");
+                            return Err(lines.expected("COMBINE=UNION", &found).of_kind(ErrorKind::Unsupported));
+                        }
+                    };
                 }
             }
             "PART" => {

@@ -89,6 +89,14 @@ impl Filled {
         (!has_layers).then(|| 100.0 * (self.volume / self.surface_volume - 1.0))
     }
 
+    /// Edges that are as long as the body is half thick in the mean, and the two volumes in words, if that of the cells is twice that inside the surface
+    /// or more, or half of it or less.
+    pub(super) fn another_body(&self) -> Option<(f64, String)> {
+        self.excess().filter(|excess| !(-50.0..=100.0).contains(excess))?;
+        let most = self.surface_volume / self.surface_area;
+        Some((most, format!("{:.3e} m³ of {:.3e} m³", self.volume, self.surface_volume)))
+    }
+
     /// That the volume of the cells is far from that inside the surface.
     pub fn far_off(&self) -> Option<String> {
         let excess = self.excess().filter(|excess| excess.abs() > FAR)?;

@@ -107,6 +107,16 @@ impl FillMesh {
             };
             return Err(Error::expected(key, format!("{needs}: {way_out}"), found));
         }
+        if let Some((most, volumes)) = filled.another_body() {
+            let (key, found) = match self.spacing {
+                FillSpacing::Edge(_) => ("cell", format!("edges of {edge:e} m: {volumes}")),
+                FillSpacing::Points(points) => ("points", format!("{points}, edges of {edge:.3e} m: {volumes}")),
+            };
+            let expected = format!(
+                "cells with the volume of the surface within a factor of two, such as edges of at most {most:.1e} m"
+            );
+            return Err(Error::expected(key, expected, found));
+        }
         let sides = group(&mut mesh)?;
         filled.stepped_area = (self.boundary == FillBoundary::Stepped).then(|| sides as f64 * self.side_area(edge));
         filled.asked = match self.spacing {

@@ -115,7 +115,8 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
             }
             let Some((_, node_count)) = shape(cell_type) else {
                 return Err(Error::new(format!(
-                    "cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown"
+                    "cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown; ParaView's filter Tetrahedralize makes tetrahedra of \
+                     all cells that VTK knows"
                 )));
             };
             let end = usize::try_from(end).unwrap_or(usize::MAX);

@@ -14,7 +14,10 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
 }
 
 /// The support of the `[[fix]]` entries.
-pub(super) fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
+///
+/// # Errors
+/// A part of the mesh is empty or unknown, or an axis is none of the space.
+pub fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);
     for (i, Hold { part, axes, clamp }) in scene.supports().iter().enumerate() {
@@ -187,10 +190,11 @@ fn acting(
     };
     let cavity = match action {
         Action::Volume(volume) => {
-            let cavity = Cavity::new(mesh, &selection, *volume, weights).map_err(|e| match points.is_empty() {
-                true => part.without_members(e.problem(), mesh),
-                false => e,
-            })?;
+            let cavity =
+                Cavity::new(mesh, &selection, *volume, weights, fixed).map_err(|e| match points.is_empty() {
+                    true => part.without_members(e.problem(), mesh),
+                    false => e,
+                })?;
             let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !fixed.is_fixed(dof));
             if !cavity.sides.points().any(moves) {
                 return Err(Error::at(key, "acts on nothing that can move"));

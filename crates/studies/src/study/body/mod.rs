@@ -17,7 +17,7 @@ mod solution;
 mod truth;
 
 pub use case::Case;
-pub use cases::{applied_cases, load_cases};
+pub use cases::{applied_cases, held, load_cases};
 pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;

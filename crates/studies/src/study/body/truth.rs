@@ -7,10 +7,10 @@ use crate::analysis::metrics::displacement_error;
 use crate::error::Result;
 use crate::material::MaterialMap;
 use crate::mesh::{Carrier, Field, Mesh};
-use crate::model::Action;
+use crate::model::{Action, Deformation};
 use crate::solve::{KnownEquations, factor_cost};
 use crate::study::cost::{COMPARISONS, REFINEMENTS, entries};
-use crate::study::locking::Locking;
+use crate::study::locking::{Locking, bends, is_one_cell_across};
 use crate::study::outcome::Standard;
 use crate::study::progress::Progress;
 use crate::study::scene::{LoadCase, LoadKind, Scene};
@@ -36,23 +36,29 @@ struct Level {
     answers: Vec<FinerAnswer>,
 }
 
-/// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock: on these cells halved, with the difference
-/// from those on the cells themselves as an estimate of their error, as far as that takes at most three times what the finite elements and
-/// the networks take. Returns what must be known of it, one sentence each.
-pub fn judge_by_truth(
+/// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock or a body of one cell across bends under it: on
+/// these cells halved, with the difference from those on the cells themselves as an estimate of their error, as far as that takes at most three
+/// times what the finite elements and the networks take. Their displacements are `body`, by load. Returns what must be known of it, one sentence each.
+pub fn judge_by_truth<'a>(
     scene: &Scene,
     mesh: &Mesh,
     material: &MaterialMap,
     cases: &mut [Case],
+    body: impl Iterator<Item = &'a Vec<f64>>,
     progress: &mut Progress,
 ) -> Vec<String> {
-    let Some(Locking { poisson, .. }) = Locking::of(mesh, material, &|_| true) else { return Vec::new() };
-    let locks = format!("at nu = {poisson} linear cells lock");
+    let Some(Stiff { words: locks, loads: is_stiff, is_told }) = Stiff::of(mesh, material, body) else {
+        return Vec::new();
+    };
     let is_of_points = |load: &LoadCase| is_of_points(load, scene.loads(), mesh);
-    let is_judged: Vec<bool> =
-        scene.loads().iter().map(|load| load.measured.is_none() && !is_of_points(load)).collect();
+    let is_judged: Vec<bool> = scene
+        .loads()
+        .iter()
+        .zip(&is_stiff)
+        .map(|(load, stiff)| *stiff && load.measured.is_none() && !is_of_points(load))
+        .collect();
     let mut notes = Vec::new();
-    for load in scene.loads().iter().filter(|load| is_of_points(load)) {
+    for load in scene.loads().iter().filter(|load| !is_told && is_of_points(load)) {
         notes.push(format!(
             "{locks}, and the load {} acts on points alone, which move without bound as cells become smaller: its errors are relative to the \
              finite elements of the mesh, which are too stiff",
@@ -63,15 +69,16 @@ pub fn judge_by_truth(
         return notes;
     }
     let too_long = || {
-        format!(
+        let words = format!(
             "{locks}: errors are relative to the finite elements of the mesh, which are too stiff; quadratic elements would take more than \
              {DEAREST} times as long as the run: from = \"quadratic\" in [reference] asks for them"
-        )
+        );
+        (!is_told).then_some(words)
     };
     let growth = 1 << mesh.cell_dimension();
     let is_small = |growth: usize| growth * mesh.point_count() <= MOST_POINTS;
     if !is_small(growth) {
-        notes.push(too_long());
+        notes.extend(too_long());
         return notes;
     }
     let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + scene.fits().len(), cases.len(), scene.fits().len()));
@@ -90,7 +97,7 @@ pub fn judge_by_truth(
         // A second level that is not solved leaves the first one, whose error is then not known.
         (Ok(Some(first)), Ok(None) | Err(_)) => (first, None),
         (Ok(None), _) => {
-            notes.push(too_long());
+            notes.extend(too_long());
             return notes;
         }
         (Err(error), _) => {
@@ -122,6 +129,28 @@ pub fn judge_by_truth(
         case.finer = Some(FinerSolution { standard: best.standard, work: best.answers[load].work, uncertainty });
     }
     notes
+}
+
+/// Why cells are too stiff.
+struct Stiff {
+    words: String,
+    /// Under which loads, `[loads]`.
+    loads: Vec<bool>,
+    /// Whether notes of the report say that errors are relative to cells that are too stiff.
+    is_told: bool,
+}
+
+impl Stiff {
+    /// All loads where linear cells cannot keep a volume, and those under which a body of one cell across bends. `None` where the cells are right.
+    fn of<'a>(mesh: &Mesh, material: &MaterialMap, body: impl Iterator<Item = &'a Vec<f64>>) -> Option<Stiff> {
+        if let Some(Locking { poisson, .. }) = Locking::of(mesh, material, &|_| true) {
+            let words = format!("at nu = {poisson} linear cells lock");
+            return Some(Stiff { words, loads: body.map(|_| true).collect(), is_told: false });
+        }
+        let loads: Vec<bool> = body.map(|u| bends(Deformation::largest(mesh, u))).collect();
+        let words = "the body is about one cell across and bends, where linear cells are too stiff".to_string();
+        (loads.contains(&true) && is_one_cell_across(mesh)).then_some(Stiff { words, loads, is_told: true })
+    }
 }
 
 /// Makes the errors of a load unknown.

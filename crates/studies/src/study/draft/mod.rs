@@ -4,7 +4,7 @@ use super::extent::{extends, extent};
 use super::locking::LOCKS;
 use super::scene::FillEntry;
 use crate::fit::check_flat;
-use crate::mesh::{CellBlock, Filled, Group, ListedSides, Mesh};
+use crate::mesh::{CellBlock, FillMesh, Filled, Group, ListedSides, Mesh, Selection};
 use crate::text::{comment, rounded, toml as quoted};
 use conditions::conditions;
 use material::{POISSON, material_lines, stated_poisson, young};
@@ -73,7 +73,14 @@ pub fn draft(
     line(&format!("title = {}\n", quoted(title)));
     line("[mesh]");
     match source {
-        DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
+        DraftSource::File(file) => {
+            line(&format!("file  = {}", quoted(file)));
+            if let Some(repair) = fillable(mesh) {
+                let element = quoted(FillMesh::cube());
+                let fill = format!("{{ surface = {}, points = 1000, element = {element}{repair} }}", quoted(file));
+                line(&format!("# fill = {fill}   # in place of `file`: a solid of what the surface encloses"));
+            }
+        }
         DraftSource::Fill(entry) => {
             let words = match (entry.cell, entry.points) {
                 (Some(_), _) => " # the edge of a cube in mesh units",
@@ -149,6 +156,18 @@ pub fn draft(
     line("# moduli = true           # each network as a material");
     line("# frequencies = 6         # natural frequencies");
     text
+}
+
+/// The key that a fill of the mesh needs besides, if the mesh is a surface that is closed, or may be when it is welded.
+fn fillable(mesh: &Mesh) -> Option<&'static str> {
+    if (mesh.cell_dimension(), mesh.dimension) != (2, 3) {
+        return None;
+    }
+    let is_closed = || Selection::Everything.sides(mesh).is_ok_and(|sides| sides.is_empty());
+    match mesh.quality.unwelded {
+        true => Some(", repair = true"),
+        false => is_closed().then_some(""),
+    }
 }
 
 /// Why the second fit is there.

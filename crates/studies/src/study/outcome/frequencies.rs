@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct FrequencyOutcome {
-    /// The model is the fit of this name, or `finite elements`.
+    /// The model is the fit of this name, `finite elements`, or `quadratic elements` where the cells of the mesh lock.
     pub name: String,
     /// The natural frequencies with masses lumped at the points are in Hz, ascending.
     pub frequencies: Option<Vec<f64>>,
     /// The natural frequencies with consistent masses, the matrix of the shape functions of the cells, are in Hz, ascending. Those of the
-    /// finite elements are what the others are compared with.
+    /// quadratic elements, or else of the finite elements, are what the others are compared with.
     pub consistent: Option<Vec<f64>>,
     /// This number of rigid motions is left out, which `[[fix]]` leaves free.
     #[serde(rename = "rigid_motions")]

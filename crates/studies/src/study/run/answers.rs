@@ -43,7 +43,7 @@ impl Answers {
             None => {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
                 // After the fits, which are to the finite elements of the mesh.
-                posed.judge_by_truth(progress);
+                posed.judge_by_truth(&body, progress);
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;
                 let (displacements, works) = body.into_answers();
                 (displacements, works, vec![None; posed.cases.len()], None)

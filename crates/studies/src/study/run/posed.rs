@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::Support;
-use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
+use crate::study::body::{Case, Gauged, LinearBody, judge_by_truth, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
 use crate::study::locking::Locking;
@@ -65,10 +65,11 @@ impl<'a> Posed<'a> {
         held_points(&self.mesh, &self.support, &self.cases)
     }
 
-    /// Makes errors relative to quadratic elements where the cells of the mesh lock and the scene does not say what they are relative to.
-    pub fn judge_by_truth(&mut self, progress: &mut Progress) {
+    /// Makes errors relative to quadratic elements where the cells of the mesh are too stiff and the scene does not say what they are relative to.
+    pub fn judge_by_truth(&mut self, body: &LinearBody, progress: &mut Progress) {
         if self.scene.reference().is_none() {
-            let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, progress);
+            let known = body.displacements();
+            let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, known, progress);
             self.of_reference.extend(notes);
         }
         self.tell_of_finer_locking();

@@ -5,7 +5,7 @@ use super::load::LoadCase;
 use super::material::MaterialEntries;
 use crate::error::{Error, ErrorKind, Result};
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
-use crate::study::own_name::{BODY, expect_own_name};
+use crate::study::own_name::{BODY, QUADRATIC, expect_own_name};
 use std::path::Path;
 
 /// The fits of all `[[fit]]` entries; files are relative to `folder`.
@@ -17,12 +17,9 @@ pub fn read_fits(entries: &[FitEntry], folder: &Path) -> Result<Vec<NamedFit>> {
             if fit.name.trim().is_empty() {
                 return Err(Error::expected(key, "a name", format!("\"{}\"", fit.name)));
             }
-            let reserved = if fit.name.eq_ignore_ascii_case(BODY) { fit.name.clone() } else { BODY.into() };
-            expect_own_name(
-                &key,
-                &fit.name,
-                std::iter::once(&*reserved).chain(fits.iter().map(|fit| fit.name.as_str())),
-            )?;
+            let reserved =
+                [BODY, QUADRATIC].into_iter().filter(|name| fit.name.eq_ignore_ascii_case(name)).map(|_| &*fit.name);
+            expect_own_name(&key, &fit.name, reserved.chain(fits.iter().map(|fit| fit.name.as_str())))?;
             fits.push(fit.of_entry(i));
         }
     }

@@ -121,7 +121,9 @@ pub struct LoadEntry {
     /// else against the one of most cells. With a law it follows the sides where they move and turn; in plane stress their thickness is that at rest.
     pub pressure: Option<VaryingPressure>,
     /// The sides of the part, which close a cavity, are filled until they enclose this volume: a number in m³ or a text with a unit such as
-    /// `"30 ml"`; of a plane body the area times the thickness. The pressure is found. The material has a law.
+    /// `"30 ml"`; of a plane body the area times the thickness. The pressure is found. The material has a law. Where the sides end in a plane across
+    /// an axis, and `[[fix]]` holds their points there along it, as on a plane of symmetry, the plane closes the cavity: of an eighth of a ball
+    /// the volume is an eighth.
     #[serde(default, deserialize_with = "value::optional_volume")]
     #[schemars(schema_with = "value::volume_schema")]
     pub volume: Option<f64>,

@@ -17,8 +17,9 @@ pub(super) use crate::mesh::Accepted;
 
 /// The distance from the nearest place of the data, relative to the extent of the mesh, up to which a cell has values.
 const FARTHEST: f64 = 0.1;
-/// The ratio of the extents of data and body from which on they have another unit.
-const MOST_RATIO: f64 = 10.0;
+/// The ratio of the extents of data and body from which on they have another unit: units of length differ by ten at least, and data in the cells
+/// of a body extend less far than it does.
+const MOST_RATIO: f64 = 9.0;
 /// The distance of points that are the same, relative to the extent of the mesh, as for displacements.
 const SAME: f64 = 1e-6;
 

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 pub struct ReferenceEntry {
     /// Errors are relative to the finite elements of the mesh (`cells`), or to those of the same cells with quadratic functions (`quadratic`),
     /// after `refine`. One of `from`, `refine` and `mesh` is required. Without `[reference]` errors are relative to quadratic elements where linear
-    /// cells lock (from Poisson's ratio 0.4 on, without a law) and that takes at most three times the time of the run, and to the cells elsewhere.
+    /// cells lock (from Poisson's ratio 0.4 on, without a law) or a body of one cell across bends, and that takes at most three times the time of the run,
+    /// and to the cells elsewhere.
     pub from: Option<From>,
     /// The edges of all cells are halved this number of times, from 1 to 6.
     pub refine: Option<u32>,

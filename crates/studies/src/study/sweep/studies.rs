@@ -4,6 +4,7 @@ use super::entry::SweepEntry;
 use crate::error::{Error, Result};
 use crate::file::{self, Sum};
 use crate::study::scene::{InMemory, Scene, Setting};
+use crate::text::printable;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::Hasher;
@@ -121,26 +122,34 @@ impl Sweep {
         Scene::parse_beside(&self.text, &self.path, &settings, &self.memory).map_err(|error| of_study(error, study))
     }
 
-    /// A sum of all that a study depends on: the values, the scene and the files that it names. Files are read once.
-    pub fn sum(&self, study: &Study) -> u64 {
-        let mut sum = Sum::default();
-        sum.write(env!("CARGO_PKG_VERSION").as_bytes());
-        sum.write(without_sweep(&self.text).as_bytes());
-        for setting in &self.settings {
-            sum.write(format!("\n{setting}").as_bytes());
-        }
-        for (key, value) in study.values() {
-            sum.write(format!("\n{key}={value}").as_bytes());
-        }
+    /// All that a study depends on, by name with a sum of each: `version 0.1.0; scene 91…; --set 0f…; mesh.vtk 3c…`. Files are those that the scene
+    /// names, and are read once.
+    pub fn inputs(&self, study: &Study) -> String {
+        let sum = |texts: &mut dyn Iterator<Item = String>| {
+            let mut sum = Sum::default();
+            texts.for_each(|text| sum.write(text.as_bytes()));
+            format!("{:016x}", sum.finish())
+        };
+        let settings = sum(&mut self.settings.iter().map(|setting| format!("\n{setting}")));
+        let values = sum(&mut study.values().iter().map(|(key, value)| format!("\n{key}={value}")));
+        let scene = sum(&mut std::iter::once(without_sweep(&self.text)));
+        let mut parts = vec![
+            format!("version {}", env!("CARGO_PKG_VERSION")),
+            format!("scene {scene}"),
+            format!("--set {settings}"),
+            format!("values {values}"),
+        ];
         // The scene file itself has been taken without its sweep.
         let files = self.scene(study).map(|scene| scene.inputs()).unwrap_or_default();
         for path in files.into_iter().skip(1) {
+            // Its folder may be named in other ways.
+            let name = printable(&path.file_name().unwrap_or_default().to_string_lossy()).replace(';', ",");
             let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
             // A file that cannot be read fails in the study.
             let of_file = sums.entry(path).or_insert_with_key(|path| Sum::of_file(path).unwrap_or_default());
-            sum.write(&of_file.finish().to_le_bytes());
+            parts.push(format!("{name} {:016x}", of_file.finish()));
         }
-        sum.finish()
+        parts.join("; ")
     }
 }
 

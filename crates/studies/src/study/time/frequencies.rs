@@ -8,9 +8,11 @@ use crate::model::{
     BlockStiffness, ConsistentMasses, Entries, Lumping, Support, check_body, finite_elements, lumped_masses,
     unheld_bodies,
 };
-use crate::solve::{Levels, Masses, System, lowest_modes};
+use crate::solve::{Levels, Masses, System, factor_cost, lowest_modes};
+use crate::study::body::held;
+use crate::study::locking::Locking;
 use crate::study::outcome::{FrequencyOutcome, Outcome};
-use crate::study::own_name::BODY;
+use crate::study::own_name::{BODY, QUADRATIC};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
 
@@ -20,7 +22,7 @@ const SHIFT: f64 = 1e-4;
 /// The numbers of a mass matrix that are kept at most: 1.6 GB, those of 460 000 hexahedra or of 6 million tetrahedra.
 const MOST_NUMBERS: usize = 100_000_000;
 
-/// The frequencies of the finite elements and of each network, with the `[[fix]]` support: with lumped masses, which are row sums or, if
+/// The frequencies of the finite elements, of each network, and of quadratic elements where the cells lock, with the `[[fix]]` support: with lumped masses, which are row sums or, if
 /// these are not positive, those of the HRZ method, unless the motion of the scene says which or they were fitted; and with consistent
 /// masses, the matrix of the cells.
 ///
@@ -91,7 +93,29 @@ pub fn natural_frequencies(
         let blocks = || Ok(BlockStiffness::of_network(&fit.network, &mesh.points, None));
         all.push(of(&fit.fit.name, fit.masses().unwrap_or(&masses), &blocks, &entries)?);
     }
+    all.extend(of_quadratic(scene, mesh, material, count));
     Ok(all)
+}
+
+/// The largest factor of quadratic elements, operations: a second or two.
+const AFFORDABLE: f64 = 1e10;
+/// More points are not even counted.
+const MOST_POINTS: usize = 40_000;
+
+/// The frequencies of quadratic elements on the cells of a mesh that lock, with consistent masses. `None` of other meshes, where the scene asks for
+/// the cells, and where this takes long or is not solved.
+fn of_quadratic(scene: &Scene, mesh: &Mesh, material: &MaterialMap, count: usize) -> Option<FrequencyOutcome> {
+    let is_asked = scene.reference().is_none_or(|entry| !entry.is_of_cells());
+    Locking::of(mesh, material, &|_| true).filter(|_| is_asked)?;
+    let finer = mesh.elevated().ok().filter(|finer| finer.point_count() <= MOST_POINTS)?;
+    factor_cost(&finer).ok().filter(|cost| cost.operations <= AFFORDABLE)?;
+    let material = scene.material_of(&finer).ok()?;
+    let support = held(scene, &finer).ok()?;
+    let rigid = unheld_bodies(&finer, &support).iter().map(|body| body.motions).sum();
+    let masses = consistent_masses(&finer, &material).ok()?;
+    let vibrations = Vibrations { mesh: &finer, support: &support, masses: &[Masses::from(&masses)], rigid, count };
+    let found = vibrations.of(&finite_elements(&finer, material.moduli())).pop()?.ok()?;
+    Some(FrequencyOutcome { name: QUADRATIC.into(), frequencies: None, consistent: Some(found), rigid, reason: None })
 }
 
 /// The mass matrix of the cells, or why there is none.
