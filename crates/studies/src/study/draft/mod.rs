@@ -1,7 +1,7 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
 use super::extent::{extends, extent};
-use super::scene::FillEntry;
+use super::scene::{FillEntry, MeshLength};
 use crate::fit::check_flat;
 use crate::mesh::{CellBlock, Filled, Group, ListedSides, Mesh};
 use crate::text::{comment, rounded, toml as quoted};
@@ -76,8 +76,9 @@ pub fn draft(
     match source {
         DraftSource::File(file) => line(&format!("file  = {}", quoted(file))),
         DraftSource::Fill(entry) => {
-            let words = match (entry.cell, entry.points) {
-                (Some(_), _) => " # the edge of a cube in mesh units",
+            let words = match (&entry.cell, entry.points) {
+                (Some(MeshLength::Units(_)), _) => " # the edge of a cube in mesh units",
+                (Some(MeshLength::Stated(..)), _) => " # the edge of a cube",
                 (None, Some(_)) => " # about so many points",
                 (None, None) => "",
             };
