@@ -91,7 +91,7 @@ fn a_wrong_setting_is_a_fault_of_the_option() {
     for (setting, key, words) in [
         ("material.posson=0.4", "--set material.posson", "did you mean \"material.poisson\"?"),
         ("materal.poisson=0.4", "--set materal.poisson", "did you mean \"material.poisson\"?"),
-        ("fit[0].higer=0.4", "--set fit[0].higer", "did you mean \"higher\"?"),
+        ("fit[0].higer=0.4", "--set fit[0].higer", "did you mean \"fit[0].higher\"?"),
         ("fit[0].objective=frobenus", "--set fit[0].objective", "did you mean \"frobenius\"?"),
         ("mesh.box.element=quad5", "--set mesh.box.element", "did you mean \"quad4\"?"),
         ("fix[0].group=xmni", "--set fix[0].group", "did you mean \"xmin\"?"),
