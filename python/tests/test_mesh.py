@@ -311,7 +311,7 @@ def test_wrong_boxes_are_named(size, cells, keys, key):
 @pytest.mark.parametrize(
     "keys, key",
     [
-        ({"scale": "2 cm"}, "scale"),
+        ({"scale": "2 kg"}, "scale"),
         ({"scale": -1}, "scale"),
         ({"elements": "tri3"}, "elements"),
         ({"elements": [3]}, "element"),
