@@ -84,7 +84,9 @@ impl Stage {
     /// The remaining time at the present pace.
     fn left(&self, done: usize, total: usize) -> Option<Duration> {
         let elapsed = self.start.elapsed();
-        let (made, left) = (done.checked_sub(self.first)?, total.saturating_sub(done));
+        // How many steps there will be may not be known, and none may be left.
+        let left = total.checked_sub(done).filter(|left| *left > 0)?;
+        let made = done.checked_sub(self.first)?;
         let is_enough = 100 * made >= ENOUGH * total || elapsed > LONG_TRIAL;
         (made > 0 && elapsed > TRIAL && is_enough)
             .then(|| Duration::try_from_secs_f64(elapsed.as_secs_f64() * left as f64 / made as f64).ok())
@@ -123,18 +125,18 @@ impl Terminal {
             return;
         }
         let left = self.stage.left(done, total);
+        let steps = if total > 0 { format!("{done} of {total}") } else { format!("{done} steps") };
         let words = left.map_or(String::new(), |left| format!(", about {} left", time_in_words(left.as_secs_f64())));
         if left.is_some_and(|left| left > LONG) && !self.stage.is_announced {
             self.stage.is_announced = true;
             self.last = Instant::now();
-            let line =
-                self.within_page(&format!("note: {name}: {done} of {total}{words}, estimated from the pace so far"));
+            let line = self.within_page(&format!("note: {name}: {steps}{words}, estimated from the pace so far"));
             return self.above_bar(|| tell(&line));
         }
         if !std::io::stderr().is_terminal() {
             if self.last.elapsed() >= BETWEEN_LINES {
                 self.last = Instant::now();
-                tell(&self.within_page(&format!("note: {name}: {done} of {total}{words}")));
+                tell(&self.within_page(&format!("note: {name}: {steps}{words}")));
             }
             return;
         }
@@ -144,9 +146,15 @@ impl Terminal {
             self.bar = Some(style.into_iter().fold(bar, ProgressBar::with_style));
         }
         if let Some(bar) = &self.bar {
-            bar.set_length(total as u64);
-            bar.set_position(done as u64);
-            bar.set_message(printable(name).into_owned());
+            // Without an end the bar is empty, and the words count.
+            let is_open = total == 0;
+            bar.set_length(total.max(1) as u64);
+            bar.set_position(if is_open { 0 } else { done as u64 });
+            bar.set_message(if is_open {
+                format!("{}, {steps}", printable(name))
+            } else {
+                printable(name).into_owned()
+            });
             bar.set_prefix(words);
         }
     }

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use springfit::mesh::Mesh;
 use springfit::model::{Entries, Support, finite_elements};
+use springfit::report::{self, Report, Table};
 use springfit::solve::{Standing, System};
 use springfit::study::{Outcome, Scene, run};
 use std::path::Path;
@@ -121,6 +122,17 @@ fn the_growth_of_an_indefinite_network_is_that_of_its_least_eigenvalue() {
     let model = motion.models.iter().find(|model| model.fit == Some(0)).unwrap();
     let found = model.growth.unwrap();
     assert!((found / expected - 1.0).abs() < 1e-5, "{found} and {expected}");
+    // Its motion is told not to be trusted before anything else, and in its row; that of the finite elements is.
+    let name = &outcome.fits[0].fit.name;
+    let summary = report::summary(&outcome);
+    assert!(summary.starts_with(&format!("NOT TRUSTED: the motion of {name} (is not stable at rest)\n")), "{summary}");
+    let report = Report::of(&outcome);
+    let trusted: Vec<bool> = report.motion.iter().map(|model| model.is_trusted()).collect();
+    assert_eq!(trusted, [true, false]);
+    let table = Table::all(&report).into_iter().find(|table| table.name == "motion").unwrap();
+    let ended: Vec<&str> = table.rows.iter().map(|row| row[1].text.as_str()).collect();
+    assert!(ended[0] == "complete" && ended[1].ends_with(", not trusted"), "{ended:?}");
+    assert!(report.motion[0].largest_displacement.is_some_and(|most| most > 0.0 && most < 1e-9));
 }
 
 /// Iterations end where a motion is known that releases energy: the note says so, and what finds the equilibrium.

@@ -72,6 +72,7 @@ mod names;
 mod networks;
 mod nonlinear;
 mod nonnegative;
+mod not_a_scene;
 mod numbering;
 mod numerals;
 mod outputs;

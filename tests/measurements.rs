@@ -507,3 +507,23 @@ fn wrong_noise_is_named() {
     let none = error(None, "unknowns = \"region-young\"\nvalidate = \"discrepancy\"");
     assert!(none.contains("validate") && none.contains("none for \"pull\""), "{none}");
 }
+
+/// A stated noise of a thousandth of what it is leaves the intervals as wide as the noise is, within a quarter: they are by the residuals then, and
+/// the report says that nothing is to be trusted.
+#[test]
+fn intervals_are_those_of_the_residuals_where_the_stated_noise_is_too_small() {
+    let world = World::new(3);
+    let sigmas = world.measure(3, (0.02, 9), |_| true);
+    let keys = "unknowns = \"region-young\"";
+    let width = |found: &Outcome| -> Vec<f64> {
+        moduli(found).all.iter().map(|modulus| modulus.interval.map(|[low, high]| (high / low).ln()).unwrap()).collect()
+    };
+    let right = world.find(3, None, Some(&sigmas), keys).unwrap();
+    assert!(!report::notes(&right).iter().any(|note| note.contains("NOT TRUSTED")));
+    let small: Vec<f64> = sigmas.iter().map(|sigma| 1e-3 * sigma).collect();
+    let wrong = world.find(3, None, Some(&small), keys).unwrap();
+    assert!(report::notes(&wrong).iter().any(|note| note.contains("NOT TRUSTED: residuals are")));
+    for (right, wrong) in width(&right).into_iter().zip(width(&wrong)) {
+        assert!((wrong / right - 1.0).abs() < 0.25, "{right} {wrong}");
+    }
+}

@@ -611,3 +611,19 @@ fn what_an_integrator_takes_is_told() {
     let (lost, said) = found("newmark");
     assert!(lost < 1e-6 && !said.contains("has taken"), "{lost}: {said}");
 }
+
+/// A force of a thousand times the block's stiffness turns cells inside out: the run says so first, and the motion of a small force is trusted.
+#[test]
+fn a_motion_with_cells_inside_out_is_not_trusted() {
+    let summary = |force: &str| {
+        let text = edited(BLOCK, "force = [\"0.01*sin(60*t)\", 0, \"0.1*t\"]", &format!("force = [0, 0, \"{force}\"]"));
+        let text = edited(&text, "linear = true\n", "");
+        let outcome = outcome(&text);
+        let inverted: Vec<usize> = outcome.motion.as_ref().unwrap().models.iter().map(|model| model.inverted).collect();
+        (report::summary(&outcome), inverted)
+    };
+    let (said, inverted) = summary("-0.01*t");
+    assert!(!said.contains("NOT TRUSTED") && inverted == [0, 0], "{said} {inverted:?}");
+    let (said, _) = summary("-4e3*t");
+    assert!(said.starts_with("NOT TRUSTED: the motion of finite elements ("), "{said}");
+}

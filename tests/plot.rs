@@ -1,8 +1,8 @@
 //! Figures and tables for a paper, from the folder of a run.
 
 use springfit::report::{
-    CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder, Shape,
-    Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
+    Axis, CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder,
+    Series, Shape, Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
 };
 use springfit::study::{Scene, converge, run};
 use std::path::Path;
@@ -432,4 +432,66 @@ fn fits_without_an_error_are_named() {
     assert_eq!(left_out.len(), 1);
     assert!(left_out[0].contains("edges") && left_out[0].contains("mechanism"), "{left_out:?}");
     assert!(Figure::Constants.left_out(&run, None).unwrap().is_empty());
+}
+
+/// A fit has one colour in all figures of a run, whatever others are left out; networks that do not stand are called so.
+#[test]
+fn a_fit_looks_the_same_in_all_figures() {
+    let membrane = folder("membrane.toml");
+    let run = RunFolder::at(membrane.path());
+    let report = run.report().unwrap();
+    let place = |name: &str| {
+        let known = report.fits.iter().position(|fit| name == fit.name || name.starts_with(&format!("{} (", fit.name)));
+        known.unwrap_or(report.fits.len())
+    };
+    for figure in [Figure::WorkPrecision, Figure::Motion] {
+        let Ok(Picture::Chart(chart)) = figure.picture(&run, None, None, None) else { continue };
+        for series in &chart.series {
+            assert_eq!(series.style, Some(place(&series.name)), "{figure:?} {}", series.name);
+        }
+    }
+    let moduli = |of: Option<&str>| match Figure::Moduli.picture(&run, of, None, None).unwrap() {
+        Picture::Moduli(moduli) => moduli,
+        Picture::Chart(_) | Picture::Deformation(_) => panic!("no moduli"),
+    };
+    for curve in moduli(None).curves {
+        assert_eq!(curve.place, place(&curve.name));
+        // One alone looks as it does among the others.
+        let name = &report.fits[curve.place].name;
+        assert_eq!(moduli(Some(name)).curves[0].place, curve.place);
+    }
+}
+
+/// Names and titles end within a figure of one column.
+#[test]
+fn long_names_end_within_their_figure() {
+    let name = "a fit with a name that is much longer than a column of a paper is wide, in two of them";
+    let series =
+        |place: usize| Series::new(format!("{name} {place}"), vec![(1.0, 1.0), (2.0, 3.0)], Shape::Curve).styled(place);
+    let chart = Chart {
+        title: "names".into(),
+        x: Axis::linear("a title of an axis that is much longer than the axis, which is as wide as a column"),
+        y: Axis::linear("another title of an axis that is much longer than the axis is tall in one column"),
+        series: vec![series(0), series(1)],
+    };
+    let svg = chart.svg(Columns::One).unwrap();
+    let size: Vec<f64> =
+        svg.split_once("viewBox=\"0 0 ").unwrap().1.split(['"', ' ']).take(2).map(|x| x.parse().unwrap()).collect();
+    let mut found = 0;
+    for text in svg.split("<text ").skip(1) {
+        let attribute = |key: &str| {
+            text.split_once(&format!("{key}=\"")).and_then(|(_, rest)| rest.split_once('"')?.0.parse::<f64>().ok())
+        };
+        let words = text.split_once('>').unwrap().1.split_once('<').unwrap().0.trim();
+        if !words.contains("name") && !words.contains("title") {
+            continue;
+        }
+        found += 1;
+        assert!(words.ends_with('…') || words.chars().count() < 60, "{words}");
+        // Letters are about 0.58 of their height wide; the library's sizes are 1.25 times that of the letters.
+        let wide = 0.58 / 1.25 * attribute("font-size").unwrap() * 1.25 * words.chars().count() as f64;
+        let is_turned = text.contains("rotate");
+        assert!(wide < if is_turned { size[1] } else { size[0] }, "{words}: {wide} of {size:?}");
+    }
+    assert_eq!(found, 4);
 }

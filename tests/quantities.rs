@@ -1,6 +1,7 @@
 //! Quantities with units, and what is assumed of a body that an input does not describe.
 
 use springfit::quantity::Quantity;
+use springfit::symbolic::Scope;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -110,4 +111,142 @@ fn a_thickness_is_not_assumed_in_silence() {
     assert!(noted.status.success() && errors(&noted).contains("assumed to be 1 m"), "{}", errors(&noted));
     let report = fs::read_to_string(folder.path().join("out/flat/report.json")).unwrap();
     assert!(report.contains("\"assumed\": \"the thickness"), "{report}");
+}
+
+/// Powers as `^3`, `³` and `3`, micro in either letter, and units that are no powers of ten, by their definitions (NIST SP 811, appendix B).
+#[test]
+fn units_are_read_as_people_write_them() {
+    for (quantity, text, value) in [
+        (Quantity::Density, "1.06 g/cm3", 1060.0),
+        (Quantity::Density, "1.06 g/cc", 1060.0),
+        (Quantity::Density, "1.06g/mL", 1060.0),
+        (Quantity::Density, "1060 kg/m3", 1060.0),
+        (Quantity::Density, "1.06 kg/l", 1060.0),
+        (Quantity::Density, "1.06e-9 t/mm^3", 1060.0),
+        (Quantity::Pressure, "100 mmHg", 13332.2387415),
+        (Quantity::Pressure, "10 cmH2O", 980.665),
+        (Quantity::Pressure, "1 psi", 6894.757293168),
+        (Quantity::Pressure, "5 kN/m2", 5000.0),
+        (Quantity::Pressure, "1 dyn/cm²", 0.1),
+        (Quantity::Length, "2 in", 0.0508),
+        (Quantity::Length, "3 μm", 3e-6),
+        (Quantity::Area, "2 mm2", 2e-6),
+        (Quantity::Volume, "30 cm3", 30e-6),
+        (Quantity::Volume, "2 µl", 2e-9),
+        (Quantity::Time, "2 min", 120.0),
+        (Quantity::MeshUnit, "in", 0.0254),
+    ] {
+        let found = quantity.parse(text).unwrap();
+        assert!((found / value - 1.0).abs() < 1e-14, "{text}: {found}");
+    }
+    // What is read is what is listed, and no more.
+    for (quantity, text) in [(Quantity::Length, "2^3 m"), (Quantity::Area, "2 mm3"), (Quantity::Density, "1 g/cm")] {
+        let error = quantity.parse(text).unwrap_err().to_string();
+        assert!(error.contains("units: "), "{error}");
+    }
+}
+
+/// A number with a unit in a condition or an expression is the number in the SI unit; where readers would differ it is refused.
+#[test]
+fn numbers_in_expressions_have_units() {
+    let place = Scope::of_place(3);
+    for (with, without) in [
+        ("z < -10mm", "z < -0.01"),
+        ("x^2 + y^2 <= 25 mm^2 && !(z > 2 cm)", "x^2 + y^2 <= 25e-6 && !(z > 0.02)"),
+        ("x*y*z < 3 ml", "x*y*z < 3e-6"),
+        ("x/(5 mm) > 1", "x/0.005 > 1"),
+        ("(2 mm)^2 > x", "0.002^2 > x"),
+        ("x > 1e-1 in", "x > 0.00254"),
+    ] {
+        assert_eq!(place.predicate(with).unwrap(), place.predicate(without).unwrap(), "{with}");
+    }
+    for (text, said) in [
+        ("x < 1/2 mm", "(2 mm)"),
+        ("x/5 mm < 1", "(5 mm)"),
+        ("x < 2 mm^4", "(2 mm)"),
+        ("x < 5 kPa", "an operator, or a unit such as mm"),
+        ("x < 5 mmm", "an operator, or a unit such as mm"),
+    ] {
+        let error = place.predicate(text).unwrap_err().to_string();
+        assert!(error.contains(said), "{text}: {error}");
+    }
+    // A value has units of its own quantity, and those of lengths where the place decides.
+    let value = |text: &str| Scope::value_over(&["x", "y", "z"], Some(Quantity::Pressure), text);
+    let plain = |text: &str| Scope::new(&["x", "y", "z"]).expression(text).unwrap();
+    assert_eq!(value("10 kPa*(1 + x/(5 mm))").unwrap(), plain("1e4*(1 + x/0.005)"));
+    assert_eq!(value("2*10 kPa").unwrap(), plain("2e4"));
+    for wrong in ["10 mm", "2*10 mm", "1 kg/m^3"] {
+        assert!(value(wrong).is_err(), "{wrong}");
+    }
+    // The scope of elements and energies has none.
+    assert!(Scope::new(&["x"]).expression("10 mm").is_err());
+}
+
+/// The edge of the cells of a fill is a number of mesh units or a length with a unit, in options and in scenes.
+#[test]
+fn a_fill_takes_a_length_with_a_unit() {
+    let folder = TempDir::new().unwrap();
+    let corners = [[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0], [0, 0, 20], [20, 0, 20], [20, 20, 20], [0, 20, 20]];
+    let sides = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
+    let mut text: String = corners.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    sides.iter().for_each(|[a, b, c, d]| text += &format!("f {a} {b} {c} {d}\n"));
+    fs::write(folder.path().join("cube.obj"), text).unwrap();
+    let network = |fill: &str, name: &str| {
+        let options = ["fit", "cube.obj", "--scale", "mm", "--fill", fill, "--young", "1 kPa", "--poisson", "0.3"];
+        let output = springfit(folder.path(), &[&options[..], &["-o", name]].concat());
+        assert!(output.status.success(), "{}", errors(&output));
+        fs::read_to_string(folder.path().join(name)).unwrap()
+    };
+    let plain = network("4", "plain.csv");
+    assert!(plain.lines().count() > 100);
+    assert_eq!(network("4 mm", "units.csv"), plain);
+    assert_eq!(network("0.4cm", "units.csv"), plain);
+    let drafted = springfit(folder.path(), &["new", "cube.obj", "--scale", "mm", "--fill", "4 mm"]);
+    let scene = String::from_utf8_lossy(&drafted.stdout).into_owned();
+    assert!(scene.contains("cell = \"4 mm\""), "{scene}");
+    fs::write(folder.path().join("cube.toml"), scene).unwrap();
+    let output = springfit(folder.path(), &["groups", "cube.toml"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("216 points"), "{}", errors(&output));
+    let options = ["fit", "cube.obj", "--fill", "4 kPa", "--young", "1 kPa", "--poisson", "0.3", "-o", "k.csv"];
+    let refused = springfit(folder.path(), &options);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(errors(&refused).starts_with("error: --fill: expected a length"), "{}", errors(&refused));
+}
+
+/// A body of a hundred metres, or of a hundredth of a millimetre, whose unit nobody has stated has a note wherever a mesh is read.
+#[test]
+fn a_forgotten_unit_is_told() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("roof.msh"), ROOF).unwrap();
+    let constants = ["--young", "1kPa", "--poisson", "0.3", "--thickness", "1 mm", "--objective", "offdiag", "-o"];
+    let said = |first: &[&str], scale: Option<&str>| {
+        let scale = scale.map_or(Vec::new(), |scale| vec!["--scale", scale]);
+        let output = springfit(folder.path(), &[first, &scale].concat());
+        assert!(output.status.success(), "{first:?}: {}", errors(&output));
+        errors(&output)
+    };
+    for command in [
+        vec!["groups", "roof.msh"],
+        vec!["new", "roof.msh"],
+        [&["fit", "roof.msh"][..], &constants, &["k.csv"]].concat(),
+    ] {
+        let note = said(&command, None);
+        assert!(note.contains("taken in metres: the body is 100 m long; --scale mm"), "{note}");
+        assert!(said(&command, Some("1e-7")).is_empty() || !said(&command, Some("1e-7")).contains("taken in metres"));
+        for stated in ["mm", "m", "0.001"] {
+            assert!(!said(&command, Some(stated)).contains("taken in metres"), "{command:?} {stated}");
+        }
+    }
+    fs::write(folder.path().join("small.msh"), ROOF.replace("100", "1e-5").replace(" 50", " 5e-6")).unwrap();
+    let note = said(&["groups", "small.msh"], None);
+    assert!(note.contains("the body is 0.00001 m long") || note.contains("the body is 1e-5 m long"), "{note}");
+    let scene = |scale: &str| {
+        let text = format!(
+            "[mesh]\nfile = \"roof.msh\"\n{scale}\n[material]\nyoung = 1\npoisson = 0.3\nthickness = 0.1\n[[fit]]\nobjective = \"offdiag\"\n"
+        );
+        fs::write(folder.path().join("roof.toml"), text).unwrap();
+        said(&["run", "roof.toml"], None)
+    };
+    assert!(scene("").contains("taken in metres: the body is 100 m long; scale = \"mm\""));
+    assert!(!scene("scale = \"m\"").contains("taken in metres"));
 }

@@ -416,7 +416,7 @@ fn wrong_materials_are_named() {
         (young("{ file = \"two.csv\", array = \"G\" }"), "two.csv:1: header", "a column \"g\""),
         (young("{ file = \"short.csv\" }"), "short.csv:2", "4 cells as in the header"),
         (young("{ file = \"map.csv\", interpolation = \"cubic\" }"), "material.young.interpolation", "nearest, linear"),
-        (young("{ file = \"map.csv\", unit = \"psi\" }"), "material.young", "psi"),
+        (young("{ file = \"map.csv\", unit = \"lbf\" }"), "material.young", "lbf"),
         (young("{ file = \"map.txt\" }"), "map.txt", ".csv, .vtu or .vtk"),
     ];
     for (materials, place, words) in cases {

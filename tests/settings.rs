@@ -89,16 +89,16 @@ fn fault(settings: &[&str]) -> Error {
 #[test]
 fn a_wrong_setting_is_a_fault_of_the_option() {
     for (setting, key, words) in [
-        ("material.posson=0.4", "--set material.posson", "did you mean \"poisson\"?"),
-        ("materal.poisson=0.4", "--set materal.poisson", "did you mean \"material\"?"),
-        ("fit[0].higer=0.4", "--set fit[0].higer", "did you mean \"higher\"?"),
+        ("material.posson=0.4", "--set material.posson", "did you mean \"material.poisson\"?"),
+        ("materal.poisson=0.4", "--set materal.poisson", "did you mean \"material.poisson\"?"),
+        ("fit[0].higer=0.4", "--set fit[0].higer", "did you mean \"fit[0].higher\"?"),
         ("fit[0].objective=frobenus", "--set fit[0].objective", "did you mean \"frobenius\"?"),
         ("mesh.box.element=quad5", "--set mesh.box.element", "did you mean \"quad4\"?"),
         ("fix[0].group=xmni", "--set fix[0].group", "did you mean \"xmin\"?"),
         ("material.law=neo-hokean", "--set material.law", "did you mean \"neo-hookean\"?"),
         ("material.poisson=much", "--set material.poisson", "expected a number"),
         ("material.poisson=0.6", "--set material.poisson", "0.5"),
-        ("material.young=10 psi", "--set material.young", "found \"10 psi\""),
+        ("material.young=10 lbf", "--set material.young", "found \"10 lbf\""),
         ("load[0].traction[0]=1e*x", "--set load[0].traction[0]", "1e*x"),
         ("load[3].name=push", "--set load[3].name", "expected an entry from 0 to 1, which adds one, found [3]"),
         ("material[0]=1", "--set material[0]", "found a value of type table"),
@@ -162,4 +162,59 @@ fn every_command_that_reads_a_scene_takes_settings() {
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(text.starts_with("error: --set: belongs to a scene"), "{command:?}: {text}");
     }
+}
+
+/// A key that is not where it was written has a place in the scene, which the error names with its whole path.
+#[test]
+fn a_key_in_the_wrong_place_is_led_to_the_right_one() {
+    for (setting, said) in [
+        ("poisson=0.4", "did you mean \"material.poisson\"?"),
+        ("young=1 kPa", "did you mean \"material.young\"?"),
+        ("material.poison=0.4", "did you mean \"material.poisson\"?"),
+        ("materials.poisson=0.4", "did you mean \"material.poisson\"?"),
+        ("traction=[1, 0]", "did you mean \"load[0].traction\"?"),
+        ("vtu=true", "did you mean \"output.vtu\"?"),
+        ("load[0].tracton=[1, 0]", "did you mean \"load[0].traction\"?"),
+        ("load.traction=[1, 0]", "such as load[0].traction"),
+    ] {
+        let error = scene(SCENE, &[setting]).unwrap_err().to_string();
+        assert!(error.starts_with("--set ") && error.contains(said), "{setting}: {error}");
+    }
+    // In the file as well, with its line.
+    let error = scene(&format!("poisson = 0.4\n{SCENE}"), &[]).unwrap_err().to_string();
+    assert!(
+        error.starts_with("s.toml:1: poisson: ") && error.contains("did you mean \"material.poisson\"?"),
+        "{error}"
+    );
+    // What is nowhere has no suggestion.
+    let error = scene(SCENE, &["quux=1"]).unwrap_err().to_string();
+    assert!(error.contains("unknown field") && !error.contains("did you mean"), "{error}");
+}
+
+/// The name of an engine stands for the settings that it has by default.
+#[test]
+fn an_engine_is_named_or_set() {
+    let of = |engine: &str| {
+        let text = SCENE.replace("objective = \"frobenius\"", &format!("objective = \"frobenius\"\nengine = {engine}"));
+        scene(&text, &["material.density=1000"]).map(|scene| scene.fits()[0].engine)
+    };
+    let named = of("\"jolt\"").unwrap();
+    assert!(named.is_some());
+    assert_eq!(named, of("{ method = \"jolt\" }").unwrap());
+    assert_ne!(named, of("{ method = \"jolt\", substeps = 7 }").unwrap());
+    let error = of("\"jollt\"").unwrap_err().to_string();
+    assert!(error.contains("fit[0].engine.method") && error.contains("did you mean \"jolt\"?"), "{error}");
+    // What an engine needs is asked for before the fits.
+    for (settings, said) in [
+        (&[][..], "expected a density in [material]"),
+        (&["material.density=1", "material.law=neo-hookean"], "without a \"law\""),
+    ] {
+        let settings = [settings, &["fit[0].engine=jolt"]].concat();
+        let error = scene(SCENE, &settings).unwrap_err().to_string();
+        assert!(error.starts_with("--set fit[0].engine: ") && error.contains(said), "{error}");
+    }
+    let error = of("7").unwrap_err().to_string();
+    assert!(error.contains("a name such as \"jolt\", or a table"), "{error}");
+    let error = of("{ method = \"jolt\", substep = 7 }").unwrap_err().to_string();
+    assert!(error.contains("substep") && error.contains("did you mean \"substeps\"?"), "{error}");
 }

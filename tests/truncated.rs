@@ -351,7 +351,8 @@ fn wrong_settings_are_one_line() {
         ("{ method = \"xpbd\", sweeps = 3 }", "engine.sweeps: unknown field"),
         ("{ method = \"xpbd\", substeps = 1 }", "engine.substeps: expected at least"),
         ("{ method = \"newton-xpbd\", substeps = 1 }", "engine.substeps: expected"),
-        ("\"xpbd\"", "engine: invalid type: string \"xpbd\", expected a table such as"),
+        ("\"unity\"", "engine.method: expected one of xpbd, vbd, jolt"),
+        ("3", "engine: invalid type: integer \"3\", expected a name such as"),
     ];
     for (engine, expected) in cases {
         let (code, _, told) = run(&scene(&format!("{WHOLE}engine = {engine}"), DENSE), &[]);

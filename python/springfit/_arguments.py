@@ -10,7 +10,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from ._core import Element, SpringfitError
+from ._core import Element, SpringfitError, quantity
 
 #: An element, the name of a shipped one, or the path of an element file.
 ElementLike = Union[str, "os.PathLike[str]", Element]
@@ -101,6 +101,11 @@ def number(key: str, value: Any, expected: str) -> float:
     if found.ndim != 0 or found.dtype.kind not in "iuf":
         raise failure(key, expected, shown(value))
     return float(found)
+
+
+def measure(key: str, value: Any, expected: str, kind: str = "length") -> float:
+    """A real number in the SI unit, or a text with a unit."""
+    return quantity(key, kind, value) if isinstance(value, str) else number(key, value, expected)
 
 
 def count(key: str, value: Any) -> int:

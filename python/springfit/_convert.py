@@ -187,7 +187,7 @@ def from_skfem(mesh: Any) -> tuple:
     return mesh.p.T, {names[kind]: nodes}, groups, cell_groups
 
 
-def from_gmsh(read: Any, scale: float, options: dict) -> Any:
+def from_gmsh(read: Any, scale: "float | str", options: dict) -> Any:
     import gmsh
 
     with tempfile.TemporaryDirectory() as folder:

@@ -39,6 +39,7 @@ __all__ = [
     "learning_curve",
     "masses",
     "parsed_element",
+    "quantity",
     "restored_mesh",
     "run",
     "shipped_elements",
@@ -261,6 +262,7 @@ def filled_mesh(
     options: tuple[str | None, str | None, bool],
     scale: float,
 ) -> Mesh: ...
+def quantity(key: str, kind: str, text: str) -> float: ...
 def voxel_mesh(
     path: str,
     element: Element,

@@ -10,7 +10,8 @@ import numpy as np
 
 from ._arguments import failure, shown
 
-#: A function that receives the progress of long work: the name of the stage, the steps that are done, and all steps of the stage.
+#: A function that receives the progress of long work: the name of the stage, the steps that are done, and all steps of the stage, 0 where
+#: it is not known.
 Told = Callable[[str, int, int], Any]
 
 
@@ -37,8 +38,8 @@ def listener(progress: bool | Told | None) -> Iterator[Told | None]:
         if bar is None or bar.desc.rstrip(": ") != stage:
             if bar is not None:
                 bar.close()
-            bar = tqdm(total=total, desc=stage)
-        bar.total = total
+            bar = tqdm(total=total or None, desc=stage)
+        bar.total = total or None
         bar.update(done - bar.n)
 
     try:

@@ -11,13 +11,13 @@ from typing import Any, Literal, Union
 import numpy as np
 
 from . import _core
-from ._arguments import failure, matrix, number, shown, word
+from ._arguments import failure, matrix, measure, number, shown, word
 from ._progress import listener
 from .material import Material
 from .mesh import Mesh
 from .report import SceneLike, given, settings_of
 
-Sigma = Union[float, Mapping[str, float], None]
+Sigma = Union[float, str, Mapping[str, "float | str"], None]
 #: What was measured under a load: displacements of all points of the mesh, or places and their displacements, or a dictionary of both and of
 #: forces.
 Measured = Union["np.ndarray", "tuple[Any, Any]", Mapping[str, Any]]
@@ -77,6 +77,8 @@ class Calibration:
         misfit: How many times as large as the stated noise the residuals are; None without a stated noise.
         probability: Of residuals as large as these, or larger, if the model describes the body; None without a stated noise.
         is_unexplained: The residuals are more than noise: the model does not describe the body.
+        is_trusted: Moduli and intervals are to be trusted: the search has reached its optimum, and residuals are at most three times the
+            stated noise. The first of ``notes`` says why not.
         by_noise_alone: The intervals have no part for the error of the mesh.
         hardly_seen: Unknowns, or combinations of several, that the measurements hardly see.
         notes: Sentences for the reader.
@@ -91,6 +93,7 @@ class Calibration:
     misfit: float | None
     probability: float | None
     is_unexplained: bool
+    is_trusted: bool
     by_noise_alone: bool
     hardly_seen: "list[str]"
     notes: "list[str]"
@@ -114,6 +117,7 @@ class Calibration:
             misfit=record["misfit"],
             probability=record["probability"],
             is_unexplained=record["is_unexplained"],
+            is_trusted=record["is_trusted"],
             by_noise_alone=record["by_noise_alone"],
             hardly_seen=record["hardly_seen"],
             notes=record["notes"],
@@ -143,7 +147,7 @@ def calibrate(
     *,
     noise: Sigma = None,
     unknowns: Literal["young", "moduli", "cells"] | None = None,
-    fix: "Sequence[Mapping[str, Any] | str]" = (),
+    fix: "Sequence[Mapping[str, Any] | str] | Mapping[str, Any] | str" = (),
     loads: "Mapping[str, Mapping[str, Any]] | None" = None,
     law: str | None = None,
     known: "Sequence[str]" = (),
@@ -175,10 +179,11 @@ def calibrate(
             and their displacements, each of shape (places, dimension); or a dictionary with some of ``places``, ``displacements``, ``forces``
             (by group, the force that holds it, N) and ``sigma``. NaN was not measured. Places are those of the body at rest, anywhere in its
             cells.
-        noise: The standard deviation of each displacement, m: one for all loads, or by load; None if it is not known. That of forces is
+        noise: The standard deviation of each displacement, a number of m or a text such as "0.1 mm": one for all loads, or by load; None if it is
+            not known. That of forces is
             ``sigma_forces`` of the dictionary of the load.
         unknowns: Young's modulus of each region (the default), with Poisson's ratio ("moduli"), or Young's modulus of each cell ("cells").
-        fix: What is held: names of groups, or keys of ``[[fix]]``.
+        fix: What is held: a name of a group or keys of ``[[fix]]``, or a list of these.
         loads: By name, the keys of each ``[[load]]``, such as ``{"group": "top", "traction": [0, 0, -100]}``.
         law: A law of large deformation, such as "neo-hookean".
         known: Regions that keep their moduli.
@@ -228,13 +233,22 @@ def calibrate(
         # In place of the mesh that is given.
         "mesh": {"box": box},
         "material": _materials(regions, law),
-        "fix": [{"group": own} if isinstance(own, str) else dict(own) for own in fix],
+        "fix": _fixes(fix),
         "load": [{"name": name, **own} for name, own in loads.items()],
         "calibrate": keys,
     }
     with listener(progress) as told:
         found = _core.calibrate(scene, given({}, None)[1], {}, mesh._core, *_readings(mesh, measured, noise), told)
     return Calibration._of(json.loads(found))
+
+
+def _fixes(fix: Any) -> "list[dict[str, Any]]":
+    """The ``[[fix]]`` of names of groups and of keys, or of one of them."""
+    own = [fix] if isinstance(fix, (str, Mapping)) else list(fix)
+    for one in own:
+        if not isinstance(one, (str, Mapping)):
+            raise failure("fix", "names of groups, or keys of [[fix]]", shown(one))
+    return [{"group": one} if isinstance(one, str) else dict(one) for one in own]
 
 
 def _materials(regions: Any, law: "str | None") -> Any:
@@ -293,7 +307,7 @@ def _readings(mesh: "Mesh | None", measured: "Mapping[str, Measured]", noise: Si
             if places.shape != moved.shape or places.shape[1] != dimension:
                 expected = f"places and displacements of shape (places, {dimension})"
                 raise failure(key, expected, f"{places.shape} and {moved.shape}")
-            displacements[load] = (places, moved, None if sigma is None else number(f"noise of {load}", sigma, "a number above zero, m"))
+            displacements[load] = (places, moved, None if sigma is None else measure(f"noise of {load}", sigma, "a number above zero, m, or a length"))
         noise_of_forces = None if sigma_forces is None else number(f"{key}.sigma_forces", sigma_forces, "a number above zero, N")
         if held:
             forces[load] = [(group, np.asarray(force, dtype=np.float64), noise_of_forces) for group, force in held.items()]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union, overload
 import numpy as np
 
 from . import _convert, _core
-from ._arguments import Element, ElementLike, along_axes, count, element_of, elements_of, failure, matrix, number, places, shown, warn, word
+from ._arguments import Element, ElementLike, along_axes, count, element_of, elements_of, failure, matrix, measure, number, places, shown, warn, word
 from ._lazy import Package
 
 Below = Literal["warn", "refuse", "skip"]
@@ -146,7 +146,7 @@ class Mesh:
         cls,
         path: str | os.PathLike[str],
         *,
-        scale: float = 1.0,
+        scale: float | str = 1.0,
         elements: Sequence[ElementLike] = (),
         below: Below | None = None,
         least: float | None = None,
@@ -156,7 +156,7 @@ class Mesh:
 
         Args:
             path: The file.
-            scale: The length of one of its units in metres.
+            scale: The length of one of its units in metres, or a unit such as "mm".
             elements: Element files, or elements, that are asked before the shipped ones.
             below, least: As for arrays.
             space: The dimension of the space, 2 or 3. By default surfaces of ``.obj``, ``.stl``, ``.ply``, ``.off`` and ``.vtp`` are in space,
@@ -213,12 +213,12 @@ class Mesh:
         return cls(box.points, [(element, nodes) for _, nodes in box.blocks], box.groups, cell_groups=box.cell_groups, below=below, least=least)
 
     @classmethod
-    def from_meshio(cls, mesh: Any, *, scale: float = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
+    def from_meshio(cls, mesh: Any, *, scale: float | str = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
         """Of a ``meshio.Mesh``: its cells of the highest dimension, and its point sets, cell sets and physical groups. Sets of one name are
         one group.
 
         Args:
-            scale: The length of one of its units in metres.
+            scale: The length of one of its units in metres, or a unit such as "mm".
             elements: Element files, or elements, that are asked before the shipped ones.
             **options: ``below`` and ``least``, as for arrays.
 
@@ -231,7 +231,7 @@ class Mesh:
         return cls._converted(_convert.from_meshio(mesh, elements_of(elements)), scale, options)
 
     @classmethod
-    def from_pyvista(cls, grid: Any, *, scale: float = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
+    def from_pyvista(cls, grid: Any, *, scale: float | str = 1.0, elements: Sequence[ElementLike] = (), **options: Any) -> Mesh:
         """Of a ``pyvista`` grid, image or ``PolyData``: its cells of the highest dimension. Arguments are those of :meth:`from_meshio`.
 
         Each cell of an image is a cell of the mesh, whatever its values; :meth:`voxels` takes labels.
@@ -244,7 +244,7 @@ class Mesh:
         return cls._converted(_convert.from_pyvista(grid, elements_of(elements)), scale, options)
 
     @classmethod
-    def from_skfem(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> Mesh:
+    def from_skfem(cls, mesh: Any, *, scale: float | str = 1.0, **options: Any) -> Mesh:
         """Of a scikit-fem mesh of linear cells; its named boundaries and subdomains become groups. Those of one name are one group.
         Arguments are those of :meth:`from_meshio`.
 
@@ -256,7 +256,7 @@ class Mesh:
         return cls._converted(_convert.from_skfem(mesh), scale, options)
 
     @classmethod
-    def from_trimesh(cls, mesh: Any, *, scale: float = 1.0, **options: Any) -> Mesh:
+    def from_trimesh(cls, mesh: Any, *, scale: float | str = 1.0, **options: Any) -> Mesh:
         """Of a ``trimesh.Trimesh``: a surface of triangles, which requires a thickness in its material. Arguments are those of
         :meth:`from_meshio`.
 
@@ -268,12 +268,12 @@ class Mesh:
         return cls._converted((mesh.vertices, {"tri3": mesh.faces}, None, None), scale, options)
 
     @classmethod
-    def _converted(cls, found: tuple[Any, CellsLike, Any, Any], scale: float, options: dict) -> Mesh:
+    def _converted(cls, found: tuple[Any, CellsLike, Any, Any], scale: float | str, options: dict) -> Mesh:
         points, cells, groups, cell_groups = found
         return cls(_scale(scale) * _points(points), cells, **{"groups": groups, "cell_groups": cell_groups, **options})
 
     @classmethod
-    def from_gmsh(cls, *, scale: float = 1.0, **options: Any) -> Mesh:
+    def from_gmsh(cls, *, scale: float | str = 1.0, **options: Any) -> Mesh:
         """Of the current model of the ``gmsh`` package. Arguments are those of :meth:`read`."""
         return _convert.from_gmsh(cls.read, scale, options)
 
@@ -282,26 +282,26 @@ class Mesh:
         cls,
         surface: Any,
         *,
-        cell: float | None = None,
+        cell: float | str | None = None,
         points: int | None = None,
         element: ElementLike = "hex8",
         boundary: Literal['stepped', 'smooth'] | None = None,
         layers: Literal['refuse', 'union'] | None = None,
         repair: bool = False,
-        scale: float = 1.0,
+        scale: float | str = 1.0,
     ) -> Mesh:
         """A closed surface filled with cells of a lattice, as ``[mesh.fill]`` of a scene.
 
         Args:
             surface: A file, such as ``.stl``; a surface :class:`Mesh`, a ``trimesh.Trimesh`` or a ``pyvista.PolyData``; or a pair of points
                 (points, 3) and triangles (cells, 3).
-            cell: The edge of the cubes of the lattice, in units of the surface; or
+            cell: The edge of the cubes of the lattice, in units of the surface, or a length such as "4 mm"; or
             points: about how many points the mesh has.
             element: Of hexahedra, which are the cubes, or of tetrahedra, twelve for each cube.
             boundary: "stepped" (the default) has whole cubes whose centres are inside; "smooth" tetrahedra that are cut off at the surface.
             layers: A surface that crosses itself is refused ("refuse"), or what any of its layers encloses is filled ("union").
             repair: Whether a damaged surface, such as a scan, is mended first.
-            scale: The length of one unit of the surface in metres.
+            scale: The length of one unit of the surface in metres, or a unit such as "mm".
 
         Raises:
             SpringfitError: The surface is open or crosses itself, or an argument is wrong.
@@ -313,10 +313,13 @@ class Mesh:
             1.0
         """
         path, arrays = _convert.surface_of(surface)
-        edge = None if cell is None else number("cell", cell, "the edge of a cube, in units of the surface")
+        size = _scale(scale)
+        edge = None if cell is None else measure("cell", cell, "the edge of a cube, in units of the surface, or a length")
+        if isinstance(cell, str) and edge is not None and not _is_number(cell):
+            edge /= size
         about = None if points is None else count("points", points)
         options = (word("boundary", boundary, '"stepped" or "smooth"'), word("layers", layers, '"refuse" or "union"'), _flag("repair", repair))
-        core = _core.filled_mesh(path, arrays, element_of(element), edge, about, options, _scale(scale))
+        core = _core.filled_mesh(path, arrays, element_of(element), edge, about, options, size)
         for note in core.annotations:
             warn(note)
         return cls._of(core)
@@ -565,9 +568,18 @@ def _gate(below: Any, least: Any) -> tuple[str | None, float | None]:
     return word("below", below, '"warn", "refuse" or "skip"'), least
 
 
+def _is_number(text: str) -> bool:
+    """Whether a text is a number without a unit."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _scale(scale: Any) -> float:
-    expected = "metres per mesh unit, a number above zero"
-    found = number("scale", scale, expected)
+    expected = "metres per mesh unit, a number above zero or a unit such as \"mm\""
+    found = measure("scale", scale, expected, "mesh unit")
     if not 0.0 < found < float("inf"):
         raise failure("scale", expected, found)
     return found

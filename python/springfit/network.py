@@ -29,7 +29,7 @@ def fit(
     material: MaterialLike,
     objective: str = "exact",
     *,
-    springs: "list[str] | None" = None,
+    springs: "str | list[str] | None" = None,
     fix: Any = None,
     progress: "bool | Callable[[str, int, int], Any]" = False,
     **keys: Any,
@@ -41,7 +41,7 @@ def fit(
         material: What it is made of: a :class:`Material`, or a dictionary of them by group for a body of regions, None standing for the rest.
         objective: "exact" (the default: the network is the finite element), "frobenius", "offdiag", "modal", "spectral",
             "divergence", "sampled", or a published method.
-        springs: Names of spring groups; all that are not optional, if None.
+        springs: Names of spring groups, or a word for several such as "all + volume"; all that are not optional, if None.
         fix: What is held in a fit to the whole object, as in :meth:`Network.solve`; such fits alone have it.
         progress: True shows a bar (by ``tqdm`` where it is installed); or a function of (stage, done, total).
         **keys: The other keys of a ``[[fit]]`` in a scene, such as ``nonnegative=True`` or ``volume="patches"``.

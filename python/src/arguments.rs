@@ -1,8 +1,9 @@
 //! Reads arguments that have to be numbers, counts or texts. A value of another type is an error that names the argument.
 
-use crate::error::invalid;
+use crate::error::{invalid, raised};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyComplex, PyFloat, PyInt, PyNone, PyString};
+use springfit::quantity::Quantity;
 
 /// Reads a real number.
 ///
@@ -16,6 +17,20 @@ pub fn number(key: &str, given: &Bound<PyAny>) -> PyResult<f64> {
     // A complex number would lose its imaginary part.
     let number = if is_real { given.extract().ok() } else { None };
     number.ok_or_else(|| invalid(given.py(), key, "a number", found(given)))
+}
+
+/// Reads a quantity with or without a unit, such as `0.1 mm`, in the SI unit: of the kind `length`, or `mesh unit` for that of a mesh.
+///
+/// # Errors
+/// The text is no such quantity.
+#[pyfunction]
+pub fn quantity(py: Python, key: &str, kind: &str, text: &str) -> PyResult<f64> {
+    let kind = match kind {
+        "length" => Quantity::Length,
+        "mesh unit" => Quantity::MeshUnit,
+        other => return Err(invalid(py, "kind", "length or mesh unit", other)),
+    };
+    kind.parse(text).map_err(|error| raised(py, error.at_key(key)))
 }
 
 /// Reads a list of real numbers, such as an array of one dimension.

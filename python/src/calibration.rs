@@ -1,9 +1,9 @@
 //! `calibrate`: moduli of a body from measurements.
 
-use crate::error::{invalid, raised};
+use crate::error::{invalid, raised, unwritten};
 use crate::mesh::Mesh;
 use crate::progress;
-use crate::study::{keyless, settings_of, text_of};
+use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -34,8 +34,9 @@ pub fn calibrate(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<String> {
     let (text, path) = text_of(py, scene, &folder)?;
+    let own = dictionary_path(scene, &path);
     let scene = Scene::parse_with(&text, &path, &settings_of(py, settings)?);
-    let scene = scene.map_err(|error| raised(py, keyless(error)))?;
+    let scene = scene.map_err(|error| raised(py, unwritten(keyless(error), own.as_deref())))?;
     let mut readings = Readings::new();
     let known = |value: &f64| (!value.is_nan()).then_some(*value);
     for (load, (places, moved, sigma)) in &displacements {
@@ -67,7 +68,8 @@ pub fn calibrate(
     }
     let mesh = mesh.map(|mesh| springfit::mesh::Mesh::clone(&mesh.mesh));
     progress::run(py, progress, move |told| {
-        let found = study::calibrate_with(&scene, mesh, &readings, &Controls::default(), told)?;
+        let found = study::calibrate_with(&scene, mesh, &readings, &Controls::default(), told);
+        let found = found.map_err(|error| unwritten(error, own.as_deref()))?;
         serde_json::to_string(&found).map_err(|e| Error::new(e.to_string()))
     })
 }

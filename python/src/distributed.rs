@@ -1,9 +1,9 @@
 //! Bodies whose cells are shared among the ranks of an MPI program; `springfit.petsc` has the program.
 
 use crate::arrays::{list, matrix, place_list, places, rows};
-use crate::error::{invalid, raised};
+use crate::error::{invalid, raised, unwritten};
 use crate::progress::{self, alone, apart};
-use crate::study::{keyless, settings_of, text_of};
+use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -37,11 +37,13 @@ impl DistributedBody {
     #[new]
     fn new(py: Python, scene: &Bound<PyAny>, folder: PathBuf, settings: &Bound<PyDict>) -> PyResult<DistributedBody> {
         let source = text_of(py, scene, &folder)?;
+        let own = dictionary_path(scene, &source.1);
         let scene = Scene::parse_with(&source.0, &source.1, &settings_of(py, settings)?);
-        let scene = scene.map_err(|error| raised(py, keyless(error)))?;
+        let scene = scene.map_err(|error| raised(py, unwritten(keyless(error), own.as_deref())))?;
         let fits = scene.fits().iter().map(|fit| fit.name.clone()).collect();
         let title = scene.title().into();
-        let (mesh, loads) = alone(py, move || distributed_body(&scene))?;
+        let (mesh, loads) =
+            alone(py, move || distributed_body(&scene).map_err(|error| unwritten(error, own.as_deref())))?;
         Ok(DistributedBody { source, title, fits, mesh, loads })
     }
 

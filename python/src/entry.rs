@@ -23,10 +23,12 @@ pub fn fit_entry(py: Python, keys: &Bound<PyDict>) -> PyResult<FitEntry> {
     let name = text("name", "a text")?;
     let springs = match keys.remove("springs") {
         None => None,
+        // A word stands for groups of any element, as in scenes.
+        Some(Value::String(one)) => Some(vec![one]),
         Some(given) => {
             let names =
                 given.as_array().map(|names| names.iter().map(|name| name.as_str().map(String::from)).collect());
-            let expected = "a list of names of spring groups";
+            let expected = "a name of a spring group, such as \"all + volume\", or a list of them";
             Some(names.flatten().ok_or_else(|| invalid(py, "springs", expected, inline(&given)))?)
         }
     };

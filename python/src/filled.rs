@@ -9,7 +9,7 @@ use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springfit::error::{Error, Result};
 use springfit::mesh::{self, Format, Group, MeshSource, NumberOrigin, SourceBlock, VoxelMesh};
-use springfit::study::FillEntry;
+use springfit::study::{FillEntry, MeshLength};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ pub fn filled_mesh(
     let mesh = alone(py, move || {
         let path = path.unwrap_or_default();
         let mut entry = FillEntry::new(&path);
-        (entry.cell, entry.points, entry.layers, entry.repair) = (cell, points, layers, repair);
+        (entry.cell, entry.points, entry.layers, entry.repair) = (cell.map(MeshLength::Units), points, layers, repair);
         entry.boundary = boundary.unwrap_or(entry.boundary);
         let source = given.map_or_else(|| MeshSource::read(&path), Ok)?;
         entry.of_source(&source, own.0, scale, Path::new("")).map_err(|error| unwritten(error, Some(Path::new(""))))

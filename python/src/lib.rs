@@ -77,6 +77,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(matrix::fit_stiffness, module)?)?;
     module.add_function(wrap_pyfunction!(study::run, module)?)?;
     module.add_function(wrap_pyfunction!(sweep::study_line, module)?)?;
+    module.add_function(wrap_pyfunction!(arguments::quantity, module)?)?;
     module.add_function(wrap_pyfunction!(calibration::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_scene, module)?)?;
     module.add_function(wrap_pyfunction!(studies::compare_cases, module)?)?;

@@ -202,3 +202,57 @@ def test_intervals_hold_the_truth_of_another_mesh_and_element():
     rows = sum(row["intervals"] * row["held"] for row in found.values())
     # Of 20 intervals of 95 %, fewer than 16 hold with a chance of 0.3 %.
     assert rows >= 16, found
+
+
+def test_supports_and_noise_are_written_as_in_scenes():
+    mesh = block()
+    held = np.array([0.0, 0.0, 1.0])  # what the lower side does not move
+    moved = mesh.points * STRAIN * held + 1e-6 * np.random.default_rng(5).normal(size=mesh.points.shape)
+    of = dict(loads=PULL, refinements=0)
+    plain = sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": moved}, noise=1e-4, fix=[{"group": "zmin"}], **of)
+    words = sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": moved}, noise="0.1 mm", fix="zmin", **of)
+    assert words.record["regions"] == plain.record["regions"] and words.misfit == plain.misfit
+    alone = sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": moved}, noise={"pull": "0.1 mm"}, fix={"group": "zmin"}, **of)
+    assert alone.record["regions"] == plain.record["regions"]
+    for noise in ("0.1 kPa", "much"):
+        with pytest.raises(sf.SpringfitError, match="^noise of pull: expected a length"):
+            sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": moved}, noise=noise, fix="zmin", **of)
+    with pytest.raises(sf.SpringfitError, match="^fix: expected names of groups"):
+        sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": moved}, fix=[3], **of)
+
+
+def test_errors_of_arguments_name_no_file():
+    mesh = block()
+    with pytest.raises(sf.SpringfitError) as caught:
+        sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": mesh.points}, fix="zmim", loads=PULL)
+    assert "scene.toml" not in str(caught.value) and caught.value.file is None and caught.value.line is None
+    assert caught.value.key.startswith("fix[0]") and 'did you mean "zmin"?' in str(caught.value)
+    with pytest.raises(sf.SpringfitError) as caught:
+        sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": mesh.points}, fix="zmin", loads=PULL, known=["body"])
+    assert "scene.toml" not in str(caught.value) and caught.value.file is None
+
+
+def test_residuals_far_beyond_the_noise_are_not_trusted():
+    mesh, random = block(), np.random.default_rng(4)
+    sigma = 1e-4
+    moved = mesh.points * STRAIN + sigma * random.normal(size=mesh.points.shape)
+    given = dict(fix=FIX, loads=PULL, unknowns="moduli", refinements=0)
+    right = sf.calibrate(mesh, sf.Material(2e4, 0.1), {"pull": moved}, noise=sigma, **given)
+    wrong = sf.calibrate(mesh, sf.Material(2e4, 0.1), {"pull": moved}, noise=1e-4 * sigma, **given)
+    assert right.is_trusted and not any("NOT TRUSTED" in note for note in right.notes)
+    assert not wrong.is_trusted and wrong.notes[0].startswith("NOT TRUSTED: residuals are ")
+    assert wrong.misfit == pytest.approx(1e4 * right.misfit, rel=1e-6)
+    for key in ("young", "poisson"):
+        # The deviations are those of the residuals: as many times those by the stated noise as residuals are beyond it.
+        a, b = getattr(right.regions["body"], key), getattr(wrong.regions["body"], key)
+        assert b.deviation == pytest.approx(a.deviation * right.misfit, rel=1e-6)
+        assert b.interval[1] > b.interval[0]
+
+
+def test_progress_has_no_end_where_none_is_known():
+    told = []
+    mesh = block()
+    sf.calibrate(mesh, sf.Material(2e4, 0.3), {"pull": mesh.points * STRAIN}, fix=FIX, loads=PULL, refinements=0, progress=lambda *step: told.append(step))
+    steps = [step for step in told if step[0] == "calibrate"]
+    assert steps and all(total == 0 for _, _, total in steps)
+    assert [done for _, done, _ in steps] == sorted(done for _, done, _ in steps)

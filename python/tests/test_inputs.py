@@ -81,7 +81,7 @@ def test_values_that_are_none_of_toml_are_named(value):
 @pytest.mark.parametrize(
     "call, key",
     [
-        (lambda: sf.fit(MESH, MATERIAL, "frobenius", springs="edge"), "springs"),
+        (lambda: sf.fit(MESH, MATERIAL, "frobenius", springs=3), "springs"),
         (lambda: sf.fit(MESH, MATERIAL, "frobenius", springs=[1]), "springs"),
         (lambda: sf.fit(MESH, MATERIAL, "frobenius", name=1), "name"),
         (lambda: sf.fit(MESH, MATERIAL, 3), "objective"),

@@ -311,7 +311,7 @@ def test_wrong_boxes_are_named(size, cells, keys, key):
 @pytest.mark.parametrize(
     "keys, key",
     [
-        ({"scale": "2 cm"}, "scale"),
+        ({"scale": "2 kg"}, "scale"),
         ({"scale": -1}, "scale"),
         ({"elements": "tri3"}, "elements"),
         ({"elements": [3]}, "element"),
@@ -500,3 +500,17 @@ def test_missing_files_are_errors_of_the_system(read, tmp_path):
 
 def test_boxes_have_their_worst_quality():
     assert box("tet4").quality["worst"] == pytest.approx(sf.Mesh(box("tet4").points, box("tet4").cells).quality["worst"])
+
+
+def test_lengths_with_units_are_taken_as_in_scenes(tmp_path):
+    points = np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0], [0, 0, 20], [20, 0, 20], [20, 20, 20], [0, 20, 20]], dtype=float)
+    sides = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    triangles = np.array([corner for a, b, c, d in sides for corner in ((a, b, c), (a, c, d))])
+    plain = sf.Mesh.fill((points, triangles), cell=4, scale=0.001)
+    words = sf.Mesh.fill((points, triangles), cell="4 mm", scale="mm")
+    assert np.array_equal(plain.points, words.points) and plain.volume == words.volume
+    assert np.array_equal(sf.Mesh.fill((points, triangles), cell="4", scale="mm").points, plain.points)
+    with pytest.raises(sf.SpringfitError, match="^cell: expected a length"):
+        sf.Mesh.fill((points, triangles), cell="4 kPa", scale="mm")
+    with pytest.raises(sf.SpringfitError, match="^scale: expected the length of one mesh unit"):
+        sf.Mesh.fill((points, triangles), cell=4, scale="inches")

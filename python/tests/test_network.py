@@ -208,3 +208,12 @@ def test_the_lock_is_released():
     done.set()
     thread.join()
     assert len(ticks) > 10
+
+
+def test_a_word_stands_for_groups_as_in_scenes():
+    mesh = sf.Mesh.box("tet4", [1, 1, 1], [2, 2, 2])
+    word = sf.fit(mesh, sf.Material(1e4, 0.3), "frobenius", springs="all + volume")
+    listed = sf.fit(mesh, sf.Material(1e4, 0.3), "frobenius", springs=["all + volume"])
+    assert np.array_equal(word.constants, listed.constants) and len(word.constants) > 0
+    with pytest.raises(sf.SpringfitError, match="springs"):
+        sf.fit(mesh, sf.Material(1e4, 0.3), "frobenius", springs=3)

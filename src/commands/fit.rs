@@ -153,7 +153,7 @@ impl Fit {
         }
         let mesh = self.options.mesh(&self.mesh)?;
         let material = constants.material(&mesh).map_err(Error::of_option)?;
-        let assumed = assumed(&mesh, constants.thickness, constants.area);
+        let assumed = assumed(&mesh, constants.thickness, constants.area).or_else(|| self.options.unit_note(&mesh));
         let support = (!self.fix.is_empty()).then(|| self.support(&mesh)).transpose()?;
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {

@@ -41,7 +41,9 @@ impl Groups {
             (scene.title().to_string(), scene.build_mesh()?)
         } else {
             self.settings.expect_none("an element")?;
-            (self.mesh.display().to_string(), self.options.mesh(&self.mesh)?)
+            let mesh = self.options.mesh(&self.mesh)?;
+            self.options.unit_note(&mesh).iter().for_each(|words| terminal.note(words));
+            (self.mesh.display().to_string(), mesh)
         };
         let record = MeshRecord::of(name, &mesh);
         self.output.print(terminal, || &record, || vec![record.table()], || record.text())?;

@@ -263,7 +263,7 @@ fn region(text: &str, specimen: &Specimen) -> Result<(String, Vec<bool>)> {
     if name.is_empty() || name.contains(['<', '>', '!']) || condition.starts_with('=') {
         return Err(wrong());
     }
-    let condition = Scope::new(&["x", "y", "z"]).predicate(condition).map_err(|e| e.at_key("--region"))?;
+    let condition = Scope::of_place(3).predicate(condition).map_err(|e| e.at_key("--region"))?;
     let d = specimen.network.dimension;
     let at = |p: usize| -> [f64; 3] { std::array::from_fn(|k| if k < d { specimen.points[p * d + k] } else { 0.0 }) };
     Ok((name.to_string(), (0..specimen.count()).map(|p| condition.holds(&at(p))).collect()))

@@ -5,7 +5,7 @@ use springfit::error::{Error, Result};
 use springfit::mesh::{Gate, Mesh, MeshSource};
 use springfit::quantity::Quantity;
 use springfit::range;
-use springfit::study::{FillEntry, check_unit, load_elements};
+use springfit::study::{FillEntry, MeshLength, check_unit, load_elements, unit_note};
 use std::path::Path;
 
 /// How a mesh file is read.
@@ -25,9 +25,9 @@ pub struct MeshOptions {
     /// The least quality of a cell, from 0 for flat to 1 for right angles [default: 1e-4]
     #[arg(long, allow_hyphen_values = true)]
     least: Option<f64>,
-    /// The mesh is a closed surface: fill it with cells of this edge, in mesh units
+    /// The mesh is a closed surface: fill it with cells of this edge, a number of mesh units or a length such as "4 mm"
     #[arg(long, allow_hyphen_values = true)]
-    fill: Option<f64>,
+    fill: Option<String>,
     /// The mesh is a closed surface: fill it so that there are about this number of points, in place of --fill
     #[arg(long)]
     points: Option<usize>,
@@ -73,6 +73,12 @@ impl MeshOptions {
         range::positive("--scale", scale, "metres per mesh unit")
     }
 
+    /// A note if no unit is given and the size of the mesh suggests that it is not the metre.
+    pub fn unit_note(&self, mesh: &Mesh) -> Option<String> {
+        let is_taken = self.scale.parse::<f64>().is_ok_and(|scale| scale == 1.0);
+        is_taken.then(|| unit_note(mesh, "--scale mm")).flatten()
+    }
+
     /// The mesh in the file.
     ///
     /// # Errors
@@ -80,7 +86,7 @@ impl MeshOptions {
     pub fn mesh(&self, file: &Path) -> Result<Mesh> {
         let scale = self.scale()?;
         let own = load_elements(&self.element, Path::new("")).map_err(|e| e.placed(|e| e.at_key("--element")))?;
-        if let Some(fill) = self.filling(file) {
+        if let Some(fill) = self.filling(file)? {
             let others = [
                 ("--below", self.below.is_some()),
                 ("--least", self.least.is_some()),
@@ -119,18 +125,22 @@ impl MeshOptions {
     }
 
     /// How the surface in the file is filled, if it is.
-    pub fn filling(&self, surface: &Path) -> Option<FillEntry> {
+    ///
+    /// # Errors
+    /// The edge of the cells is no length.
+    pub fn filling(&self, surface: &Path) -> Result<Option<FillEntry>> {
         let usual = FillEntry::new(surface);
         let is_asked = self.filling_options().into_iter().any(|(_, given)| given);
-        is_asked.then(|| FillEntry {
-            cell: self.fill,
+        let cell = self.fill.as_deref().map(MeshLength::parse).transpose().map_err(|e| e.under("--fill"))?;
+        Ok(is_asked.then(|| FillEntry {
+            cell,
             points: self.points,
             element: self.fill_element.clone().unwrap_or(usual.element),
             boundary: self.fill_boundary.clone().unwrap_or(usual.boundary),
             layers: self.fill_layers.clone(),
             repair: self.repair,
             ..usual
-        })
+        }))
     }
 
     /// The options of a fill, and whether each is given.

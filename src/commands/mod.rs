@@ -20,6 +20,7 @@ mod measure;
 mod merge;
 mod mesh_file;
 mod new;
+mod not_a_scene;
 mod output;
 mod paper;
 mod plot;

@@ -54,6 +54,7 @@ impl New {
             check_file(output)?;
         }
         let mesh = self.options.mesh(&self.mesh)?;
+        self.options.unit_note(&mesh).iter().for_each(|words| terminal.note(words));
         let folder = self.output.as_ref().and_then(|output| output.parent());
         let file = from_folder(&self.mesh, folder.unwrap_or(Path::new("")));
         let elements: Vec<String> =
@@ -68,7 +69,7 @@ impl New {
         let here = folder.unwrap_or(Path::new(""));
         let fill = self
             .options
-            .filling(Path::new(&*file))
+            .filling(Path::new(&*file))?
             .map(|fill| FillEntry { element: own_file(&fill.element, here), ..fill });
         let source = fill.as_ref().map_or(DraftSource::File(&file), DraftSource::Fill);
         let text = draft(&mesh, source, unit, &elements, &title, &self.material(&mesh)?);

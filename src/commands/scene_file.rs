@@ -1,5 +1,6 @@
 //! Arguments that are scenes, and what is set beside them.
 
+use super::not_a_scene::explained;
 use clap::Args;
 use springfit::error::{Error, Result};
 use springfit::study::{Scene, Setting, Sweep};
@@ -20,7 +21,7 @@ impl Settings {
     /// # Errors
     /// A setting is no `KEY=VALUE`; the file or a setting is wrong.
     pub fn scene(&self, path: &Path) -> Result<Scene> {
-        Scene::load_with(path, &self.read()?)
+        Scene::load_with(path, &self.read()?).map_err(|error| explained(path, error))
     }
 
     /// The sweep of the scene with what is set.
@@ -28,7 +29,7 @@ impl Settings {
     /// # Errors
     /// As there; or the scene has no sweep.
     pub fn sweep(&self, path: &Path) -> Result<Sweep> {
-        Sweep::load(path, &self.read()?)
+        Sweep::load(path, &self.read()?).map_err(|error| explained(path, error))
     }
 
     /// The reference of a convergence study, which has the material, supports and loads of the scene and a mesh of its own.
@@ -38,7 +39,7 @@ impl Settings {
     pub fn reference(&self, path: &Path) -> Result<Scene> {
         let mut settings = self.read()?;
         settings.retain(|setting| !["mesh", "fit", "output"].contains(&setting.first()));
-        Scene::load_with(path, &settings)
+        Scene::load_with(path, &settings).map_err(|error| explained(path, error))
     }
 
     /// That nothing is set where there is no scene, but `what`.

@@ -31,11 +31,13 @@ pub fn calibration_tables(outcome: &CalibrationOutcome) -> Vec<Table> {
 
 /// The tables under the title of the scene, and the notes.
 pub fn calibration_text(outcome: &CalibrationOutcome) -> String {
-    let mut text = format!("{}\n", printable(&outcome.scene));
+    let mut text = outcome.distrust().map_or(String::new(), |words| format!("{words}\n"));
+    writeln!(text, "{}", printable(&outcome.scene)).expect("a String grows");
     for table in calibration_tables(outcome) {
         write!(text, "\n{}", table.titled_text()).expect("a String grows");
     }
-    for note in &outcome.notes {
+    let is_first = usize::from(outcome.distrust().is_some());
+    for note in &outcome.notes[is_first.min(outcome.notes.len())..] {
         writeln!(text, "{note}").expect("a String grows");
     }
     text

@@ -98,6 +98,16 @@ pub struct FitRecord {
 }
 
 impl FitRecord {
+    /// The name, with the status of a network that does not stand: figures and tables by themselves say it there.
+    pub(super) fn marked(&self) -> String {
+        match ["fitted", "stable", "converged"].contains(&&*self.status) {
+            true => self.name.clone(),
+            false => format!("{} ({})", self.name, self.status),
+        }
+    }
+}
+
+impl FitRecord {
     /// Makes the record of a fit of a run.
     pub(super) fn of(run: &Outcome, outcome: &FitOutcome) -> FitRecord {
         let elements = run.mesh.cell_count();

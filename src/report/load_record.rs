@@ -16,6 +16,9 @@ pub struct MeasuredRecord {
     pub standard: Standard,
     /// This number of points has a known displacement; 0 says that the errors are not known.
     pub points: usize,
+    /// The largest known displacement is this, m.
+    #[serde(default)]
+    pub largest: Option<f64>,
     /// The finite elements have this root mean square distance from the known displacements, percent of the largest.
     pub fem_e_rms: Option<f64>,
     /// The finite elements have this largest distance from the known displacements, percent of the largest.
@@ -71,6 +74,7 @@ impl MeasuredRecord {
             load: load.name.clone(),
             standard: measured.standard,
             points: measured.points,
+            largest: measured.largest.and_then(finite),
             fem_e_rms: measured.error.and_then(|e| finite(e.rms)),
             fem_e_max: measured.error.and_then(|e| finite(e.max)),
             fem_e_tip: measured.error.and_then(|e| finite(e.tip)),

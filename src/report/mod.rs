@@ -16,6 +16,7 @@ mod forecast;
 mod former;
 mod frequencies;
 mod groups;
+mod held_out;
 mod json;
 mod key_tables;
 mod key_types;

@@ -9,7 +9,7 @@ use super::table::Priority::First;
 use super::table::{Cell, Column, Table, csv};
 use crate::dynamics::Integrator;
 use crate::scalar::norm;
-use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record, motion_title};
+use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record, extent, motion_title};
 
 /// One row per model.
 pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRecord]) -> Table {
@@ -69,9 +69,48 @@ fn ended(model: &MotionRecord) -> String {
         format!("{} in {}", model.ended, counted(model.unsolved_steps, "step"))
     } else if [MotionEnding::NoResponse, MotionEnding::RanAway].iter().any(|ending| ending.name() == model.ended) {
         format!("{} after {}", model.ended, counted(model.steps, "step"))
+    } else if model.growth.is_some() || model.inverted_elements > 0 {
+        format!("{}, not trusted", model.ended)
     } else {
         model.ended.clone()
     }
+}
+
+/// A body that is held and moves by more than this multiple of its own size is torn off.
+const FAR: f64 = 10.0;
+/// Linear finite elements that are strained by this much say nothing of a body.
+const LOST_LINEAR: f64 = 1.0;
+
+/// Says that motions are not to be trusted, and why: one that did not come to its end, an unstable network, inverted cells, or a body that leaves
+/// its place.
+pub(super) fn motion_distrust(outcome: &Outcome) -> Option<String> {
+    let motion = outcome.motion.as_ref()?;
+    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let points = 0..outcome.mesh.point_count() * outcome.mesh.dimension;
+    let is_held = motion.pulls.is_empty() && points.into_iter().any(|place| motion.support.is_fixed(place));
+    let why = |model: &ModelMotion| -> Option<String> {
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        match &model.ending {
+            MotionEnding::Complete | MotionEnding::Refused(_) => {}
+            MotionEnding::Unsolved | MotionEnding::NoResponse | MotionEnding::RanAway => {
+                return Some(model.ending.name().into());
+            }
+        }
+        if model.growth.is_some() {
+            return Some("is not stable at rest".into());
+        }
+        if model.inverted > 0 {
+            return Some(format!("has {} inside out", counted(model.inverted, "cell")));
+        }
+        if let Some(of) = model.deformation.filter(|of| !(of.strain <= LOST_LINEAR)) {
+            return Some(format!("is linear, with strains of {}", percent(of.strain)));
+        }
+        (is_held && !(model.largest <= FAR * size))
+            .then(|| format!("moves by {} of the body", percent(model.largest / size)))
+    };
+    let all: Vec<String> =
+        motion.models.iter().filter_map(|model| Some(format!("{} ({})", model.name, why(model)?))).collect();
+    (!all.is_empty()).then(|| format!("NOT TRUSTED: the motion of {}", all.join(", ")))
 }
 
 /// Where steps do not divide the times that are asked for.

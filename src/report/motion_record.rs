@@ -58,6 +58,12 @@ pub struct MotionRecord {
     pub unsolved_steps: usize,
     /// The fastest-growing motion of an unstable network grows at this rate at rest, 1/s.
     pub growth: Option<f64>,
+    /// A point is displaced by this much at most in the states that are written, m.
+    #[serde(default)]
+    pub largest_displacement: Option<f64>,
+    /// In one of a dozen states this number of cells is turned inside out, at a quadrature point or more.
+    #[serde(default)]
+    pub inverted_elements: usize,
     /// The states are at these times, s.
     pub time: Vec<Option<f64>>,
     /// The kinetic energy of each state is in J.
@@ -88,6 +94,13 @@ pub struct MotionRecord {
     pub linear_e_rms_mean: Option<f64>,
     /// With springs that do not turn, the largest `e_rms` is this, in percent; it is null as `linear_e_rms_mean` is.
     pub linear_e_rms_max: Option<f64>,
+}
+
+impl MotionRecord {
+    /// Whether the motion says something of the body: it came to its end, and neither is the network unstable nor a cell inside out.
+    pub fn is_trusted(&self) -> bool {
+        self.ended == MotionEnding::Complete.name() && self.growth.is_none() && self.inverted_elements == 0
+    }
 }
 
 /// Names the precision of the forces in reports without the key.
@@ -139,6 +152,8 @@ impl From<&ModelMotion> for MotionRecord {
             reason: if let MotionEnding::Refused(why) = &model.ending { Some(why.clone()) } else { None },
             unsolved_steps: model.unsolved,
             growth: model.growth.and_then(finite),
+            largest_displacement: finite(model.largest),
+            inverted_elements: model.inverted,
             time: number(&|r| Some(r.account.time)),
             kinetic: number(&|r| Some(r.account.kinetic)),
             elastic: number(&|r| Some(r.account.elastic)),

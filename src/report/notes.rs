@@ -4,7 +4,7 @@ use super::agreement::{Agreement, agreements};
 use super::frequencies::frequency_notes;
 use super::linear_theory::{bending_note, distrust, linear_note};
 use super::materials::material_note;
-use super::motion::motion_notes;
+use super::motion::{motion_distrust, motion_notes};
 use super::note::{Note, Weight, grouped, ordered};
 use super::quality::quality_lines;
 use super::sheets::sheet_notes;
@@ -36,7 +36,7 @@ pub fn groups_beside_summary(outcome: &Outcome) -> Vec<String> {
 /// What `summary` says as well.
 fn of_summary(outcome: &Outcome) -> impl Iterator<Item = String> {
     let quality = quality_lines(&outcome.mesh.quality);
-    distrust(outcome).into_iter().chain(quality).chain(outcome.mesh.annotations.notes())
+    distrust(outcome).into_iter().chain(motion_distrust(outcome)).chain(quality).chain(outcome.mesh.annotations.notes())
 }
 
 /// The sentences of a record of the network `name` which say that its cells lock, so that it is too stiff with them.

@@ -1,6 +1,6 @@
 //! Figures for a paper, from the folder of a run, a comparison, a sweep or a convergence study.
 
-use super::compare::{CASES, Drawn, compare_tables, comparison_chart, read_cases, summarized};
+use super::compare::{CASES, Drawn, compare_tables, comparison_chart, read_cases, summarized, thinned};
 use super::figure::{
     Axis, CONVERGENCE_TABLE, Chart, Columns, Cost, Deformation, Moduli, RunFolder, Series, Shape, convergence_chart,
     precision_chart, swept_chart,
@@ -100,6 +100,7 @@ impl Figure {
     pub fn left_out(self, run: &RunFolder, of: Option<&str>) -> Result<Vec<String>> {
         match self {
             Figure::WorkPrecision if !run.file(CASES).is_file() => without_error(&run.report()?, of),
+            Figure::Norms => Ok(thinned(&read_cases(&run.file(""))?, of).into_iter().collect()),
             _ => Ok(Vec::new()),
         }
     }
@@ -164,15 +165,20 @@ fn precision(run: &RunFolder, load: Option<&str>, cost: Cost) -> Result<Chart> {
         Cost::Fit => Some(fit.seconds_per_element),
         _ => cost.of_model(fit.model_times.as_ref()?),
     };
-    let point = |fit: &FitRecord| Some((fit.name.clone(), seconds(fit)?, error(fit)?));
-    let mut points: Vec<_> = report.fits.iter().filter_map(point).collect();
+    let point = |(place, fit): (usize, &FitRecord)| Some((place, fit.marked(), seconds(fit)?, error(fit)?));
+    let mut points: Vec<_> = report.fits.iter().enumerate().filter_map(point).collect();
     if cost != Cost::Fit && report.model_times.is_none() {
         let words = "has no costs of models: springfit run --time measures them";
         return Err(Error::new(words).in_file(&run.file("report.json")));
     }
     if let Some(seconds) = report.model_times.as_ref().and_then(|times| cost.of_model(times)) {
         let known = report.measured.iter().find(|known| known.load == name);
-        points.push((BODY.into(), seconds, known.map_or(Some(0.0), |known| known.fem_e_rms).unwrap_or(f64::NAN)));
+        points.push((
+            report.fits.len(),
+            BODY.into(),
+            seconds,
+            known.map_or(Some(0.0), |known| known.fem_e_rms).unwrap_or(f64::NAN),
+        ));
     }
     let is_repeated = report.fits.iter().all(|fit| fit.times.is_some());
     let kind = if is_repeated { " (median)" } else { " (one pass)" };
@@ -193,10 +199,9 @@ fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
     let mut counts = vec![0usize; INTERVALS];
     values.iter().for_each(|value| counts[(((value - least) / width) as usize).min(INTERVALS - 1)] += 1);
     let middle = |i: usize| least + (i as f64 + 0.5) * width;
-    let part = |name: &str, keep: fn(f64) -> bool| Series {
-        name: name.into(),
-        points: (0..INTERVALS).filter(|&i| keep(middle(i))).map(|i| (middle(i), counts[i] as f64)).collect(),
-        shape: Shape::Bars(width),
+    let part = |name: &str, keep: fn(f64) -> bool| {
+        let points = (0..INTERVALS).filter(|&i| keep(middle(i))).map(|i| (middle(i), counts[i] as f64));
+        Series::new(name, points.collect(), Shape::Bars(width))
     };
     let series = vec![part("k ≥ 0", |k| k >= 0.0), part("k < 0", |k| k < 0.0)];
     Ok(Chart {
@@ -210,7 +215,9 @@ fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
 fn motion(report: &Report) -> Result<Chart> {
     let curve = |model: &crate::report::MotionRecord| {
         let points = model.time.iter().zip(&model.e_rms).filter_map(|(time, error)| Some(((*time)?, (*error)?)));
-        Series { name: model.name.clone(), points: points.collect(), shape: Shape::Line }
+        let place = report.fits.iter().position(|fit| fit.name == model.name).unwrap_or(report.fits.len());
+        let distrust = if model.is_trusted() { "" } else { " (not trusted)" };
+        Series::new(format!("{}{distrust}", model.name), points.collect(), Shape::Line).styled(place)
     };
     let has_error = |series: &Series| series.points.iter().any(|(_, error)| *error > 0.0);
     let series: Vec<Series> = report.motion.iter().map(curve).filter(has_error).collect();

@@ -2,6 +2,7 @@
 
 use super::fit_record::FitRecord;
 use super::frequencies::frequencies;
+use super::held_out::held_out;
 use super::json::Report;
 use super::load_record::LoadRecord;
 use super::motion::motions;
@@ -22,6 +23,7 @@ impl Table {
             times(report),
             costs(report),
             whole(report),
+            held_out(report),
             frequencies(&report.frequencies),
             motions(report.motion_options.as_ref(), &report.motion),
         ];
@@ -99,7 +101,7 @@ fn errors(report: &Report) -> Table {
         cells
     };
     let row = |fit: &FitRecord| {
-        std::iter::once(Cell::from(&*fit.name)).chain(fit.loads.iter().enumerate().flat_map(cells)).collect()
+        std::iter::once(Cell::from(&*fit.marked())).chain(fit.loads.iter().enumerate().flat_map(cells)).collect()
     };
     let mut rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
     if !report.measured.is_empty() && !rows.is_empty() {
@@ -135,24 +137,48 @@ fn materials(report: &Report) -> Table {
         let whole = |title| Column::numbers(title).group("whole").priority(Third);
         columns.extend([whole("E").unit("Pa"), whole("ν"), whole("Zener")]);
     }
+    // Of an anisotropic material a mean over directions says little.
+    let axes: &[&str] = if is_anisotropic(report) { &["x", "y", "z"][..report.extent.len()] } else { &[] };
+    columns.extend(axes.iter().map(|axis| Column::numbers(*axis).unit("Pa").group("E along").priority(Third)));
     let row = |fit: &FitRecord| {
         let m = &fit.as_material;
         let distances = [m.distance, m.mean_distance, m.largest_distance];
         let mut row =
-            vec![Cell::from(&*fit.name), Cell::number(m.young, Significant(5)), Cell::number(m.poisson, Fixed(3))];
+            vec![Cell::from(&*fit.marked()), Cell::number(m.young, Significant(5)), Cell::number(m.poisson, Fixed(3))];
         row.extend(distances.map(|share| Cell::percent(Some(share), Fixed(1))));
         if is_whole {
             row.push(Cell::number(fit.effective_young, Significant(5)));
             row.extend([fit.effective_poisson, fit.zener].map(|number| Cell::number(number, Fixed(3))));
         }
+        let along = young_along(report, fit);
+        row.extend((0..axes.len()).map(|k| Cell::number(along.as_ref().map(|along| along[k]), Significant(4))));
         row
     };
     let asked = match (report.young, report.poisson) {
         (Some(young), Some(poisson)) => format!("asked for are E = {young} Pa, ν = {poisson}"),
+        _ if is_anisotropic(report) => "an anisotropic one is asked for, E and ν are means over all directions".into(),
         _ => "those that are asked for differ from cell to cell".into(),
     };
     let title = format!("Networks as materials; {asked}");
     Table::new("materials", title, columns, report.fits.iter().map(row)).with_notes(samples(report))
+}
+
+/// Whether no region of the body has Young's modulus, which anisotropic materials do not have.
+fn is_anisotropic(report: &Report) -> bool {
+    report.materials.iter().all(|region| region.young == [None, None])
+}
+
+/// Young's modulus of a network along the axes, Pa: `1/S_kk` of the compliance S of its tensor. `None` if a strain has no stiffness, and where the
+/// tensor is not in the axes of the body or its thickness differs from cell to cell.
+fn young_along(report: &Report, fit: &FitRecord) -> Option<Vec<f64>> {
+    let (c, d) = (&fit.as_material.stiffness, report.extent.len());
+    let thickness = match report.materials.first()?.thickness {
+        None => 1.0,
+        Some([least, most]) => least.filter(|_| least == most)?,
+    };
+    let compliance = (c.nrows() == d * (d + 1) / 2).then(|| c.clone().try_inverse()).flatten()?;
+    let along: Vec<f64> = (0..d).map(|k| 1.0 / (compliance[(k, k)] * thickness)).collect();
+    along.iter().all(|young| young.is_finite()).then_some(along)
 }
 
 /// Says what the rows of a body of several materials speak of: the mean of its samples, which is not that of the body.
@@ -167,6 +193,12 @@ fn samples(report: &Report) -> Option<String> {
         (None, _) => String::new(),
     };
     let samples = if m.samples == 1 { "one sample".into() } else { format!("{} samples", m.samples) };
+    if is_anisotropic(report) {
+        let samples = if m.samples == 1 { "one sample".into() } else { format!("{} samples", m.samples) };
+        return Some(format!(
+            "The material is anisotropic: E and nu are means over all directions, of {samples} of cells{asked}."
+        ));
+    }
     Some(format!(
         "The materials differ from cell to cell: E and nu are those of {samples} of cells, not of the body{asked}."
     ))
@@ -234,7 +266,7 @@ fn costs(report: &Report) -> Table {
         row
     };
     let of_fit = |fit: &FitRecord| {
-        Some(row(&fit.name, fit.fitted_elements.into(), fit.times.as_ref(), fit.model_times.as_ref()?))
+        Some(row(&fit.marked(), fit.fitted_elements.into(), fit.times.as_ref(), fit.model_times.as_ref()?))
     };
     let mut rows: Vec<Vec<Cell>> = report.fits.iter().filter_map(of_fit).collect();
     rows.extend(report.model_times.as_ref().map(|model| row(BODY, Cell::number(None, Fixed(0)), None, model)));

@@ -2,10 +2,11 @@
 
 use super::json::Report;
 use super::linear_theory::distrust;
+use super::motion::motion_distrust;
 use super::quality::{changes, counted, quality_lines};
 use super::region_record::RegionRecord;
 use super::table::{Table, run_text};
-use crate::study::{BodyLoad, Followed, Outcome, Reading, extent};
+use crate::study::{BodyLoad, Followed, Outcome, Reading, Standard, extent};
 use crate::text::printable;
 use std::fmt::Write;
 
@@ -36,7 +37,8 @@ pub fn summary(outcome: &Outcome) -> String {
     let mesh = &outcome.mesh;
     let given =
         if outcome.settings.is_empty() { String::new() } else { format!(" with {}", outcome.settings.join(", ")) };
-    let mut text = distrust(outcome).map_or(String::new(), |words| format!("{}\n", printable(&words)));
+    let distrusted = distrust(outcome).into_iter().chain(motion_distrust(outcome));
+    let mut text: String = distrusted.map(|words| format!("{}\n", printable(&words))).collect();
     text += &format!("{}\n{}\n", printable(&(outcome.scene.clone() + &given)), summary_line(outcome));
     for line in changes(mesh) {
         writeln!(text, "{line}").expect("a String grows");
@@ -111,12 +113,17 @@ fn pressures(outcome: &Outcome) -> Vec<String> {
     outcome.loads.iter().enumerate().filter_map(line).collect()
 }
 
-/// How far the finite elements move under the loads that they reach, which percentages hide.
+/// How far the finite elements move under the loads that they reach, and what errors are relative to, which percentages hide.
 fn largest(outcome: &Outcome) -> Option<String> {
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     let moved = |load: &BodyLoad| {
         let most = load.largest_displacement(&outcome.mesh);
-        format!("{} {most:.3e} m ({:.2} % of the body)", load.name, 100.0 * most / size)
+        let known = load.measured.and_then(|measured| Some((measured.standard, measured.largest?)));
+        let known = known.map_or(String::new(), |(standard, most)| {
+            let of = if standard == Standard::Measurement { "measured" } else { standard.words() };
+            format!("; {most:.3e} m {of}")
+        });
+        format!("{} {most:.3e} m ({:.2} % of the body{known})", load.name, 100.0 * most / size)
     };
     let loads: Vec<String> = outcome.loads.iter().filter(|load| load.is_reached()).map(moved).collect();
     (!loads.is_empty()).then(|| format!("Largest displacement of the finite elements: {}.", loads.join(", ")))

@@ -9,7 +9,7 @@ fn options_of_fit() {
     let given = [("--young", "10kPa"), ("--poisson", "0.3"), ("--output", "springs.csv")];
     let mut refusals = Refusals::default();
     for (key, value, place, words) in [
-        ("--young", "10 psi", "--young", "found \"10 psi\""),
+        ("--young", "10 lbf", "--young", "found \"10 lbf\""),
         ("--young", "kPa", "--young", "found \"kPa\""),
         ("--young", "", "--young", "found \"\""),
         ("--output", "springs.txt", "--output", "found springs.txt"),

@@ -55,7 +55,7 @@ fn material() {
     refusals.expect_of_edits(
         BRICK,
         &[
-            ("young = 10e3", "young = \"10 psi\"", "scene.toml:4: material.young", "found \"10 psi\""),
+            ("young = 10e3", "young = \"10 lbf\"", "scene.toml:4: material.young", "found \"10 lbf\""),
             ("poisson = 0.3", "poisson = 0.3\nplane = \"stress\"", "scene.toml: material.plane", "solid"),
             ("poisson = 0.3", "poisson = 0.3\nthickness = 0.1", "scene.toml: material.thickness", "solid"),
         ],

@@ -21,55 +21,126 @@ pub enum Quantity {
     MeshUnit,
 }
 
-/// A unit and its power of ten in the SI unit. The SI unit comes first in each list.
-type Unit = (&'static str, i32);
+/// A unit, and its size in the SI unit as a number and a power of ten.
+///
+/// Powers are written `^2` and `^3`, and micro `u`; [`spellings`] has the other ways to write them.
+type Unit = (&'static str, f64, i32);
 
-/// Units of length.
-const LENGTHS: [Unit; 8] =
-    [("m", 0), ("km", 3), ("dm", -1), ("cm", -2), ("mm", -3), ("um", -6), ("µm", -6), ("nm", -9)];
+/// Units of length; the SI unit comes first in each list.
+const LENGTHS: [Unit; 10] = [
+    ("m", 1.0, 0),
+    ("km", 1.0, 3),
+    ("dm", 1.0, -1),
+    ("cm", 1.0, -2),
+    ("mm", 1.0, -3),
+    ("um", 1.0, -6),
+    ("nm", 1.0, -9),
+    // An inch is 25.4 mm by definition, and a foot twelve of them.
+    ("in", 25.4, -3),
+    ("inch", 25.4, -3),
+    ("ft", 304.8, -3),
+];
 /// Units of area.
-const AREAS: [Unit; 8] =
-    [("m^2", 0), ("m²", 0), ("cm^2", -4), ("cm²", -4), ("mm^2", -6), ("mm²", -6), ("um^2", -12), ("µm²", -12)];
+const AREAS: [Unit; 6] = [
+    ("m^2", 1.0, 0),
+    ("dm^2", 1.0, -2),
+    ("cm^2", 1.0, -4),
+    ("mm^2", 1.0, -6),
+    ("um^2", 1.0, -12),
+    ("in^2", 645.16, -6),
+];
 /// Units of volume.
 const VOLUMES: [Unit; 12] = [
-    ("m^3", 0),
-    ("m³", 0),
-    ("dm^3", -3),
-    ("dm³", -3),
-    ("cm^3", -6),
-    ("cm³", -6),
-    ("mm^3", -9),
-    ("mm³", -9),
-    ("ml", -6),
-    ("mL", -6),
-    ("l", -3),
-    ("L", -3),
+    ("m^3", 1.0, 0),
+    ("dm^3", 1.0, -3),
+    ("cm^3", 1.0, -6),
+    ("mm^3", 1.0, -9),
+    ("um^3", 1.0, -18),
+    ("cc", 1.0, -6),
+    ("ul", 1.0, -9),
+    ("uL", 1.0, -9),
+    ("ml", 1.0, -6),
+    ("mL", 1.0, -6),
+    ("l", 1.0, -3),
+    ("L", 1.0, -3),
 ];
 /// Units of pressure.
-const PRESSURES: [Unit; 11] = [
-    ("Pa", 0),
-    ("kPa", 3),
-    ("MPa", 6),
-    ("GPa", 9),
-    ("hPa", 2),
-    ("mbar", 2),
-    ("bar", 5),
-    ("N/m^2", 0),
-    ("N/m²", 0),
-    ("N/mm^2", 6),
-    ("N/mm²", 6),
+const PRESSURES: [Unit; 17] = [
+    ("Pa", 1.0, 0),
+    ("kPa", 1.0, 3),
+    ("MPa", 1.0, 6),
+    ("GPa", 1.0, 9),
+    ("hPa", 1.0, 2),
+    ("mbar", 1.0, 2),
+    ("bar", 1.0, 5),
+    ("N/m^2", 1.0, 0),
+    ("kN/m^2", 1.0, 3),
+    ("N/cm^2", 1.0, 4),
+    ("N/mm^2", 1.0, 6),
+    ("kN/mm^2", 1.0, 9),
+    ("dyn/cm^2", 1.0, -1),
+    // Conventional millimetres of mercury and centimetres of water, and pounds per square inch (BIPM; NIST SP 811).
+    ("mmHg", 133.322387415, 0),
+    ("cmH2O", 98.0665, 0),
+    ("psi", 6894.757293168, 0),
+    ("ksi", 6894.757293168, 3),
 ];
 /// Units of density.
-const DENSITIES: [Unit; 4] = [("kg/m^3", 0), ("kg/m³", 0), ("g/cm^3", 3), ("g/cm³", 3)];
+const DENSITIES: [Unit; 13] = [
+    ("kg/m^3", 1.0, 0),
+    ("g/cm^3", 1.0, 3),
+    ("g/cc", 1.0, 3),
+    ("g/ml", 1.0, 3),
+    ("g/mL", 1.0, 3),
+    ("g/l", 1.0, 0),
+    ("g/L", 1.0, 0),
+    ("kg/l", 1.0, 3),
+    ("kg/L", 1.0, 3),
+    ("kg/dm^3", 1.0, 3),
+    ("mg/mm^3", 1.0, 3),
+    ("t/m^3", 1.0, 3),
+    ("t/mm^3", 1.0, 12),
+];
 /// Units of time.
-const TIMES: [Unit; 4] = [("s", 0), ("ms", -3), ("us", -6), ("µs", -6)];
+const TIMES: [Unit; 6] =
+    [("s", 1.0, 0), ("ms", 1.0, -3), ("us", 1.0, -6), ("ns", 1.0, -9), ("min", 6.0, 1), ("h", 36.0, 2)];
+
+/// The ways to write a unit: `mm^2`, `mm²`, `mm2`, and `um`, `µm` with either letter that Unicode has for micro.
+fn spellings(unit: &str) -> Vec<String> {
+    let powers = [unit.to_string(), unit.replace("^2", "²").replace("^3", "³"), unit.replace('^', "")];
+    let mut all: Vec<String> = Vec::new();
+    for text in powers {
+        let of_micro = text.strip_prefix('u').map(|rest| ["µ", "μ"].map(|micro| format!("{micro}{rest}")));
+        for text in std::iter::once(text).chain(of_micro.into_iter().flatten()) {
+            if !all.contains(&text) {
+                all.push(text);
+            }
+        }
+    }
+    all
+}
 
 impl Quantity {
     /// The first of the units that has this size in the SI unit, such as `mm` for a length of 0.001 m.
     pub fn unit_of(self, size: f64) -> Option<&'static str> {
         // Sizes are read from texts, which may have passed through a product.
-        let is_it = |(_, power): &&Unit| (size / 10f64.powi(*power) - 1.0).abs() < 1e-9;
-        self.units().iter().find(is_it).map(|(name, _)| *name)
+        let is_it = |(_, number, power): &&Unit| (size / (number * 10f64.powi(*power)) - 1.0).abs() < 1e-9;
+        self.units().iter().find(is_it).map(|(name, ..)| *name)
+    }
+
+    /// The longest unit of this quantity with which a text begins, as the number of its bytes, and its size in the SI unit as a number and a
+    /// power of ten. Letters and digits do not follow it.
+    pub fn unit_at(self, text: &str) -> Option<(usize, f64, i32)> {
+        let ends = |spelling: &str| {
+            let rest = text.strip_prefix(spelling)?;
+            let goes_on = |c: char| c.is_alphanumeric() || matches!(c, '_' | '²' | '³');
+            (!rest.starts_with(goes_on)).then_some(spelling.len())
+        };
+        let units = self.units().iter().filter_map(|(unit, number, power)| {
+            let length = spellings(unit).iter().filter_map(|spelling| ends(spelling)).max()?;
+            Some((length, *number, *power))
+        });
+        units.max_by_key(|(length, ..)| *length)
     }
 
     fn units(self) -> &'static [Unit] {
@@ -105,19 +176,21 @@ impl Quantity {
         if let Some(value) = number(trimmed) {
             return Ok(value);
         }
-        let read = |(unit, power): &Unit| {
-            let number = trimmed.strip_suffix(unit)?.trim_end();
-            let value: f64 = match (self, number) {
-                (Quantity::MeshUnit, "") => 1.0,
-                _ => self::number(number)?,
-            };
+        let read = |(unit, size, power): &Unit| {
+            let value = spellings(unit).iter().find_map(|spelling| {
+                let number = trimmed.strip_suffix(spelling.as_str())?.trim_end();
+                match (self, number) {
+                    (Quantity::MeshUnit, "") => Some(1.0),
+                    _ => self::number(number),
+                }
+            })?;
             // Dividing by a whole power of ten gives the double that is nearest to the decimal number, as parsing the
             // same number without a unit does.
-            let factor = 10f64.powi(power.abs());
+            let (value, factor) = (value * size, 10f64.powi(power.abs()));
             Some(if *power < 0 { value / factor } else { value * factor })
         };
         self.units().iter().find_map(read).ok_or_else(|| {
-            let units: Vec<&str> = self.units().iter().map(|(unit, _)| *unit).collect();
+            let units: Vec<&str> = self.units().iter().map(|(unit, ..)| *unit).collect();
             let expected = format!("{} (units: {})", self.expected(), units.join(", "));
             Error::new(format!("expected {expected}, found \"{text}\""))
         })

@@ -39,7 +39,7 @@ impl Drawn {
 }
 
 /// Points of a scatter for each fit at most.
-const MOST: usize = 200;
+const MOST: usize = 1000;
 /// Errors below this share of the largest are those of rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -120,7 +120,7 @@ impl Data<'_> {
         let (kind, unit, per_second) = cost.of_comparison();
         let least = ROUNDING * self.largest();
         let (mut series, mut points) = (Vec::new(), Vec::new());
-        for fit in self.fits() {
+        for (place, fit) in self.fits().into_iter().enumerate() {
             let medians = self.records.iter().filter_map(|r| Some(median(method(r, &fit)?.times.get(kind)?)));
             let times = Quantiles::of(&medians.collect::<Vec<f64>>());
             let errors = Quantiles::of(&self.errors(&fit));
@@ -132,12 +132,12 @@ impl Data<'_> {
                 points.push((x, y));
             }
             let shape = if errors.median > least { Shape::Marks } else { Shape::Below };
-            series.push(Series { name: fit, points: vec![(x, y)], shape });
+            series.push(Series::new(fit, vec![(x, y)], shape).styled(place));
             let ends = |low: f64, high: f64| [low.max(least), high.max(least)];
             let [low, high] = ends(errors.lower, errors.upper);
             let across = [per_second * times.lower, per_second * times.upper];
             let bars = vec![(x, low), (x, high), (across[0], y), (across[1], y)];
-            series.push(Series { name: String::new(), points: bars, shape: Shape::Whiskers });
+            series.push(Series::new("", bars, Shape::Whiskers));
         }
         let lowest = points.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
         for series in &mut series {
@@ -147,7 +147,7 @@ impl Data<'_> {
             }
         }
         series.retain(|series| series.shape != Shape::Whiskers || series.points.iter().all(|p| p.1 > 2.0 * least));
-        series.push(Series { name: "Pareto front".into(), points: front(points), shape: Shape::Guide });
+        series.push(Series::new("Pareto front", front(points), Shape::Guide));
         Chart {
             title: format!("{} against processor time", self.error()),
             x: Axis::log(format!("processor time {}, {unit} (median)", cost.words())),
@@ -158,14 +158,14 @@ impl Data<'_> {
 
     fn ecdf(&self) -> Chart {
         let least = ROUNDING * self.largest();
-        let curve = |fit: String| {
+        let curve = |(place, fit): (usize, String)| {
             let mut errors: Vec<f64> = self.errors(&fit).into_iter().filter(|error| *error > least).collect();
             errors.sort_by(f64::total_cmp);
             let count = errors.len() as f64;
             let step = |(i, error): (usize, &f64)| [(*error, i as f64 / count), (*error, (i + 1) as f64 / count)];
-            Series { name: fit, points: errors.iter().enumerate().flat_map(step).collect(), shape: Shape::Line }
+            Series::new(fit, errors.iter().enumerate().flat_map(step).collect(), Shape::Line).styled(place)
         };
-        let series = self.fits().into_iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+        let series = self.fits().into_iter().enumerate().map(curve).filter(|curve| !curve.points.is_empty()).collect();
         Chart {
             title: "distribution of the errors".into(),
             x: Axis::log(self.error()),
@@ -177,7 +177,7 @@ impl Data<'_> {
     /// The median error of each fit over a value of its cases.
     fn over(&self, key: &str, value: impl Fn(&MethodRecord, &CaseRecord) -> Option<f64>) -> Chart {
         let least = ROUNDING * self.largest();
-        let curve = |fit: String| {
+        let curve = |(place, fit): (usize, String)| {
             let mut known: Vec<(f64, Vec<f64>)> = Vec::new();
             for record in &self.records {
                 let Some(method) = method(record, &fit) else { continue };
@@ -190,9 +190,10 @@ impl Data<'_> {
             }
             known.sort_by(|a, b| a.0.total_cmp(&b.0));
             let points = known.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > least);
-            Series { name: fit, points: points.collect(), shape: Shape::Curve }
+            Series::new(fit, points.collect(), Shape::Curve).styled(place)
         };
-        let series: Vec<Series> = self.fits().into_iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+        let series: Vec<Series> =
+            self.fits().into_iter().enumerate().map(curve).filter(|curve| !curve.points.is_empty()).collect();
         let name = if key == "poisson" { "Poisson's ratio ν" } else { key };
         Chart {
             title: format!("{} over {name}", self.error()),
@@ -212,7 +213,7 @@ impl Data<'_> {
             let name = method.fit.replace(&format!("count {count}"), "").trim_end_matches([',', ' ']).to_string();
             match series.iter_mut().find(|known| known.name == name) {
                 Some(known) => known.points.push((count, 100.0 * held_out)),
-                None => series.push(Series { name, points: vec![(count, 100.0 * held_out)], shape: Shape::Curve }),
+                None => series.push(Series::new(name, vec![(count, 100.0 * held_out)], Shape::Curve)),
             }
         }
         series.iter_mut().for_each(|series| series.points.sort_by(|a, b| a.0.total_cmp(&b.0)));
@@ -224,25 +225,48 @@ impl Data<'_> {
         }
     }
 
+    /// The errors of a fit in the Frobenius norm and in the 2-norm.
+    fn in_both_norms(&self, fit: &str) -> Vec<(f64, f64)> {
+        let pairs = self.records.iter().filter_map(|record| {
+            let values = &method(record, fit)?.values;
+            Some(values.get("frobenius")?.iter().zip(values.get("spectral")?))
+        });
+        pairs.flatten().filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect()
+    }
+
+    /// The most shapes of a fit with errors in both norms.
+    fn most_in_both_norms(&self) -> usize {
+        self.fits().iter().map(|fit| self.in_both_norms(fit).len()).max().unwrap_or(0)
+    }
+
     fn norms(&self) -> Chart {
-        let scatter = |fit: String| {
-            let pairs = self.records.iter().filter_map(|record| {
-                let values = &method(record, &fit)?.values;
-                Some(values.get("frobenius")?.iter().zip(values.get("spectral")?))
-            });
-            let all: Vec<(f64, f64)> = pairs.flatten().filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+        let scatter = |(place, fit): (usize, String)| {
+            let all = self.in_both_norms(&fit);
             let every = all.len().div_ceil(MOST).max(1);
             let points = all.into_iter().step_by(every).filter(|(a, b)| *a > ROUNDING && *b > ROUNDING).collect();
-            Series { name: fit, points, shape: Shape::Dots }
+            Series::new(fit, points, Shape::Dots).styled(place)
         };
-        let series = self.fits().into_iter().map(scatter).filter(|series| !series.points.is_empty()).collect();
+        let series =
+            self.fits().into_iter().enumerate().map(scatter).filter(|series| !series.points.is_empty()).collect();
+        let every = self.most_in_both_norms().div_ceil(MOST).max(1);
+        let which = if every > 1 { format!("one in {every} shapes") } else { "each shape".into() };
         Chart {
-            title: "the error of each shape in both norms".into(),
+            title: format!("the error of {which} in both norms"),
             x: Axis::log("relative error in the Frobenius norm"),
             y: Axis::log("relative error in the 2-norm"),
             series,
         }
     }
+}
+
+/// That the figure of both norms has a part of the shapes alone, if it has.
+pub fn thinned(records: &[CaseRecord], of: Option<&str>) -> Option<String> {
+    let is_shown = |record: &&CaseRecord| record.error.is_none() && of.is_none_or(|of| record.object() == of);
+    let data = Data { quantity: "spectral", records: records.iter().filter(is_shown).collect() };
+    let count = data.most_in_both_norms();
+    let every = count.div_ceil(MOST).max(1);
+    (every > 1)
+        .then(|| format!("one in {every} of the {count} shapes of a fit is drawn: {} points", count.div_ceil(every)))
 }
 
 /// The points that no other is at most as far in both directions, from the left.

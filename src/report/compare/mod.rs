@@ -8,7 +8,7 @@ mod summary;
 mod tables;
 mod values;
 
-pub(super) use figures::{Drawn, comparison_chart};
+pub(super) use figures::{Drawn, comparison_chart, thinned};
 pub(super) use files::read_cases;
 pub use files::{CASES, COMPARE_FILES, comparison_values, write_comparison};
 pub use summary::{Summary, summarized};

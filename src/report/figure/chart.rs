@@ -3,7 +3,7 @@
 use super::axis::{Axis, log_marks, number};
 use super::marks::{FINE, MARK, Mark, THICK, THIN, diamond, mark, open, pane, plus, square};
 use super::palette::{COLORS, DASHES, REFERENCE};
-use super::sheet::{Columns, LETTERS, width};
+use super::sheet::{Columns, LETTERS, cut, width};
 use crate::error::{Error, Result};
 use crate::text::{printable, xml};
 use plotters::coord::Shift;
@@ -41,9 +41,21 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// How they are shown.
     pub shape: Shape,
+    /// Its place among colours, dashes and marks, so that a model looks the same in all figures; `None` takes them in the order of the series.
+    pub style: Option<usize>,
 }
 
 impl Series {
+    /// A series that looks as its place in the chart says.
+    pub fn new(name: impl Into<String>, points: Vec<(f64, f64)>, shape: Shape) -> Series {
+        Series { name: name.into(), points, shape, style: None }
+    }
+
+    /// The series with the look of this place.
+    pub fn styled(self, place: usize) -> Series {
+        Series { style: Some(place), ..self }
+    }
+
     /// Whether the legend has its name.
     fn is_named(&self) -> bool {
         !matches!(self.shape, Shape::Guide | Shape::Whiskers)
@@ -69,6 +81,17 @@ const LINE: i32 = 15 * FINE;
 const DOT: i32 = 3 * FINE / 2;
 /// Units of letters, as the drawing library counts them.
 const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
+
+/// Units around a panel, at its right end, and of the numbers and titles below it and at its left.
+const EDGE: i32 = 6 * FINE;
+const RIGHT: i32 = 14 * FINE;
+const UNDER: i32 = 36 * FINE;
+const LEFT: i32 = 52 * FINE;
+/// Units of an axis that a title cannot have: across, and up.
+const BESIDE: i32 = LEFT + EDGE + RIGHT;
+const BELOW: i32 = UNDER + 2 * EDGE;
+/// Letters of an axis' title are not smaller than this share of the others.
+const SMALLEST: f64 = 0.75;
 
 /// Values that an axis has at most: its marks are counted in powers of ten.
 const LARGEST: f64 = 1e60;
@@ -143,12 +166,20 @@ impl Chart {
         Y::CoordDescType: ValueFormatter<f64>,
     {
         let mut chart = ChartBuilder::on(area)
-            .margin(6 * FINE)
-            .margin_right(14 * FINE)
-            .x_label_area_size(36 * FINE)
-            .y_label_area_size(52 * FINE)
+            .margin(EDGE)
+            .margin_right(RIGHT)
+            .x_label_area_size(UNDER)
+            .y_label_area_size(LEFT)
             .build_cartesian_2d(x, y)?;
         let grey = BLACK.mix(0.12);
+        let (wide, tall) = area.dim_in_pixel();
+        let rooms = [wide as i32 - BESIDE, tall as i32 - BELOW];
+        let titles = [&self.x.title, &self.y.title];
+        // Titles that are longer than their axis have smaller letters, and beyond that an end.
+        let needed =
+            titles.iter().zip(rooms).map(|(title, room)| f64::from(room) / (self::width(title) * f64::from(FINE)));
+        let share = needed.fold(1.0, f64::min).max(SMALLEST);
+        let [across, up] = [0, 1].map(|k| cut(&printable(titles[k]), f64::from(rooms[k]) / f64::from(FINE) / share));
         chart
             .configure_mesh()
             .light_line_style(WHITE.mix(0.0))
@@ -157,12 +188,12 @@ impl Chart {
             .set_all_tick_mark_size(4 * FINE)
             .x_labels(6)
             .y_labels(6)
-            .x_desc(printable(&self.x.title))
-            .y_desc(printable(&self.y.title))
+            .x_desc(across)
+            .y_desc(up)
             .x_label_formatter(&number)
             .y_label_formatter(&number)
             .label_style(("sans-serif", FONT))
-            .axis_desc_style(("sans-serif", FONT))
+            .axis_desc_style(("sans-serif", f64::from(FONT) * share))
             .draw()?;
         for (place, series) in self.series.iter().enumerate() {
             let i = self.style(place);
@@ -235,8 +266,11 @@ impl Chart {
 
     /// The place of a series among those that differ in colour, dashes and marks.
     fn style(&self, place: usize) -> usize {
-        let others = self.series[..=place].iter().filter(|series| series.shape != Shape::Whiskers).count();
-        others.saturating_sub(1)
+        let is_own = |series: &Series| series.shape != Shape::Whiskers;
+        // Whiskers belong to the series before.
+        let own = self.series[..=place].iter().rposition(is_own).unwrap_or(0);
+        let others = self.series[..=own].iter().filter(|series| is_own(series)).count();
+        self.series[own].style.unwrap_or(others.saturating_sub(1))
     }
 
     /// The row and the left end of each name, and its place among the series.
@@ -247,7 +281,7 @@ impl Chart {
         }
         let (mut row, mut left) = (0, 8 * FINE);
         let place = |(i, series): (usize, &Series)| {
-            let own = (24 + self::width(&series.name) as i32 + 14) * FINE;
+            let own = (24 + self::width(&legend_name(&series.name, width)) as i32 + 14) * FINE;
             if left > 8 * FINE && left + own > width {
                 (row, left) = (row + 1, 8 * FINE);
             }
@@ -295,9 +329,15 @@ impl Chart {
                 Mark::Pane => area.draw(&(EmptyElement::at(at) + pane(color)))?,
             }
         }
-        area.draw(&Text::new(printable(&series.name).into_owned(), (left + 24 * FINE, top), ("sans-serif", FONT)))?;
+        let shown = legend_name(&series.name, area.dim_in_pixel().0 as i32);
+        area.draw(&Text::new(shown, (left + 24 * FINE, top), ("sans-serif", FONT)))?;
         Ok(())
     }
+}
+
+/// A name as the legend has it in a figure of this width in units.
+fn legend_name(name: &str, width: i32) -> String {
+    cut(&printable(name), f64::from(width / FINE - 8 - 24 - 4))
 }
 
 /// The names of guides have this colour.

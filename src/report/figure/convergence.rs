@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::chart::{Chart, Series, Shape};
 use crate::error::{Error, Result};
+use crate::study::BODY;
 use crate::text::of_csv;
 use std::path::Path;
 
@@ -84,13 +85,17 @@ fn title(load: &str) -> String {
 }
 
 fn chart<'a>(load: &str, curves: impl Iterator<Item = &'a Curve>) -> Option<Chart> {
-    let drawn: Vec<&Curve> = curves.filter(|curve| !curve.points.is_empty()).collect();
+    let all: Vec<&Curve> = curves.collect();
+    let drawn: Vec<&Curve> = all.iter().copied().filter(|curve| !curve.points.is_empty()).collect();
+    // Fits look as in the figures of a run, and finite elements as behind them.
+    let fits: Vec<&str> = all.iter().map(|curve| &*curve.model).filter(|model| *model != BODY).collect();
+    let place = |curve: &Curve| fits.iter().position(|model| *model == curve.model).unwrap_or(fits.len());
     let name = |curve: &Curve| match curve.rate {
         // Without the sign of a zero.
         Some(rate) => format!("{} (rate {:.1})", curve.model, if rate.abs() < 0.05 { 0.0 } else { rate }),
         None => curve.model.clone(),
     };
-    let series = |curve: &&Curve| Series { name: name(curve), points: curve.points.clone(), shape: Shape::Curve };
+    let series = |curve: &&Curve| Series::new(name(curve), curve.points.clone(), Shape::Curve).styled(place(curve));
     let mut series: Vec<Series> = drawn.iter().map(series).collect();
     // Slopes through the first model's error on the coarsest level, as far down as there are errors.
     let (h, e) = *drawn.first()?.points.first()?;
@@ -99,7 +104,7 @@ fn chart<'a>(load: &str, curves: impl Iterator<Item = &'a Curve>) -> Option<Char
     for order in [1, 2] {
         let end = least.0.max(h * (least.1 / e).powf(1.0 / f64::from(order)));
         let points = vec![(h, e), (end, e * (end / h).powi(order))];
-        series.push(Series { name: format!("order {order}"), points, shape: Shape::Guide });
+        series.push(Series::new(format!("order {order}"), points, Shape::Guide));
     }
     Some(Chart {
         title: title(load),

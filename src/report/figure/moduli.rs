@@ -36,6 +36,8 @@ pub struct Moduli {
 pub struct ModulusCurve {
     /// The name of the fit.
     pub name: String,
+    /// The place of the fit in the run, by which its colour and its dashes are those of the other figures.
+    pub place: usize,
     /// `[planes][directions]`, Pa, in even steps from the first axis of the plane.
     pub moduli: Vec<Vec<f64>>,
 }
@@ -67,7 +69,9 @@ impl Moduli {
             _ => return Err(Error::new("the run has no fit, so there are no moduli to draw")),
         };
         let thickness = thickness(&report)?;
-        let curves: Vec<ModulusCurve> = fits.iter().filter_map(|fit| curve(fit, &planes, thickness)).collect();
+        let place = |name: &str| report.fits.iter().position(|fit| fit.name == name).unwrap_or(0);
+        let curve = |fit: &FitRecord| Some(ModulusCurve { place: place(&fit.name), ..curve(fit, &planes, thickness)? });
+        let curves: Vec<ModulusCurve> = fits.iter().filter_map(curve).collect();
         if curves.is_empty() {
             let why = "some strain of each network meets no resistance or releases energy";
             return Err(Error::new(format!("there are no moduli to draw: {why}")));
@@ -115,17 +119,17 @@ impl Moduli {
     fn names(&self, largest: f64, corner: [f64; 2], right: f64, beside: bool) -> Vec<([f64; 2], Entry)> {
         let reference =
             self.reference.map(|_| Entry { name: "material".into(), color: REFERENCE, thick: 4.0, dashes: &[] });
-        let curve = |(i, curve): (usize, &ModulusCurve)| Entry {
+        let curve = |curve: &ModulusCurve| Entry {
             name: cut(&curve.name, right - corner[0] - 30.0),
-            color: COLORS[i % COLORS.len()],
+            color: COLORS[curve.place % COLORS.len()],
             thick: 1.8,
-            dashes: DASHES[i % DASHES.len()],
+            dashes: DASHES[curve.place % DASHES.len()],
         };
         let ring = rings(largest).first().map(|ring| {
             let (factor, unit) = prefix(*ring);
             Entry { name: format!("every {} {unit}Pa", ring / factor), color: GRID, thick: 0.8, dashes: &[] }
         });
-        let entries = reference.into_iter().chain(self.curves.iter().enumerate().map(curve)).chain(ring);
+        let entries = reference.into_iter().chain(self.curves.iter().map(curve)).chain(ring);
         let mut at = corner;
         let place = |entry: Entry| {
             let own = 26.0 + width(&entry.name) + 14.0;
@@ -166,7 +170,8 @@ impl Moduli {
         if let Some(young) = self.reference {
             document = document.add(line(&around(&vec![young; DIRECTIONS], at), REFERENCE, 4.0, &[]));
         }
-        for (i, curve) in self.curves.iter().enumerate() {
+        for curve in &self.curves {
+            let i = curve.place;
             let points = around(&curve.moduli[place], at);
             document = document.add(line(&points, COLORS[i % COLORS.len()], 1.8, DASHES[i % DASHES.len()]));
         }
@@ -200,7 +205,7 @@ fn curve(fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<Modul
     };
     let moduli: Vec<Vec<f64>> = planes.iter().map(moduli).collect();
     let is_known = moduli.iter().flatten().all(|modulus| modulus.is_finite() && *modulus > 0.0);
-    is_known.then(|| ModulusCurve { name: fit.name.clone(), moduli })
+    is_known.then(|| ModulusCurve { name: fit.marked(), place: 0, moduli })
 }
 
 /// `1/E(n) = (n ⊗ n) : S : (n ⊗ n)`, in Kelvin's notation.

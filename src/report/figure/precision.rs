@@ -69,20 +69,20 @@ impl Cost {
     }
 }
 
-/// A mark for each fit: its name, its cost in s, and its error. An error that is too small for the axis is an open mark under the others,
+/// A mark for each fit: its place in the run, its name, its cost in s, and its error. An error that is too small for the axis is an open mark under the others,
 /// with its number in the legend. `kind` says of what passes the times are.
 pub fn precision_chart(
     title: String,
     error: String,
     (cost, kind): (Cost, &str),
-    points: &[(String, f64, f64)],
+    points: &[(usize, String, f64, f64)],
 ) -> Chart {
     let (unit, per_second) = cost.unit();
-    let largest = points.iter().map(|(_, _, error)| *error).fold(0.0, f64::max);
+    let largest = points.iter().map(|(.., error)| *error).fold(0.0, f64::max);
     let least = largest * 10f64.powf(-DECADES);
-    let shown = points.iter().map(|(_, _, error)| *error).filter(|error| *error >= least).fold(largest, f64::min);
+    let shown = points.iter().map(|(.., error)| *error).filter(|error| *error >= least).fold(largest, f64::min);
     let percent = if error.ends_with('%') { " %" } else { "" };
-    let series = |(name, seconds, error): &(String, f64, f64)| {
+    let series = |(place, name, seconds, error): &(usize, String, f64, f64)| {
         let is_below = *error < least;
         let name = match (is_below, *error) {
             (true, 0.0) => format!("{name} (reference)"),
@@ -90,7 +90,7 @@ pub fn precision_chart(
             (false, _) => name.clone(),
         };
         let shape = if is_below { Shape::Below } else { Shape::Marks };
-        Series { name, points: vec![(per_second * seconds, error.max(shown / BELOW))], shape }
+        Series::new(name, vec![(per_second * seconds, error.max(shown / BELOW))], shape).styled(*place)
     };
     Chart {
         title,

@@ -65,13 +65,14 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
             }
         }
     }
-    let curve = |(name, mut points): (String, Errors)| {
+    let curve = |(place, (name, mut points)): (usize, (String, Errors))| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Errors that are rounding, in percent, have no place on a logarithmic axis.
         let points = points.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > 1e-9);
-        Series { name, points: points.collect(), shape: Shape::Curve }
+        Series::new(name, points.collect(), Shape::Curve).styled(place)
     };
-    let series: Vec<Series> = curves.into_iter().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+    let series: Vec<Series> =
+        curves.into_iter().enumerate().map(curve).filter(|curve| !curve.points.is_empty()).collect();
     Ok(Chart {
         title: format!("e_rms over {key}, {} studies", records.len()),
         x: Axis::linear(key.as_str()),

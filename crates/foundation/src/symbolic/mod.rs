@@ -10,6 +10,7 @@ mod evaluate;
 mod expand;
 mod fraction;
 mod jet;
+mod lex;
 mod parse;
 mod precise;
 mod predicate;
@@ -18,7 +19,8 @@ mod program;
 
 pub use fraction::{Fraction, Polynomial};
 pub use jet::{Differentiable, Jet};
-pub use parse::{Scope, parse_rational, variables_of};
+pub use lex::variables_of;
+pub use parse::{Scope, parse_rational};
 pub use predicate::Predicate;
 pub use program::Program;
 

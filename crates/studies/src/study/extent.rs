@@ -22,3 +22,21 @@ pub(in crate::study) fn extends(mesh: &Mesh) -> String {
     };
     (0..mesh.dimension).map(along).collect::<Vec<_>>().join(", ")
 }
+
+/// A longer body of a file is rarely meant, m.
+const LONGEST: f64 = 10.0;
+/// A shorter body of a file is rarely meant, m.
+const SHORTEST: f64 = 1e-4;
+
+/// Says that a body of a file is so long or so short that its unit may not be the metre, which it is where no unit is stated. `key` is where one
+/// is stated: `scale = "mm"`, or the option `--scale mm`.
+pub fn unit_note(mesh: &Mesh, key: &str) -> Option<String> {
+    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let taken = format!("the coordinates of the mesh are taken in metres: the body is {} m long", rounded(longest, 2));
+    if longest > LONGEST {
+        return Some(format!("{taken}; {key} if they are in millimetres, and \"m\" in its place if this is right"));
+    }
+    (longest < SHORTEST).then(|| {
+        format!("{taken}; {key} or another unit if they are not in metres, and \"m\" in its place if this is right")
+    })
+}

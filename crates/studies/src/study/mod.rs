@@ -64,7 +64,7 @@ pub use convergence::{
 };
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
-pub use extent::extent;
+pub use extent::{extent, unit_note};
 pub use fits::{
     CellMethod, EngineEntry, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe,
     ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad,
@@ -93,8 +93,8 @@ pub use progress::{Event, Progress};
 pub use run::{engine_limits, run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, CalibrationRecipe, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold,
-    InMemory, LoadCase, LoadKind, Materials, MeshInput, MotionRecipe, Output, Part, PrescribedMotion, Reaction,
-    ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
+    InMemory, LoadCase, LoadKind, Materials, MeshInput, MeshLength, MotionRecipe, Output, Part, PrescribedMotion,
+    Reaction, ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
 };
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;

@@ -9,7 +9,7 @@ pub enum Event<'a> {
         name: &'a str,
         /// The number of finished steps.
         done: usize,
-        /// The number of all steps.
+        /// The number of all steps; 0 where it is not known.
         total: usize,
     },
     /// A message for the user that should be shown at once.

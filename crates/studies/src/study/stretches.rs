@@ -90,19 +90,18 @@ pub fn compare_stretches(
 ) -> Result<Stretches> {
     let pulled = Pulled::new(element, material, law)?;
     let recipes = pulled.usual_fits(sampled)?;
-    let total = recipes.len() + 1;
     let fits = pulled.compare(&recipes, true, progress)?.into_iter().collect::<Result<_>>()?;
+    let sampled = recipes.iter().filter_map(|named| Some((named, named.recipe.sampled()?)));
+    let planned = sampled.flat_map(|(named, recipe)| SHAPES.map(|shapes| (named, recipe, shapes)));
+    let is_short = |(_, recipe, shapes): &(&NamedFit, &SampledRecipe, usize)| {
+        let unknowns = recipe.force.unknowns(element);
+        (shapes * element.positions.len() * unknowns * unknowns) as f64 <= LONGEST
+    };
+    let planned: Vec<_> = planned.filter(is_short).collect();
     let mut runs = Vec::new();
-    for named in &recipes {
-        let Some(recipe) = named.recipe.sampled() else { continue };
-        for shapes in SHAPES {
-            let unknowns = recipe.force.unknowns(element);
-            if (shapes * element.positions.len() * unknowns * unknowns) as f64 > LONGEST {
-                continue;
-            }
-            progress(Event::stage(&format!("{} at {shapes} shapes", named.name), total - 1, total));
-            runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), shapes)?);
-        }
+    for (named, recipe, shapes) in &planned {
+        progress(Event::stage("numbers of shapes", runs.len(), planned.len()));
+        runs.push(pulled.sample(&named.name, recipe, named.springs.as_deref(), *shapes)?);
     }
     Ok(Stretches { element: element.name.clone(), law: pulled.title(), fits, runs })
 }

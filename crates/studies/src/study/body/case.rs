@@ -3,6 +3,7 @@
 use crate::analysis::metrics::{DisplacementError, displacement_error, product};
 use crate::mesh::{Field, Mesh};
 use crate::model::{Cavity, PressedFaces, Support};
+use crate::scalar::norm;
 use crate::solve::Applied;
 use crate::study::outcome::{Measured, Standard};
 
@@ -85,10 +86,13 @@ impl Case {
     /// What errors are relative to, unless it is the finite elements, whose displacements are `fem` and whose work is `work`.
     pub fn measured(&self, mesh: &Mesh, fem: &[f64], work: Option<f64>) -> Option<Measured> {
         let known = |point: &&[Option<f64>]| point.iter().any(Option::is_some);
-        let points = self.measured.as_ref()?.displacements.chunks_exact(mesh.dimension).filter(known).count();
+        let at_points = || self.measured.iter().flat_map(|field| field.displacements.chunks_exact(mesh.dimension));
+        let points = self.measured.as_ref().map(|_| at_points().filter(known).count())?;
+        let size = |point: &[Option<f64>]| norm(&point.iter().map(|u| u.unwrap_or(0.0)).collect::<Vec<_>>());
         Some(Measured {
             points,
             standard: self.finer.map_or(Standard::Measurement, |finer| finer.standard),
+            largest: at_points().filter(known).map(size).reduce(f64::max),
             error: self.error(mesh, fem, fem),
             work_error: self.work_error(work, work),
             uncertainty: self.finer.and_then(|finer| finer.uncertainty),

@@ -1,8 +1,28 @@
 //! What a calibration has to say to its reader.
 
 use super::outcome::CalibrationOutcome;
+use crate::text::rounded;
 
 impl CalibrationOutcome {
+    /// Whether moduli and intervals are those of the body, as far as residuals and the search tell.
+    pub(super) fn stands(&self) -> bool {
+        !self.is_unfinished && self.misfit.is_none_or(|misfit| misfit <= MANY)
+    }
+
+    /// Says that no modulus and no interval is to be trusted; the report begins with it.
+    pub fn distrust(&self) -> Option<String> {
+        if let Some(misfit) = self.misfit.filter(|misfit| !(*misfit <= MANY)) {
+            let scaled = if self.regions.is_empty() { "" } else { "; deviations by noise are multiplied by it" };
+            return Some(format!(
+                "NOT TRUSTED: residuals are {} times the stated noise (reduced chi-square {}, expected is 1): the model does not explain these \
+                 measurements, or their noise is larger than stated{scaled}",
+                rounded(misfit, 3),
+                rounded(misfit * misfit, 3)
+            ));
+        }
+        (!self.is_trusted).then(|| "NOT TRUSTED: the search has ended before the optimum".into())
+    }
+
     pub(super) fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
         if self.by_noise_alone && self.unknowns != "cells" {
@@ -18,6 +38,7 @@ impl CalibrationOutcome {
             ));
         }
         match (self.misfit, self.is_unexplained) {
+            (Some(misfit), _) if misfit > MANY => {}
             (Some(misfit), true) => all.push(format!(
                 "residuals are {misfit:.2} times the stated noise: the model does not explain these measurements, and deviations by noise are \
                  multiplied by it"
@@ -30,6 +51,9 @@ impl CalibrationOutcome {
         } else if self.is_unfinished {
             all.push("the search has ended before the optimum: neither moduli nor intervals are to be trusted".into());
         }
+        if let Some(distrust) = self.distrust() {
+            all.insert(0, distrust);
+        }
         if let Some(ratio) = self.ratio.filter(|ratio| *ratio > SLOW) {
             all.push(format!(
                 "answers change from mesh to mesh by {ratio:.2} of the change before: where that is not below 0.5, a finer mesh of the scene is \
@@ -40,5 +64,7 @@ impl CalibrationOutcome {
     }
 }
 
+/// Residuals of this multiple of the stated noise are those of another model or another noise, whatever part of them is the error of the meshes.
+pub(super) const MANY: f64 = 3.0;
 /// The ratio of the changes of successive meshes from which on they are too coarse to be extrapolated.
 const SLOW: f64 = 0.55;

@@ -32,8 +32,10 @@ pub struct CalibrationOutcome {
     /// A body that the model describes has residuals as large as these, or larger, with this probability; it is null where the noise is not
     /// known.
     pub probability: Option<f64>,
-    /// The residuals are more than noise: the model does not describe the body. Deviations by noise are multiplied by the misfit.
+    /// The residuals are more than noise: the model does not describe the body. Deviations by noise are multiplied by the misfit, as they are where it exceeds 3.
     pub is_unexplained: bool,
+    /// Moduli and intervals are to be trusted: the search has reached its optimum, and residuals are at most three times the stated noise.
+    pub is_trusted: bool,
     /// Intervals are those by noise alone, without the error of the mesh.
     pub by_noise_alone: bool,
     /// The answers of the last two meshes differ by this share of the difference of the two before; it is null with fewer than three meshes.

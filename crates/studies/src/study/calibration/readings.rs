@@ -150,7 +150,7 @@ impl Observed {
             }
         }
         if all.observations.is_empty() {
-            let expected = "loads with measured displacements or forces";
+            let expected = "loads with measured displacements or forces, as measured = { file = \"…\" } or reactions in a [[load]]";
             return Err(Error::expected("load", expected, "none").in_file(scene.path()));
         }
         Ok(all)

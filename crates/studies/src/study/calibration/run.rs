@@ -1,6 +1,7 @@
 //! Calibrates the body of a scene.
 
 use super::meshes::{level, meshes};
+use super::notes::MANY;
 use super::outcome::{CalibratedLoad, CalibrationOutcome, MeshStep};
 use super::readings::{Observed, Readings};
 use super::regions::{Spread, regions};
@@ -94,7 +95,8 @@ pub fn calibrate_with(
     let unknowns = Unknowns::new(recipe.asked, &is_known, cells);
     let limit = Limit { levels, unknowns, observations: observed.observations, weights };
     let mut goes_on = |steps: usize| {
-        progress(Event::stage("calibrate", steps, steps + 1));
+        // How many steps there will be is not known.
+        progress(Event::stage("calibrate", steps, 0));
         !controls.cancelled()
     };
     let mut outcome = match recipe.asked {
@@ -110,6 +112,7 @@ pub fn calibrate_with(
     outcome.scene = scene.title().into();
     outcome.unknowns = recipe.asked.name().into();
     outcome.seconds = start.seconds();
+    outcome.is_trusted = outcome.stands();
     outcome.notes = outcome.sentences();
     Ok(outcome)
 }
@@ -162,7 +165,8 @@ fn of_regions(
     // What is left of the error of the meshes is no fault of the model.
     let probability = noise.then(|| chi_squared_beyond((square - found.left).max(0.0), freedom));
     let is_unexplained = probability.is_some_and(|probability| probability < UNLIKELY);
-    let excess = if is_unexplained { found.misfit.max(1.0) } else { 1.0 };
+    let is_far = noise && found.misfit > MANY;
+    let excess = if is_unexplained || is_far { found.misfit.max(1.0) } else { 1.0 };
     let region = |region: usize| &names[region];
     let name = |unknown: &Unknown| match unknown {
         Unknown::Young(r) => format!("E of {}", region(*r)),
@@ -220,6 +224,7 @@ fn empty(limit: &Limit, residuals: &[f64], noise: bool) -> CalibrationOutcome {
         misfit: None,
         probability: None,
         is_unexplained: false,
+        is_trusted: true,
         by_noise_alone: true,
         ratio: None,
         meshes: meshes.collect(),

@@ -198,5 +198,9 @@ fn constants(mesh: &Mesh, given: &DraftMaterial, section: Option<&Section>, scal
         (None, None) if explain => lines.push(format!("# density = 1000          # {words}")),
         (None, None) => {}
     }
+    if explain && mesh.dimension == 3 && mesh.cell_dimension() == 2 {
+        let words = "a surface resists no bending without it, and gives way to loads across it";
+        lines.push(format!("# bending = \"plate\"       # {words}"));
+    }
     lines
 }

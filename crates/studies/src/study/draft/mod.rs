@@ -2,7 +2,7 @@
 
 use super::extent::{extends, extent};
 use super::locking::LOCKS;
-use super::scene::FillEntry;
+use super::scene::{FillEntry, MeshLength};
 use crate::fit::check_flat;
 use crate::mesh::{CellBlock, FillMesh, Filled, Group, ListedSides, Mesh, Selection};
 use crate::text::{comment, rounded, toml as quoted};
@@ -82,8 +82,9 @@ pub fn draft(
             }
         }
         DraftSource::Fill(entry) => {
-            let words = match (entry.cell, entry.points) {
-                (Some(_), _) => " # the edge of a cube in mesh units",
+            let words = match (&entry.cell, entry.points) {
+                (Some(MeshLength::Units(_)), _) => " # the edge of a cube in mesh units",
+                (Some(MeshLength::Stated(..)), _) => " # the edge of a cube",
                 (None, Some(_)) => " # about so many points",
                 (None, None) => "",
             };

@@ -1,6 +1,6 @@
 //! A `[[fit]]` of a scene file.
 
-use super::engine::EngineEntry;
+use super::engine::{EngineEntry, EngineOrName};
 use super::exact::{ExactEntry, without_groups};
 use super::named::NamedFit;
 use super::published::PublishedEntry;
@@ -307,7 +307,7 @@ impl<'de> Visitor<'de> for EntryVisitor {
                 "name" => entry.name = Some(map.next_value()?),
                 "objective" => objective = Some(map.next_value()?),
                 "springs" => entry.springs = Some(map.next_value::<Groups>()?.0),
-                "engine" => entry.engine = Some(map.next_value()?),
+                "engine" => entry.engine = Some(map.next_value::<EngineOrName>()?.0),
                 "bending" => {
                     let name: String = map.next_value()?;
                     entry.bending = Some(BendingSprings::named(&name).map_err(|e| A::Error::custom(e.problem()))?);

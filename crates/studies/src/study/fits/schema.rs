@@ -8,6 +8,7 @@ use super::sampled::SampledEntry;
 use super::stiffness::StiffnessEntry;
 use super::whole::WholeEntry;
 use crate::element::GROUP_CHOICES;
+use crate::engine::Engine;
 use crate::model::BendingSprings;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema, schema_for};
 use serde_json::{Map, Value, json};
@@ -76,10 +77,11 @@ fn common(kind: Kind, generator: &mut SchemaGenerator) -> [(String, Value); COMM
                         and volumes (`all + volume`).",
         "x-default": "all that are not optional",
     });
-    let mut settings = generator.subschema_for::<EngineEntry>().to_value();
+    let table = generator.subschema_for::<EngineEntry>().to_value();
+    let mut settings = json!({ "anyOf": [table, { "type": "string", "enum": Engine::NAMES }] });
     settings["description"] = "The constants are for an engine that ends its sweeps early: at these settings the network answers like the \
                                body. A whole-object fit finds its constants so; others are multiplied by one factor for springs on lengths \
-                               and one for those on contents. It needs a density."
+                               and one for those on contents. It needs a density. A name alone stands for the settings that the engine has by default."
         .into();
     let sheets = json!({
         "type": "string",

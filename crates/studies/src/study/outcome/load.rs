@@ -44,6 +44,8 @@ pub struct Measured {
     pub points: usize,
     /// Where they are from.
     pub standard: Standard,
+    /// The largest of them, m; `None` if nothing is known.
+    pub largest: Option<f64>,
     /// The error of the finite elements; `None` if no measured point moves.
     pub error: Option<DisplacementError>,
     /// By how many percent the compliance of the finite elements exceeds theirs, as for a network; `None` of a measurement.

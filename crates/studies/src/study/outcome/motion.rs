@@ -73,6 +73,10 @@ pub struct ModelMotion {
     pub linear_error: Option<[f64; 2]>,
     /// The growth rate at rest of the fastest motion of a network that releases energy, 1/s.
     pub growth: Option<f64>,
+    /// The largest displacement of a point in the states that are written, m.
+    pub largest: f64,
+    /// The most cells that are inverted in one of a dozen states.
+    pub inverted: usize,
     /// The states that are written.
     pub records: Vec<Record>,
     /// The displacements at the records, `[points · dimension]`, m, if pictures are requested.

@@ -187,7 +187,7 @@ impl AxisEntry {
             let found = format!("{} components", components.len());
             return Err(Error::new(format!("expected a vector of two or three components, found {found}")));
         }
-        let scope = Scope::new(&["x", "y", "z"]);
+        let scope = Scope::of_place(3);
         let expression = |component: &Varying| match component {
             Varying::Number(value) => scope.expression(&format!("{value:?}")),
             Varying::Text(text) => scope.expression(text),

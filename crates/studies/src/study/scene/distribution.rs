@@ -123,7 +123,7 @@ impl<'de> Visitor<'de> for DistributionVisitor {
         };
         match number {
             Ok(value) => Ok(Distribution::of_number(value)),
-            Err(not_number) => match Scope::new(&["x", "y", "z"]).expression(v) {
+            Err(not_number) => match Scope::value_over(&["x", "y", "z"], self.0, v) {
                 Ok(_) => Ok(Distribution { source: Source::Expression(v.into()), factor: 1.0 }),
                 // What has an operator is meant as an expression.
                 Err(e) if v.contains(['*', '+', '(', '^']) => Err(E::custom(e.problem())),

@@ -12,7 +12,6 @@ use super::load::{LoadCase, read_loads};
 use super::material::{MaterialEntries, MaterialEntry};
 use super::motion_recipe::MotionRecipe;
 use super::output::Output;
-use super::part::Part;
 use super::reference::ReferenceEntry;
 use super::setting::Setting;
 use super::source::SceneSource;
@@ -20,11 +19,10 @@ use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::file;
 use crate::material::{EnergyMap, Material, MaterialMap};
-use crate::mesh::{Mesh, Selection};
-use crate::model::{Action, Component};
+use crate::mesh::Mesh;
 use crate::solve::{Newton, StaticSolver};
 use crate::study::body_material::assumed;
-use crate::study::fits::{NamedFit, RESERVED, held_conditions, law_at};
+use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
 use crate::text::printable;
 use std::path::{Path, PathBuf};
@@ -101,6 +99,7 @@ impl Scene {
         }
         let mut mesh = entry.mesh;
         mesh.memory = source.memory.clone();
+        mesh.states_unit = source.states_unit();
         mesh.check()?;
         if entry.fit.is_empty() && entry.calibrate.is_none() {
             return Err(Error::expected("fit", "at least one [[fit]], or [calibrate]", "none"));
@@ -262,51 +261,6 @@ impl Scene {
     pub fn build_mesh(&self) -> Result<Mesh> {
         let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
         self.bent(mesh)
-    }
-
-    /// Chooses on a mesh what the conditions of the scene select, for the meshes into which its cells are divided. Conditions that are wrong
-    /// in this dimension are left to the places where they are asked.
-    pub(in crate::study) fn choose(&self, mesh: &mut Mesh) {
-        let loaded = self.loads.iter().filter_map(|load| {
-            let (part, action) = load.single()?;
-            // A pressure on a surface in space acts on cells.
-            Some((part.clone(), matches!(action, Action::Body(_) | Action::Pressure(_))))
-        });
-        let held = self.supports.iter().map(|hold| (hold.part.clone(), false));
-        let of_material = self.material_parts().into_iter().map(|(_, part)| (part, true));
-        let d = mesh.dimension;
-        let of_fits = held_conditions(mesh, self.fits.iter().filter_map(|fit| fit.recipe.whole()));
-        let conditions =
-            held.chain(loaded).chain(of_material).filter_map(|(part, asks_cells)| match part.selection(d) {
-                Ok(Selection::Where(condition)) => Some((condition, asks_cells)),
-                Ok(Selection::Group(_) | Selection::Everything) | Err(_) => None,
-            });
-        mesh.choose(conditions.chain(of_fits.into_iter().map(|condition| (condition, false))));
-    }
-
-    /// Whether anything besides the mesh is given in metres: conditions, and loads that vary.
-    pub fn is_in_metres(&self) -> bool {
-        let actions = || self.loads.iter().filter_map(LoadCase::single);
-        let conditions = self.supports.iter().map(|hold| &hold.part).chain(actions().map(|(part, _)| part));
-        let varies = |action: &Action| match action {
-            Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
-            Action::Displacement(v) => v.iter().any(|c| matches!(c, Some(Component::Varying(_)))),
-            Action::Pressure(component) => matches!(component, Component::Varying(_)),
-            Action::Force(_) | Action::Volume(_) => false,
-        };
-        let of_place = |entry: &MaterialEntry| {
-            entry.condition.is_some() || entry.axes.is_some() || entry.fibre.is_some() || entry.varies()
-        };
-        self.material.all.iter().any(of_place)
-            || conditions.into_iter().any(|part| matches!(part, Part::Where(_)))
-            || actions().any(|(_, action)| varies(action))
-            || self.loads.iter().any(|load| load.measured.is_some())
-    }
-
-    /// The parts of the body with materials of their own, by their places in the scene.
-    pub(in crate::study) fn material_parts(&self) -> Vec<(String, Part)> {
-        let all = self.material.all.iter().enumerate();
-        all.filter_map(|(i, entry)| Some((self.material.key(i), entry.part().ok()?))).collect()
     }
 
     /// The names of the regions of a material map of this scene, in their order.

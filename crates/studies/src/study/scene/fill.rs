@@ -1,6 +1,7 @@
 //! The mesh of a scene that fills a surface.
 
 use super::elements::load_element;
+use super::value::MeshLength;
 use crate::element::Element;
 use crate::error::{Error, Result};
 use crate::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Mesh, MeshSource, VoxelMesh};
@@ -20,8 +21,9 @@ pub struct FillEntry {
     /// are the cells, or are divided into six tetrahedra each, by `element`.
     #[schemars(extend("x-type" = "path"))]
     pub surface: PathBuf,
-    /// A cube of the lattice has edges of this length, in mesh units, above 0. A surface needs `cell` or `points`.
-    pub cell: Option<f64>,
+    /// A cube of the lattice has edges of this length, above 0: a number of mesh units, or a length with a unit such as `"4 mm"`. A surface needs
+    /// `cell` or `points`.
+    pub cell: Option<MeshLength>,
     /// The edges of the cubes are chosen so that the mesh has about this number of points, 8 or more; the key takes the place of `cell`.
     pub points: Option<usize>,
     /// The cells have this element of hexahedra, which are the cubes, or of tetrahedra, twelve for each cube. It is the name of a shipped
@@ -102,12 +104,17 @@ impl FillEntry {
     /// # Errors
     /// None or both of the keys are given, or the edge is no length.
     fn spacing(&self, scale: f64) -> Result<FillSpacing> {
-        match (self.cell, self.points) {
-            (Some(cell), None) => Ok(FillSpacing::Edge(scale * range::positive("cell", cell, "mesh units")?)),
+        match (&self.cell, self.points) {
+            (Some(MeshLength::Units(cell)), None) => {
+                Ok(FillSpacing::Edge(scale * range::positive("cell", *cell, "mesh units")?))
+            }
+            (Some(MeshLength::Stated(_, metres)), None) => {
+                Ok(FillSpacing::Edge(range::positive("cell", *metres, "m")?))
+            }
             (None, Some(points)) => Ok(FillSpacing::Points(points)),
             (Some(cell), Some(points)) => {
                 let expected = "the number of points or the edge of a cube, which gives it";
-                Err(Error::expected("points", expected, format!("both, {points} points and edges of {cell}")))
+                Err(Error::expected("points", expected, format!("both, {points} points and edges of {}", cell.toml())))
             }
             (None, None) => {
                 let expected = "the edge of a cube in mesh units, or the number of points, for a surface";
@@ -140,7 +147,7 @@ impl FillEntry {
     /// The entry as a table of TOML, without keys that have their defaults.
     pub fn toml(&self) -> String {
         let mut keys = vec![("surface", quoted(&self.surface.to_string_lossy()).to_string())];
-        keys.extend(self.cell.map(|cell| ("cell", cell.to_string())));
+        keys.extend(self.cell.as_ref().map(|cell| ("cell", cell.toml())));
         keys.extend(self.points.map(|points| ("points", points.to_string())));
         keys.push(("element", quoted(&self.element).to_string()));
         keys.extend((self.boundary != stepped()).then(|| ("boundary", quoted(&self.boundary).to_string())));

@@ -8,14 +8,12 @@ use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Embedding, Gate, Mesh, MeshSource};
 use crate::range;
-use crate::study::extent::extent;
+use crate::study::extent::{extent, unit_note};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A longer body of a file is rarely meant, m.
-const LONGEST: f64 = 10.0;
 /// A body of a file that is longer than this has another unit than the metre, m.
 const TOO_LONG: f64 = 1e5;
 
@@ -48,6 +46,9 @@ pub struct MeshInput {
     pub elements: Vec<String>,
     /// `quality` says what becomes of poor cells of a `file`. Without it, cells below 1e-4 are reported.
     pub quality: Option<QualityEntry>,
+    /// Whether `scale` is a text with a unit, such as `"m"`.
+    #[serde(skip)]
+    pub states_unit: bool,
     /// How often the edges of all cells are halved.
     #[serde(skip)]
     pub halvings: u32,
@@ -124,11 +125,9 @@ fn one() -> f64 {
 impl MeshInput {
     /// A note if the scene has no unit of the mesh file and the size of the mesh suggests that it is not the metre.
     pub fn unit_assumption(&self, mesh: &Mesh) -> Option<String> {
-        let longest = extent(mesh).into_iter().fold(0.0, f64::max);
         let is_of_file = (self.file.is_some() && self.in_memory().is_none()) || self.fill.is_some();
-        (is_of_file && self.scale == 1.0 && longest > LONGEST).then(|| {
-            format!("the coordinates of the mesh are taken in metres: the body is {longest:.0} m long; scale = \"mm\" if they are in millimetres")
-        })
+        let is_taken = is_of_file && self.scale == 1.0 && !self.states_unit;
+        is_taken.then(|| unit_note(mesh, "scale = \"mm\"")).flatten()
     }
 
     /// Checks the entry.

@@ -43,6 +43,15 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
             let expected = "fits to cells, without an engine, of a sheet with bending = \"plate\"";
             return Err(Error::expected(place, expected, "another").of_kind(ErrorKind::Unsupported));
         }
+        // What an engine needs of the scene is known before the fits, which may take long.
+        if fit.engine.is_some() && has_law {
+            let expected = "a material without a \"law\": constants for an engine are fitted at small deformation";
+            return Err(Error::expected(format!("{place}.engine"), expected, "one with a law"));
+        }
+        if fit.engine.is_some() && !facts.density {
+            let expected = "a density in [material]: what an engine reaches depends on the masses";
+            return Err(Error::expected(format!("{place}.engine"), expected, "none"));
+        }
         if fit.bending.is_some() && material.first().bending != Bending::Plate {
             let expected = "a sheet with bending = \"plate\" in its material";
             return Err(Error::expected(format!("{place}.bending"), expected, "a body that does not bend as one"));

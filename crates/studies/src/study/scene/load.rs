@@ -253,10 +253,10 @@ fn sized(key: &str, v: &[&Varying], unit: &str) -> Result<()> {
     range::largest(key, v.iter().filter_map(number).filter(|_| !varies), unit)
 }
 
-fn component(v: Varying) -> Result<Component> {
+fn component(v: Varying, quantity: Option<Quantity>) -> Result<Component> {
     match v {
         Varying::Number(value) => Ok(Component::Constant(value)),
-        Varying::Text(text) => Scope::new(&["x", "y", "z"]).expression(&text).map(Component::Varying),
+        Varying::Text(text) => Scope::value_over(&["x", "y", "z"], quantity, &text).map(Component::Varying),
     }
 }
 
@@ -270,7 +270,7 @@ fn prescribed(v: Vec<PrescribedComponent>) -> Result<Vec<Option<Component>>> {
     let one = |(i, v): (usize, PrescribedComponent)| {
         let Some(v) = v.0 else { return Ok(None) };
         let key = format!("displacement[{i}]");
-        component(v.clone()).map(Some).map_err(|e| match v {
+        component(v.clone(), Some(Quantity::Length)).map(Some).map_err(|e| match v {
             // A word alone is more likely meant as "free".
             Varying::Text(text) if text.chars().all(char::is_alphabetic) => {
                 Error::expected(key, PRESCRIBED, format!("\"{text}\""))
@@ -283,24 +283,25 @@ fn prescribed(v: Vec<PrescribedComponent>) -> Result<Vec<Option<Component>>> {
 
 impl LoadEntry {
     fn check(self, name: String, is_sum: bool) -> Result<LoadCase> {
-        let varying = |key: &str, v: Vec<Varying>, unit: &str| -> Result<Vec<Component>> {
-            sized(key, &v.iter().collect::<Vec<_>>(), unit)?;
-            let component = |(i, v)| component(v).map_err(|e| e.under(format!("{key}[{i}]")));
-            v.into_iter().enumerate().map(component).collect()
-        };
+        let varying =
+            |key: &str, v: Vec<Varying>, (unit, quantity): (&str, Option<Quantity>)| -> Result<Vec<Component>> {
+                sized(key, &v.iter().collect::<Vec<_>>(), unit)?;
+                let component = |(i, v)| component(v, quantity).map_err(|e| e.under(format!("{key}[{i}]")));
+                v.into_iter().enumerate().map(component).collect()
+            };
         let reaction =
             |(i, entry): (usize, ReactionEntry)| entry.check().map_err(|e| e.under(format!("reactions[{i}]")));
         let reactions: Vec<Reaction> = self.reactions.into_iter().enumerate().map(reaction).collect::<Result<_>>()?;
         let mut actions = Vec::new();
         if let Some(v) = self.traction {
-            actions.push(Action::Traction(varying("traction", v, "Pa")?));
+            actions.push(Action::Traction(varying("traction", v, ("Pa", Some(Quantity::Pressure)))?));
         }
         if let Some(VaryingPressure(v)) = self.pressure {
             sized("pressure", &[&v], "Pa")?;
             // A number before letters is meant with a unit, and a text without a number is no expression that someone meant.
             let is_quantity =
                 |text: &str| text.trim_start_matches(|c: char| !c.is_alphabetic()).chars().all(char::is_alphabetic);
-            let pressure = component(v.clone()).map_err(|e| match v {
+            let pressure = component(v.clone(), Some(Quantity::Pressure)).map_err(|e| match v {
                 Varying::Text(text) if is_quantity(&text) => match Quantity::Pressure.parse(&text) {
                     Err(units) if text.chars().any(|c| c.is_ascii_digit()) => units.under("pressure"),
                     _ => Error::expected("pressure", PRESSURE, format!("\"{text}\"")),
@@ -317,7 +318,7 @@ impl LoadEntry {
             actions.push(Action::Force(v));
         }
         if let Some(v) = self.body {
-            actions.push(Action::Body(varying("body", v, "N/m³")?));
+            actions.push(Action::Body(varying("body", v, ("N/m³", None))?));
         }
         let is_acceleration = self.gravity.is_some();
         if let Some(v) = self.gravity {

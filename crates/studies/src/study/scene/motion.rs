@@ -9,6 +9,7 @@ use crate::bound::{self, check_count};
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, LinearSolver, Options};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Lumping;
+use crate::quantity::Quantity;
 use crate::range;
 use crate::study::choice::choice;
 use crate::symbolic::{Expr, Scope, parse_rational};
@@ -180,8 +181,10 @@ impl MotionEntry {
             let part = part(pull.group, pull.condition, format!("pull[{i}]"))?;
             let component = |(k, value)| {
                 let free = matches!(&value, Varying::Text(text) if text == "free");
-                let read =
-                    || expression(value, &["t", "x", "y", "z"]).map_err(|e| e.under(format!("displacement[{k}]")));
+                let read = || {
+                    expression(value, &["t", "x", "y", "z"], Some(Quantity::Length))
+                        .map_err(|e| e.under(format!("displacement[{k}]")))
+                };
                 if free { Ok(None) } else { read().map(Some) }
             };
             let displacement: Result<Vec<_>> = pull.displacement.into_iter().enumerate().map(component).collect();
@@ -195,7 +198,7 @@ impl MotionEntry {
         let mut forces = Vec::new();
         for (i, force) in self.force.into_iter().enumerate() {
             let part = part(force.group, force.condition, format!("force[{i}]"))?;
-            let component = |(k, value)| expression(value, &["t"]).map_err(|e| e.under(format!("force[{k}]")));
+            let component = |(k, value)| expression(value, &["t"], None).map_err(|e| e.under(format!("force[{k}]")));
             let components: Result<Vec<_>> = force.force.into_iter().enumerate().map(component).collect();
             let components = components.map_err(|e| e.under(format!("force[{i}]")))?;
             forces.push(AppliedForce { part, force: components, each: force.each });
@@ -330,12 +333,12 @@ impl DampingEntry {
     }
 }
 
-fn expression(value: Varying, variables: &[&str]) -> Result<Expr> {
+fn expression(value: Varying, variables: &[&str], quantity: Option<Quantity>) -> Result<Expr> {
     match value {
         Varying::Number(number) if !(number.abs() <= range::LARGEST) => {
             Err(Error::new(format!("expected a number of at most {:e} in size, found {number:?}", range::LARGEST)))
         }
         Varying::Number(number) => Ok(Expr::Number(parse_rational(&format!("{number}"))?)),
-        Varying::Text(text) => Scope::new(variables).expression(&text),
+        Varying::Text(text) => Scope::value_over(variables, quantity, &text),
     }
 }

@@ -23,7 +23,7 @@ impl Part {
             (Some(name), None) => Ok(Part::Group(name)),
             (None, Some(text)) => {
                 // Reports at once what is wrong in any dimension.
-                Scope::new(&["x", "y", "z"]).predicate(&text).map_err(|e| e.under("where"))?;
+                Scope::of_place(3).predicate(&text).map_err(|e| e.under("where"))?;
                 Ok(Part::Where(text))
             }
             (None, None) => Ok(Part::Everything),
@@ -46,7 +46,7 @@ impl Part {
         Ok(match self {
             Part::Group(name) => Selection::Group(name.clone()),
             Part::Where(text) => {
-                let scope = Scope::new(&["x", "y", "z"][..dimension]);
+                let scope = Scope::of_place(dimension);
                 Selection::Where(scope.predicate(text).map_err(|e| e.under("where"))?)
             }
             Part::Everything => Selection::Everything,

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::material::Anisotropy;
 use crate::mesh::{CellIndex, Holder, Interpolation, Mesh, SampleReading, Samples};
 use crate::model::cell_means;
+use crate::quantity::Quantity;
 use crate::study::extent::extent;
 use crate::symbolic::{Program, Scope};
 use std::cell::{OnceCell, RefCell};
@@ -169,7 +170,7 @@ impl<'a> Places<'a> {
     }
 
     fn of_expression(&self, text: &str, cells: &[CellIndex]) -> Result<Vec<f64>> {
-        let expression = Scope::new(&["x", "y", "z"]).expression(text)?;
+        let expression = Scope::of_place(3).with_units(&[Quantity::Pressure, Quantity::Density]).expression(text)?;
         if self.mesh.dimension == 2 && expression.uses(2) {
             return Err(Error::new("expected an expression of x and y in a plane mesh, found z"));
         }

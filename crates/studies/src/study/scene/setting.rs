@@ -112,6 +112,12 @@ impl Setting {
                     reached = format!("{reached}[{index}]");
                     &mut list[*index]
                 }
+                (Step::Name(name), Value::Array(_)) => {
+                    return fault(
+                        format!("an entry of the list, such as {reached}[0].{name}"),
+                        "the whole list".into(),
+                    );
+                }
                 (Step::Name(name), _) => {
                     return fault(format!("a table with \"{name}\""), format!("a value of type {found}"));
                 }

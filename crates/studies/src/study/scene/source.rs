@@ -2,6 +2,7 @@
 
 use super::entry::SceneFile;
 use super::in_memory::InMemory;
+use super::key_paths::led;
 use super::setting::Setting;
 use crate::error::{Error, Result};
 use crate::file;
@@ -50,6 +51,16 @@ impl SceneSource {
         file::parse_table(table)
     }
 
+    /// Whether the scene states the unit of its mesh as a text.
+    pub fn states_unit(&self) -> bool {
+        let is_text =
+            |table: Table| table.get("mesh").and_then(|mesh| mesh.get("scale")).is_some_and(|scale| scale.is_str());
+        match self.settings.iter().rev().find(|setting| setting.key() == "mesh.scale") {
+            Some(setting) => setting.value().is_string(),
+            None => file::parse_toml(&self.text).is_ok_and(is_text),
+        }
+    }
+
     /// Names the setting that brings a fault in, or the file and the line. `alone` is whether the file is right without settings.
     pub fn explained(&self, error: Error, alone: impl FnOnce() -> Result<()>) -> Error {
         if self.settings.is_empty() || error.file().is_some() || self.of_setting(&error).is_some() {
@@ -71,7 +82,12 @@ impl SceneSource {
 
     /// Names the scene and the line, or the setting, in an error that names no file.
     pub fn placed(&self, error: Error) -> Error {
-        let in_file = |error| file::on_line_of_key(error, &self.text).in_file(&self.path);
+        let in_file = |error: Error| {
+            let key = error.key().unwrap_or_default().to_string();
+            let is_alone = error.problem().contains("did you mean");
+            let error = if is_alone { error } else { led(error, &key) };
+            file::on_line_of_key(error, &self.text).in_file(&self.path)
+        };
         error.placed(|error| self.of_setting(&error).unwrap_or_else(|| in_file(error)))
     }
 
@@ -93,5 +109,6 @@ impl SceneSource {
 
 /// The fault as one of the option, which has no file.
 fn of_option(key: &str, error: &Error) -> Error {
+    let error = led(error.clone(), key);
     Error::at(format!("--set {key}"), error.problem()).of_kind(error.kind())
 }

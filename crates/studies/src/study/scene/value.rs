@@ -22,6 +22,44 @@ pub struct VaryingPressure(pub Varying);
 #[derive(Debug, Clone)]
 pub struct PrescribedComponent(pub Option<Varying>);
 
+/// A length of a mesh: a number of mesh units, or a text with a unit of length.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MeshLength {
+    /// A number of mesh units.
+    Units(f64),
+    /// A text with a unit, and the length in m.
+    Stated(String, f64),
+}
+
+impl MeshLength {
+    /// The length that a text stands for.
+    ///
+    /// # Errors
+    /// It is neither a number nor a length.
+    pub fn parse(text: &str) -> crate::error::Result<MeshLength> {
+        match text.trim().parse() {
+            Ok(number) => Ok(MeshLength::Units(number)),
+            Err(_) => Quantity::Length.parse(text).map(|metres| MeshLength::Stated(text.trim().into(), metres)),
+        }
+    }
+
+    /// The length in m, with `scale` metres per mesh unit.
+    pub fn metres(&self, scale: f64) -> f64 {
+        match self {
+            MeshLength::Units(number) => number * scale,
+            MeshLength::Stated(_, metres) => *metres,
+        }
+    }
+
+    /// The length as TOML.
+    pub fn toml(&self) -> String {
+        match self {
+            MeshLength::Units(number) => number.to_string(),
+            MeshLength::Stated(text, _) => crate::text::toml(text).to_string(),
+        }
+    }
+}
+
 /// What a direction of a prescribed displacement is.
 pub const PRESCRIBED: &str = "a finite number of metres, an expression of x, y, z, or \"free\"";
 
@@ -80,6 +118,16 @@ impl<'de> Deserialize<'de> for VaryingPressure {
     }
 }
 
+impl<'de> Deserialize<'de> for MeshLength {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MeshLength, D::Error> {
+        deserializer.deserialize_any(NumberOrText {
+            expected: "a number of mesh units, or a length with a unit such as \"4 mm\"",
+            number: |v| Some(MeshLength::Units(v)),
+            text: |v| MeshLength::parse(v).map_err(|e| Some(e.problem().into())),
+        })
+    }
+}
+
 impl<'de> Deserialize<'de> for Varying {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Varying, D::Error> {
         deserializer.deserialize_any(NumberOrText {
@@ -124,6 +172,7 @@ macro_rules! schemas {
 }
 
 schemas! {
+    MeshLength: "number or length", "A number of mesh units, or a length with a unit such as \"4 mm\".";
     Varying: "number or expression", "A number, or an expression of x, y, z (m) such as \"1e5*x\".";
     VaryingPressure: "pressure or expression", "A number of Pa, a text with a unit such as \"1 kPa\", or an expression of x, y, z (m) in Pa such as \"1e4*z\".";
     PrescribedComponent: "number, expression or `\"free\"`", "A number of metres, an expression of x, y, z (m) such as \"-0.1*y\", or \"free\".";

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::{
-    BlockStiffness, Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements,
+    BlockStiffness, Body, Deformation, Elastic, LinearElastic, Network, Support, check_body, finite_elements, inverted,
     unheld_bodies,
 };
 use crate::scalar::{norm, scaled_norm};
@@ -22,6 +22,8 @@ use std::time::Instant;
 
 /// A displacement of this multiple of the body's size means that the motion has diverged.
 const AWAY: f64 = 1e9;
+/// States in which inverted cells are counted, about: each takes as long as some steps.
+const LOOKS: usize = 12;
 /// If linear finite elements are strained or rotated by more than this, in rad, springs that rotate deviate from them
 /// by half of it: the error that the fit causes is then computed with springs that do not rotate.
 const TURNING: f64 = 0.01;
@@ -217,6 +219,8 @@ impl Run<'_> {
             growth,
             deformation: None,
             linear_error: None,
+            largest: 0.0,
+            inverted: 0,
             records: Vec::new(),
             states: Vec::new(),
         };
@@ -236,7 +240,8 @@ impl Run<'_> {
         let extent = self.mesh.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
         let stage = format!("motion of {name}{}", if growth.is_some() { ", indefinite" } else { "" });
         let mut states = Vec::new();
-        for &until in &planned.written {
+        let apart = planned.written.len().div_ceil(LOOKS).max(1);
+        for (place, &until) in planned.written.iter().enumerate() {
             progress(Event::stage(&stage, made.steps, planned.recipe.steps));
             let start = Instant::now();
             while made.steps < until && made.ending == MotionEnding::Complete {
@@ -259,6 +264,12 @@ impl Run<'_> {
                 break;
             }
             made.records.push(record);
+            let moved = &simulation.state().displacement;
+            made.largest = moved.chunks_exact(self.mesh.dimension).map(norm).fold(made.largest, f64::max);
+            if place % apart == 0 || place + 1 == planned.written.len() {
+                let x: Vec<f64> = self.mesh.points.iter().zip(moved).map(|(x, u)| x + u).collect();
+                made.inverted = made.inverted.max(inverted(self.mesh, &x));
+            }
             if keeps {
                 states.push(simulation.state().displacement.clone());
             }

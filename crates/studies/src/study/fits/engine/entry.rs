@@ -5,7 +5,10 @@ use crate::error::{Error, Result};
 use crate::study::choice::choice;
 use crate::study::scene::value;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 
 /// The settings of an engine. A key that is absent has the default of the engine.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, Serialize, JsonSchema)]
@@ -37,6 +40,34 @@ pub struct EngineEntry {
     /// The engine stores positions in these numbers. They decide nothing but a note, where substeps move points by less than their last digit.
     #[schemars(extend("enum" = Precision::NAMES, "default" = Precision::Single.name()))]
     precision: Option<String>,
+}
+
+/// The settings of an engine, or its name for those that it has by default.
+#[derive(Debug, Clone)]
+pub(in crate::study::fits) struct EngineOrName(pub EngineEntry);
+
+struct EngineVisitor;
+
+impl<'de> Visitor<'de> for EngineVisitor {
+    type Value = EngineOrName;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a name such as \"jolt\", or a table such as { method = \"xpbd\", substeps = 10 }")
+    }
+
+    fn visit_str<E: de::Error>(self, name: &str) -> std::result::Result<EngineOrName, E> {
+        Ok(EngineOrName(EngineEntry { method: Some(name.into()), ..EngineEntry::default() }))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<EngineOrName, A::Error> {
+        EngineEntry::deserialize(MapAccessDeserializer::new(map)).map(EngineOrName)
+    }
+}
+
+impl<'de> Deserialize<'de> for EngineOrName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<EngineOrName, D::Error> {
+        deserializer.deserialize_any(EngineVisitor)
+    }
 }
 
 impl EngineEntry {

@@ -6,4 +6,5 @@ mod entry;
 mod outcome;
 
 pub use entry::EngineEntry;
+pub(super) use entry::EngineOrName;
 pub use outcome::{EngineErrors, EngineLimit, EngineOutcome, EngineVibration, FitLimit};

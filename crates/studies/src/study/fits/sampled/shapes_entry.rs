@@ -2,6 +2,7 @@
 
 use crate::fit::{DeformationFamily, Design};
 use crate::study::fits::sampled::recipe::SampledRecipe;
+use crate::study::scene::value;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -46,7 +47,8 @@ pub struct ShapesEntry {
     #[schemars(with = "Option<serde_json::Value>", extend("x-type" = "path, or list of paths"))]
     pub states: Option<PathsEntry>,
     /// One unit of the files of `states` has this length in m, above 0.
-    #[schemars(extend("x-default" = "1"))]
+    #[serde(default, deserialize_with = "value::optional_mesh_unit")]
+    #[schemars(schema_with = "value::mesh_unit_schema", extend("x-default" = "1 m"))]
     pub scale: Option<f64>,
     /// The springs are fitted to this number of shapes; to the first of them with `gradients`, which has to have as many to fit.
     #[schemars(extend("x-default" = format!("{}, all with `gradients`", SampledRecipe::default().fit.sampling.shapes)))]

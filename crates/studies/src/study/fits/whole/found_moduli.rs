@@ -1,7 +1,7 @@
 //! The moduli that a whole-object fit has found, with their intervals.
 
 use super::evidence::Evidence;
-use super::moduli::{FoundModuli, FoundModulus, ModuliSearch};
+use super::moduli::{FoundModuli, FoundModulus, ModuliSearch, excess};
 use super::recipe::WholeRecipe;
 use crate::whole::{Object, WEAK, WholeFit, ninety_five};
 
@@ -27,7 +27,7 @@ pub(super) fn found_moduli(
     let reach = |p: usize| {
         let known = known.as_ref()?;
         let of_mesh = ninety_five(None) * mesh.get(p).copied().unwrap_or(0.0);
-        Some((known.reach * known.deviations[p]?).hypot(of_mesh))
+        Some((excess(misfit) * known.reach * known.deviations[p]?).hypot(of_mesh))
     };
     let modulus = |(p, (name, factor)): (usize, (&String, f64))| {
         // From the value that was found to the one without ρ, and the deviations beyond either end.

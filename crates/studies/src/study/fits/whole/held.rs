@@ -32,7 +32,7 @@ fn held_part(mesh: &Mesh, text: &str) -> Result<Selection> {
     if mesh.groups.contains_key(text) {
         return Ok(Selection::Group(text.into()));
     }
-    Scope::new(&["x", "y", "z"][..mesh.dimension]).predicate(text).map(Selection::Where).map_err(|e| {
+    Scope::of_place(mesh.dimension).predicate(text).map(Selection::Where).map_err(|e| {
         if text.contains(['<', '>', '=']) {
             return e;
         }

@@ -6,6 +6,14 @@ use serde::{Deserialize, Serialize};
 /// Residuals of this multiple of the noise are more than noise.
 const MISFIT: f64 = 1.5;
 
+/// Residuals of this multiple are those of another model or another noise, as in `springfit calibrate`.
+const MANY: f64 = 3.0;
+
+/// By what deviations by the stated noise are multiplied where residuals are more than noise (Birge 1932).
+pub(super) fn excess(misfit: Option<f64>) -> f64 {
+    misfit.filter(|misfit| *misfit > MISFIT).unwrap_or(1.0)
+}
+
 /// What displacements say of moduli.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
@@ -76,8 +84,14 @@ impl FoundModuli {
             format!("the displacements hardly see {weak}: intervals reach beyond the factor 2{prior}")
         });
         let misfit = self.misfit.map(|misfit| {
-            let told = if misfit > MISFIT { ": the model does not explain these displacements" } else { "" };
-            format!("residuals are {misfit:.2} times the stated noise{told}")
+            let told = match misfit {
+                _ if misfit > MISFIT => {
+                    ": the model does not explain these displacements, and deviations by noise are multiplied by it"
+                }
+                _ => "",
+            };
+            let distrust = if misfit > MANY { "NOT TRUSTED: " } else { "" };
+            format!("{distrust}residuals are {misfit:.2} times the stated noise{told}")
         });
         let search = match self.search {
             ModuliSearch::Finished => None,

@@ -1,7 +1,7 @@
 //! What a whole-object fit has to say to its reader.
 
 use super::made_loads::MadeLoads;
-use super::outcome::{FittedMasses, ModelError, ModelFrequencies, SupportFrequencies, WholeOutcome, WorseLoad};
+use super::outcome::{FittedMasses, ModelFrequencies, SupportFrequencies, WholeOutcome, WorseLoad};
 
 /// A relative error under a load from which on a fit has not enough unknowns of the right kind.
 const CAPACITY: f64 = 0.2;
@@ -57,32 +57,22 @@ impl WholeOutcome {
             }
             _ => String::new(),
         };
-        let percent = |error: Option<f64>| error.map_or("-".into(), |error| format!("{:.2}", 100.0 * error));
-        let held_out = self.held_out.iter().map(|held_out| {
-            let seen = held_out.part.words();
-            let model = |model: &ModelError| {
-                let lost = if model.lost > 0 { format!(" ({} lost)", model.lost) } else { String::new() };
-                format!("{} {} / {}{lost}", model.model, percent(model.median), percent(model.worst))
-            };
-            let models: Vec<String> = held_out.models.iter().map(model).collect();
-            let (loads, support) = (held_out.loads, &held_out.support);
+        let percent = |error: f64| format!("{:.2}", 100.0 * error);
+        // The errors themselves are a table.
+        let held_out = self.held_out.iter().filter_map(|held_out| {
             let worse = |load: &WorseLoad| {
-                format!("{} {} / {}", load.load, percent(Some(load.finite_elements)), percent(Some(load.fitted)))
+                format!("{} {} / {}", load.load, percent(load.finite_elements), percent(load.fitted))
             };
             let worse: Vec<String> = held_out.worse.iter().map(worse).collect();
-            let listed = if worse.is_empty() {
-                String::new()
-            } else {
+            let listed = (!worse.is_empty()).then(|| {
                 format!(
-                    "; loads worse than finite elements by more than a tenth (finite elements / fitted): {}",
+                    "loads worse than finite elements by more than a tenth (errors in %, finite elements / fitted): {}",
                     worse.join(", ")
                 )
-            };
-            let gain = held_out.gain().map_or(String::new(), |gain| format!("; {gain}"));
-            format!(
-                "median and largest error in % of {loads} other loads, held at {support}{seen}: {}{gain}{listed}",
-                models.join(", ")
-            )
+            });
+            let said: Vec<String> = held_out.gain().into_iter().chain(listed).collect();
+            let (loads, place) = (held_out.loads, held_out.place());
+            (!said.is_empty()).then(|| format!("under {loads} other loads, held at {place}: {}", said.join("; ")))
         });
         let fitted = format!(
             "fitted to {}, so that errors under them are not predictions{validated}: {done}{ended}",

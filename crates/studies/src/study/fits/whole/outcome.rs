@@ -227,6 +227,22 @@ pub struct HeldOut {
     pub seconds_fine: Option<f64>,
 }
 
+impl HeldOut {
+    /// The support and what its loads were for, as a table has them.
+    pub fn column(&self) -> String {
+        match self.part {
+            SupportPart::Fitted => self.support.clone(),
+            SupportPart::Consulted => format!("{}, not fitted", self.support),
+            SupportPart::Unseen => format!("{}, unseen", self.support),
+        }
+    }
+
+    /// What is held, in words, and what loads with this support were for.
+    pub fn place(&self) -> String {
+        format!("{}{}", self.support, self.part.words())
+    }
+}
+
 /// The relative errors `‖u − ū‖/‖ū‖` under a load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
