@@ -44,6 +44,13 @@ impl EffectiveModuli {
     }
 }
 
+/// The cells that fill a box of this size, m, one in each direction.
+fn box_of(element: &Arc<Element>, size: &[f64]) -> Result<Mesh> {
+    let d = element.dimension();
+    let spec = BoxMesh { element: element.clone(), size: size.to_vec(), cells: vec![1; d], origin: vec![0.0; d] };
+    spec.build()
+}
+
 /// The cells and springs of a periodic box.
 #[derive(Debug)]
 pub struct Lattice {
@@ -78,9 +85,7 @@ impl Lattice {
         size: &[f64],
         fit: impl FnOnce(&[f64], &[usize]) -> Result<CellFits>,
     ) -> Result<Lattice> {
-        let d = element.dimension();
-        let spec = BoxMesh { element: element.clone(), size: size.to_vec(), cells: vec![1; d], origin: vec![0.0; d] };
-        let mesh = spec.build()?;
+        let mesh = box_of(element, size)?;
         let fits = fit(&mesh.points, &mesh.blocks[0].connectivity)?;
         Ok(Lattice { mesh, fits })
     }

@@ -42,6 +42,12 @@ pub fn factor_cost_of<'a>(
         let all = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b)));
         places.extend(all.filter(|(a, b)| a != b).map(|(a, b)| Pair::new(a, b)));
     }
+    cost_of(points, dimension, places)
+}
+
+/// [`factor_cost_of`], without parameters of type: compiled here, where code is optimised, and not with each caller.
+fn cost_of(points: &[f64], dimension: usize, places: Vec<Pair<usize, usize>>) -> Result<FactorCost> {
+    let count = points.len() / dimension.max(1);
     let pattern = SymbolicSparseColMat::try_new_from_indices(count, count, &places);
     let (pattern, _) = pattern.map_err(|_| Error::new("the pattern of the stiffness does not fit into memory"))?;
     let places = Places { coordinates: points.to_vec(), dimension };
