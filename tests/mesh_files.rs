@@ -168,7 +168,7 @@ fn every_mesh_of_the_scenes_reads() {
         }
         count += 1;
     }
-    assert_eq!(count, 12);
+    assert_eq!(count, 13);
 }
 
 /// A legacy file that ends just before data on its points or cells is a whole file without them.

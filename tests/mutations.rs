@@ -72,6 +72,8 @@ fn sound() -> Vec<(String, MeshSource)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
     let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
+    // A sheet has no side that is outside.
+    files.retain(|path| !path.ends_with("roof_tri.msh"));
     assert_eq!(files.len(), 12);
     all.extend(files.iter().map(|path| (path.display().to_string(), MeshSource::read(path).unwrap())));
     all

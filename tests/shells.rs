@@ -495,7 +495,7 @@ fn the_shipped_roof_sags_as_published() {
     let is_side = |x: &[f64]| (x[1] - 25.0).abs() < 1e-6 && x[0] > 16.0;
     let middle = points.chunks_exact(3).position(is_side).unwrap();
     let sag = |fit: usize| -outcome.fits[fit].loads[0].displacement.as_ref().unwrap()[3 * middle + 2];
-    assert_eq!([sag(0), sag(1)].map(|sag| format!("{sag:.3}")), ["0.303", "0.288"]);
+    assert_eq!([sag(0), sag(1)].map(|sag| format!("{sag:.3}")), ["0.293", "0.279"]);
 }
 
 /// A run and its levels have the springs on strains beside the finite elements, which are those of triangles; at large deformation too.
