@@ -33,7 +33,7 @@ pub fn fibre_springs(mesh: &Mesh, material: impl Into<MaterialMap>, law: &Energy
 
 /// [`fibre_springs`], without parameters of type: compiled here, where code is optimised, and not with each caller.
 fn springs_of_fibres(mesh: &Mesh, material: MaterialMap, law: &Energy) -> Result<Vec<MeasureSpring>> {
-    of_cells(mesh, &material.into(), |_| law)
+    of_cells(mesh, &material, |_| law)
 }
 
 /// The springs of the fibres with the law of each cell.
