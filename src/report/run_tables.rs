@@ -137,7 +137,7 @@ fn materials(report: &Report) -> Table {
         let whole = |title| Column::numbers(title).group("whole").priority(Third);
         columns.extend([whole("E").unit("Pa"), whole("ν"), whole("Zener")]);
     }
-    // Of an anisotropic material a mean over directions says little.
+    // The modulus of an anisotropic material depends on the direction, and its mean says little.
     let axes: &[&str] = if is_anisotropic(report) { &["x", "y", "z"][..report.extent.len()] } else { &[] };
     columns.extend(axes.iter().map(|axis| Column::numbers(*axis).unit("Pa").group("E along").priority(Third)));
     let row = |fit: &FitRecord| {

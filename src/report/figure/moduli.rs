@@ -57,11 +57,10 @@ impl Moduli {
     /// No network has a tensor whose inverse exists, or there is no network with the name.
     pub fn of(run: &RunFolder, fit: Option<&str>) -> Result<Moduli> {
         let report = run.report()?;
-        let fits = match fit {
-            None => &report.fits[..],
-            Some(_) => std::slice::from_ref(&report.fits[RunFolder::place(&report, fit)?]),
-        };
-        let size = fits.first().map_or(0, |fit| fit.as_material.stiffness.nrows());
+        let chosen = fit.map(|_| RunFolder::place(&report, fit)).transpose()?;
+        let is_drawn = |(place, _): &(usize, &FitRecord)| chosen.is_none_or(|chosen| *place == chosen);
+        let fits: Vec<(usize, &FitRecord)> = report.fits.iter().enumerate().filter(is_drawn).collect();
+        let size = fits.first().map_or(0, |(_, fit)| fit.as_material.stiffness.nrows());
         let planes: Vec<[usize; 2]> = match size {
             6 => vec![[0, 1], [0, 2], [1, 2]],
             3 => vec![[0, 1]],
@@ -69,9 +68,8 @@ impl Moduli {
             _ => return Err(Error::new("the run has no fit, so there are no moduli to draw")),
         };
         let thickness = thickness(&report)?;
-        let place = |name: &str| report.fits.iter().position(|fit| fit.name == name).unwrap_or(0);
-        let curve = |fit: &FitRecord| Some(ModulusCurve { place: place(&fit.name), ..curve(fit, &planes, thickness)? });
-        let curves: Vec<ModulusCurve> = fits.iter().filter_map(curve).collect();
+        let curves: Vec<ModulusCurve> =
+            fits.iter().filter_map(|&(place, fit)| curve(place, fit, &planes, thickness)).collect();
         if curves.is_empty() {
             let why = "some strain of each network meets no resistance or releases energy";
             return Err(Error::new(format!("there are no moduli to draw: {why}")));
@@ -191,7 +189,7 @@ fn around(moduli: &[f64], at: impl Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// `None` if the tensor is not known, or some strain has no modulus.
-fn curve(fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<ModulusCurve> {
+fn curve(place: usize, fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<ModulusCurve> {
     let stiffness = Some(&fit.as_material.stiffness).filter(|c| c.is_square() && c.iter().all(|c| c.is_finite()))?;
     let (size, compliance) = (stiffness.nrows(), stiffness.clone().cholesky()?.inverse());
     let moduli = |plane: &[usize; 2]| -> Vec<f64> {
@@ -205,7 +203,7 @@ fn curve(fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<Modul
     };
     let moduli: Vec<Vec<f64>> = planes.iter().map(moduli).collect();
     let is_known = moduli.iter().flatten().all(|modulus| modulus.is_finite() && *modulus > 0.0);
-    is_known.then(|| ModulusCurve { name: fit.marked(), place: 0, moduli })
+    is_known.then(|| ModulusCurve { name: fit.marked(), place, moduli })
 }
 
 /// `1/E(n) = (n ⊗ n) : S : (n ⊗ n)`, in Kelvin's notation.

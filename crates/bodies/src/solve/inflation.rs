@@ -13,7 +13,7 @@ use crate::springs::{dot, norm};
 const FILLED: f64 = 1e-12;
 /// While more than this share of the volume is missing, the forces need not balance better than before: the first step changes the shape.
 const FILLING: f64 = 1e-6;
-/// The largest number of halvings of a step. A step of 2⁻²⁰ is none.
+/// The largest number of halvings of a step. A step that is 2⁻²⁰ times as long changes no digit that counts.
 const SHORTER: usize = 20;
 
 impl Newton {

@@ -146,7 +146,7 @@ impl Graph {
         for position in 0..=*positions.end() {
             low += below[position];
             high += above[position];
-            // Of equal separators the one nearer to the middle is taken.
+            // If separators are equally small, the one nearer to the middle is taken.
             let uneven = 1.0 + 0.5 * (position as f64 / count as f64 - 0.5).abs();
             for (size, side) in [(low, Side::Low), (high, Side::High)] {
                 let cost = f64::from(size) * uneven;

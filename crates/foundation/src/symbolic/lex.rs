@@ -182,7 +182,9 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
 /// Where the unit after a number ends, and its size in the SI unit; spaces may stand between them.
 fn unit_after(chars: &[char], number_end: usize, units: &[Quantity]) -> Option<(usize, BigRational)> {
     let start = number_end + chars[number_end..].iter().take_while(|c| c.is_whitespace()).count();
-    // A text of some thousand numbers is not copied for each.
+    // Most numbers have no unit: nothing is copied or compared for them. Every unit begins with a letter.
+    chars.get(start).filter(|c| c.is_alphabetic())?;
+    // Of a text of some thousand numbers only the beginning of what follows is copied.
     let rest: String = chars[start..].iter().take(LONGEST_UNIT).collect();
     let (length, number, power) = units.iter().filter_map(|q| q.unit_at(&rest)).max_by_key(|(length, ..)| *length)?;
     let size = decimal(&format!("{number}e{power}"))?;

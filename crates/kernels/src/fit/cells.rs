@@ -234,7 +234,7 @@ impl CellFits {
             let chunks = nodes.par_chunks(size * n).zip(constants.par_chunks_mut(size * m)).enumerate();
             let results: Vec<Result<Tally>> =
                 chunks.map(|(i, (nodes, constants))| chunk(round * round_size + i * size, nodes, constants)).collect();
-            // In the order of the cells, so that the first faulty one is told and lists do not depend on the threads.
+            // The results are taken in the order of the cells: the error names the first faulty cell, and lists do not depend on the threads.
             for tally in results {
                 let tally = tally?;
                 self.deficient += tally.deficient;

@@ -58,9 +58,10 @@ impl Law {
             let [first, last] = halves(whole);
             let (of_whole, of_halves) = ways.split_at(POINTS);
             let works = [work(first, &of_halves[..POINTS]), work(last, &of_halves[POINTS..])];
-            let way = Halved::known(whole, works, work(whole, of_whole));
+            let by_one = work(whole, of_whole);
+            let way = Halved::known(whole, works, by_one);
             let energy = match (c - one.rest).abs() <= SMOOTH * one.rest.abs() {
-                true => work(whole, of_whole),
+                true => by_one,
                 false if way.is_known(way.size()) => way.sum(),
                 false => self.energy(*c, one.rest, &one.parameters),
             };

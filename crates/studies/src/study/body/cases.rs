@@ -16,7 +16,7 @@ fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Fi
 /// The support of the `[[fix]]` entries.
 ///
 /// # Errors
-/// A part of the mesh is empty or unknown, or an axis is none of the space.
+/// A part of the mesh is empty or unknown, or the space does not have an axis.
 pub fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
     let d = mesh.dimension;
     let mut fixed = Support::free(mesh);

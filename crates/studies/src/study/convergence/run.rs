@@ -20,11 +20,11 @@ use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.
 pub const MOST_LEVELS: usize = 8;
-/// This is told of bodies whose cells are divided and do not come nearer to a curved boundary.
+/// The note for bodies whose divided cells do not come nearer to a curved boundary.
 const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh on all levels";
-/// This is told of surfaces in space, for the same reason.
+/// The note for surfaces in space, whose divided cells do not come nearer to the curved surface.
 const FACETS: &str = "the surface keeps the flat cells of the coarsest mesh on all levels";
-/// This is told where the scene and its reference are apart.
+/// The note for a scene whose body is not that of its reference.
 const DIFFERS: &str = "the bodies differ by more than rounding";
 /// A level that takes longer is announced, s.
 const LONG: f64 = 10.0;
