@@ -92,6 +92,7 @@ mod referee;
 mod regions;
 mod report;
 mod rest;
+mod rods;
 mod round_trips;
 mod sampled;
 mod sampled_objectives;

@@ -6,8 +6,8 @@ use springfit::element::Element;
 use springfit::material::{CellMap, Energy, Hooke, Material, Plane};
 use springfit::mesh::{CellBlock, Mesh};
 use springfit::model::{
-    BendingSprings, Body, Elastic, Network, Support, displaced, exact_network, finite_elements, hinge_flexure,
-    lumped_masses, plate_springs,
+    BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
+    hinge_flexure, lumped_masses,
 };
 use springfit::report::{HeldRecord, NetworkFile, Parts};
 use springfit::solve::{Ending, Newton, System, lowest_modes};
@@ -104,7 +104,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn energy_of_morley(mesh: &Mesh, poisson: f64, w: impl Fn(usize) -> f64, across: impl Fn(usize) -> f64) -> f64 {
     let directors = mesh.directors.as_ref().unwrap();
     let mut energy = 0.0;
-    for (nodes, own) in mesh.blocks[0].cells().zip(&directors.of_cells) {
+    for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
+        let own = directors.of_cell(cell);
         let mut rows = Matrix6::zeros();
         let mut values = Vector6::zeros();
         let corners = [0, 1, 2].map(|i| at(mesh, nodes[i]));
@@ -191,7 +192,7 @@ fn directors_are_the_plate_of_morley() {
     for (kind, poisson) in KINDS.into_iter().flat_map(|kind| [-0.5, 0.0, 0.3, 0.49].map(|nu| (kind, nu))) {
         let mesh = sheet(kind, [1.0, 1.3], [4, 5], 0.01);
         let material = of_unit_stiffness(poisson, 0.01);
-        let network = plate_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
+        let network = bending_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
         // The membrane resists no deflection to first order, and nothing stretches the springs of the directors.
         let entries = finite_elements(&mesh, material.moduli());
         let mut random = Random(11);
@@ -323,7 +324,7 @@ fn a_strip_rolls_to_a_circle() {
     let t = 0.01;
     let mesh = sheet(Kind::Right, [length, width], [n, 4], t);
     let material = of_unit_stiffness(0.0, t);
-    let network = plate_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
+    let network = bending_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
     // The segments of a polygon with n corners, each as long as a cell; it is turned so that the strip begins along x.
     let (h, turn) = (length / n as f64, std::f64::consts::TAU / n as f64);
     let corner = |i: usize| -> Vector3<f64> {
@@ -354,6 +355,34 @@ fn a_strip_rolls_to_a_circle() {
     let size = force.iter().fold(0.0, |a: f64, f| a.max(f.abs()));
     for (p, f) in force.chunks_exact(3).enumerate().filter(|(p, _)| !is_end(mesh.point(*p))) {
         assert!(f.iter().all(|f| f.abs() < 1e-11 * size), "{p}: {f:?} of {size}");
+    }
+}
+
+/// A moment M along the end of a clamped strip of the width b bends it by `M x²/(2 D b)`, on any mesh: the curvature is the same everywhere. One across the end twists it
+/// alone.
+#[test]
+fn a_moment_on_an_edge_bends_a_strip() {
+    for kind in KINDS {
+        let (length, width, t) = (1.0, 0.25, 0.01);
+        let mesh = sheet(kind, [length, width], [8, 2], t);
+        let material = of_unit_stiffness(0.0, t);
+        let on = |x: f64| -> Vec<usize> {
+            (0..mesh.node_count()).filter(|&p| (mesh.point(p)[0] - x).abs() < 1e-9).collect()
+        };
+        let mut support = Support::free(&mesh);
+        support.fix(&mesh.with_directors_of(&on(0.0)), &[0, 1, 2], 3);
+        let system = System::new(&finite_elements(&mesh, material.moduli()), &support).unwrap();
+        let factor = system.cholesky().unwrap().unwrap();
+        let solved = |moment: [f64; 3]| system.solve(&factor, &mesh.couples(&on(length), moment).unwrap()).0;
+        let u = solved([0.0, -0.3, 0.0]);
+        for p in 0..mesh.node_count() {
+            let expected = 0.3 * mesh.point(p)[0].powi(2) / (2.0 * width);
+            assert!((u[3 * p + 2] - expected).abs() < 1e-9 * 0.6, "{kind:?}: {} {expected}", u[3 * p + 2]);
+        }
+        let twisted = solved([0.3, 0.0, 0.0]);
+        let most = on(length).iter().map(|p| twisted[3 * p + 2].abs()).fold(0.0, f64::max);
+        assert!(most > 0.05, "{kind:?}: {most}");
+        assert!(mesh.couples(&[0], [1.0; 3]).is_none());
     }
 }
 
@@ -422,7 +451,7 @@ fn the_network_is_the_finite_elements() {
     let material = Material::for_body(2, 1e4, 0.3, Some(Plane::Stress), Some(0.02)).unwrap();
     let fit = springfit::fit::ExactFit::default();
     let membrane = exact_network(&mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
-    let plate = plate_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
+    let plate = bending_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
     let network: Network = membrane.joined(plate);
     let mut random = Random(3);
     let u: Vec<f64> = mesh.points.iter().map(|_| random.next()).collect();
@@ -602,7 +631,7 @@ fn directors_do_not_shorten_explicit_steps() {
                 let fit = springfit::fit::ExactFit::default();
                 let membrane = exact_network(mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
                 let network =
-                    membrane.joined(plate_springs(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli()))));
+                    membrane.joined(bending_springs(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli()))));
                 let masses = lumped_masses(mesh, 1e3, t, Default::default());
                 assert!((masses.iter().sum::<f64>() / (1e3 * t) - 1.0).abs() < 1e-12);
                 NetworkFile::with_masses(mesh, &network, Some(&masses)).longest_step().unwrap()

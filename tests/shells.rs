@@ -7,7 +7,7 @@ use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
 use springfit::material::{Anisotropy, CellMap, Energy, Hooke, LinearMaterial, Material, MaterialMap, Plane};
 use springfit::mesh::{CellBlock, Mesh};
 use springfit::model::{
-    Body, Elastic, Entries, Network, Support, edge_springs, exact_network, finite_elements, plate_springs,
+    Body, Elastic, Entries, Network, Support, bending_springs, edge_springs, exact_network, finite_elements,
 };
 use springfit::report::{NetworkFile, Parts};
 use springfit::solve::System;
@@ -90,7 +90,7 @@ fn stiffness(mesh: &Mesh, material: Material, on_edges: bool) -> Entries {
     if !on_edges {
         return finite_elements(mesh, material.moduli());
     }
-    let plate = plate_springs(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
+    let plate = bending_springs(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
     let whole = exact_network(mesh, &material.into(), &EDGES, &vec![false; mesh.point_count()]).unwrap();
     whole.joined(plate).stiffness(&mesh.points)
 }

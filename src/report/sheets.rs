@@ -1,11 +1,11 @@
-//! What a reader must know of sheets that bend.
+//! What a reader must know of sheets and rods that bend.
 
 use super::note::{Note, Weight};
 use crate::model::hinge_flexure;
 use crate::study::{FitOutcome, Outcome, extent};
 use nalgebra::Matrix3;
 
-/// The thickness, relative to the extent of a sheet, beyond which shear across it counts.
+/// The thickness, relative to the extent of a body, beyond which shear across it counts.
 const THICK: f64 = 0.1;
 
 /// That the sheet is thick, and how hinges bend.
@@ -13,15 +13,20 @@ pub(super) fn sheet_notes(outcome: &Outcome) -> Vec<Note> {
     thick(outcome).into_iter().chain(flexure(outcome)).collect()
 }
 
-/// That the theory of thin plates leaves out what a thick sheet does.
+/// That the theory of thin plates and slender rods leaves out what a thick one does.
 fn thick(outcome: &Outcome) -> Option<Note> {
     let directors = outcome.mesh.directors.as_ref()?;
-    let thickness = (12.0 * directors.gyration.iter().copied().fold(0.0, f64::max)).sqrt();
+    let gyration = directors.gyration.iter().copied().fold(0.0, f64::max);
+    // Of a plate t²/12, of a round rod d²/16.
+    let (body, thickness) = match outcome.mesh.cell_dimension() {
+        1 => ("rod", 4.0 * gyration.sqrt()),
+        _ => ("sheet", (12.0 * gyration).sqrt()),
+    };
     let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
     (thickness > THICK * size).then(|| {
         let words = format!(
-            "the sheet is {thickness:.3e} m thick and extends over {size:.3e} m: the theory of thin plates leaves out shear across the thickness, which counts beyond a \
-             tenth of the extent; cells that fill the body know it"
+            "the {body} is {thickness:.3e} m thick and extends over {size:.3e} m: the theory of thin plates and slender rods leaves out shear across the thickness, which \
+             counts beyond a tenth of the extent; cells that fill the body know it"
         );
         Note::of_body(Weight::Reference, words)
     })

@@ -254,6 +254,35 @@ where = "x > 0.9"
 force = [0, 0, 1e-4]
 "#;
 
+/// Rods that bend.
+pub const FRAME: &str = r#"
+[mesh]
+file = "rods.msh"
+space = 3
+[material]
+young = 10e3
+poisson = 0.3
+area = 0.01
+density = 1000.0
+bending = "rod"
+flexural = 0.02
+torsional = 0.03
+[[fit]]
+objective = "exact"
+[[fix]]
+where = "x < 0.5"
+clamp = true
+[[load]]
+where = "x > 0.5"
+moment = [1e-3, 2e-3, 3e-3]
+[[load]]
+where = "x > 0.5"
+displacement = [0, "0.1*z", 0.01]
+clamp = true
+[output]
+frequencies = 2
+"#;
+
 /// A plane frame whose middle is filled.
 pub const CAVITY: &str = r#"
 [mesh]
@@ -575,7 +604,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 21] = [
+pub const ALL: [(&str, &str); 22] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -587,6 +616,7 @@ pub const ALL: [(&str, &str); 21] = [
     ("fibres", FIBRES),
     ("cavity", CAVITY),
     ("sheet", SHEET),
+    ("frame", FRAME),
     ("whole", WHOLE),
     ("coarse", COARSE),
     ("stretched", STRETCHED),

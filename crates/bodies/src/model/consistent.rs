@@ -3,7 +3,7 @@
 //! Theory: page *Dynamics* of the book.
 
 use super::integration::each_cell_points;
-use super::lumping::{INERTIA, TurningMass, turning_masses};
+use super::lumping::{TurningMass, turning_masses};
 use crate::element::Integrand;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
@@ -62,9 +62,9 @@ impl ConsistentMasses {
             },
         );
         let of = |cell: CellIndex| density.at(cell.block, cell.cell) * thickness.at(cell.block, cell.cell);
-        for TurningMass { director, ends: [a, b], mass } in turning_masses(mesh, &of) {
+        for TurningMass { director, ends: [a, b], own, .. } in turning_masses(mesh, &of) {
             // The rotary inertia of the plate belongs to what the director moves beside the middle of its edge.
-            let root = (mass.max(0.0) / INERTIA).sqrt();
+            let root = own.max(0.0).sqrt();
             all.points.extend([director, a, b]);
             all.values.extend([root, -root / 2.0, -root / 2.0]);
             all.starts.push(all.points.len());

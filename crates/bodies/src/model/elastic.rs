@@ -1,9 +1,9 @@
 //! Both models at large deformation: their energy, forces and tangent at given positions.
 
+use super::bending::bending_at_large_deformation;
 use super::blocks::BlockStiffness;
 use super::network::Network;
 use super::numbering::dofs;
-use super::plate::plate_at_large_deformation;
 use super::rows::Rows;
 use super::system;
 use super::{Entries, Response};
@@ -71,7 +71,7 @@ pub struct Body<'a> {
 impl<'a> Body<'a> {
     /// A body at large deformation. A sheet bends as its laws are at rest.
     pub fn new(mesh: &'a Mesh, laws: &'a EnergyMap) -> Body<'a> {
-        Body { mesh, laws, plate: plate_at_large_deformation(mesh, laws) }
+        Body { mesh, laws, plate: bending_at_large_deformation(mesh, laws) }
     }
 
     /// The number of cells with a quadrature point at which `det F ≤ 0`.

@@ -36,8 +36,10 @@ pub fn hinge_flexure(mesh: &Mesh, network: &Network) -> Option<Matrix3<f64>> {
         })
         .collect();
     let (mut stiffness, mut areas) = (Matrix3::zeros(), 0.0);
-    for (nodes, own) in mesh.blocks[0].cells().zip(&directors.of_cells) {
-        let Some(of_edges) = own.iter().map(|director| shared.get(director)).collect::<Option<Vec<_>>>() else {
+    for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
+        let Some(of_edges) =
+            directors.of_cell(cell).iter().map(|director| shared.get(director)).collect::<Option<Vec<_>>>()
+        else {
             continue;
         };
         let own = area(nodes);
@@ -77,7 +79,7 @@ pub fn is_flat(mesh: &Mesh) -> bool {
 
 /// Two axes in the plane of the nodes, and its normal; `None` if they are not in a plane.
 fn plane(mesh: &Mesh) -> Option<[[f64; 3]; 3]> {
-    let nodes = mesh.blocks.first()?.cells().next()?;
+    let nodes = mesh.blocks.first()?.cells().next().filter(|_| mesh.cell_dimension() == 2)?;
     let area = mesh.area_vector(nodes);
     let normal = area.map(|a| a / norm(&area));
     let edge: [f64; 3] = std::array::from_fn(|k| mesh.point(nodes[1])[k] - mesh.point(nodes[0])[k]);

@@ -28,6 +28,8 @@ pub enum Action {
     Force(Vec<f64>),
     /// A force per volume on cells, N/m³.
     Body(Vec<Component>),
+    /// A total moment, N·m, on the joints of rods in equal shares, or on the edges of a sheet by their lengths; see [`Mesh::couples`].
+    Moment(Vec<f64>),
     /// A prescribed displacement of points, m; `None` leaves a direction free.
     Displacement(Vec<Option<Component>>),
 }
@@ -119,6 +121,13 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
             pressed.forces(&mesh.points)
         }
         Action::Volume(_) => vec![0.0; mesh.points.len()],
+        Action::Moment(moment) => {
+            let moment = std::array::from_fn(|k| moment.get(k).copied().unwrap_or(0.0));
+            let Some(forces) = mesh.couples(&part.points(mesh)?, moment) else {
+                return nothing("joints of rods or edges of a sheet");
+            };
+            forces
+        }
         Action::Force(force) => {
             let weights = match part.carrier(mesh)? {
                 Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),

@@ -67,7 +67,7 @@ fn lumped(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>, lumping: 
         ),
     }
     let turning = turning_masses(mesh, &of);
-    for TurningMass { director, ends, mass } in turning {
+    for TurningMass { director, ends, mass, .. } in turning {
         masses[director] += mass;
         // So the body has its mass.
         ends.iter().for_each(|&end| masses[end] -= mass / 2.0);
@@ -77,31 +77,39 @@ fn lumped(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>, lumping: 
 
 /// How many times the rotary inertia of a plate directors have: as much as no explicit step of theirs is much shorter than one of the membrane. Thin plates move
 /// as if they had none.
-pub(super) const INERTIA: f64 = 4.0;
+const INERTIA: f64 = 4.0;
 
-/// The share of a triangle in the mass of a director.
+/// The share of a cell in the mass of a director.
 pub(super) struct TurningMass {
     /// The director.
     pub director: usize,
-    /// The ends of its edge.
+    /// The ends of its edge, or its joint twice.
     pub ends: [usize; 2],
-    /// kg.
+    /// The mass that it has for explicit steps, kg.
     pub mass: f64,
+    /// The mass by which it has the rotary inertia of the body, kg.
+    pub own: f64,
 }
 
-/// The masses of the directors of a sheet. A plate of thickness t has the rotary inertia `ρ t³/12` per area; a director at the distance r from an edge
-/// has `m r²` of some times that for a third of the triangles there. `of` is the mass per area of a cell, kg/m².
+/// The masses of the directors of a sheet or of rods. A plate of thickness t has the rotary inertia `ρ t³/12` per area; a director at the distance r from an edge
+/// has `m r²` of some times that for a third of the triangles there. A rod has `ρ I` per length, and twice that about itself; each of the two directors of a joint has
+/// it for half of the rods there. `of` is the mass per content of a cell, kg/m² or kg/m.
 pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec<TurningMass> {
     let Some(directors) = &mesh.directors else { return Vec::new() };
     let first = mesh.node_count();
     let mut masses = Vec::new();
-    for (index, (points, gyration)) in mesh.cell_indices().zip(directors.of_cells.iter().zip(&directors.gyration)) {
-        let area = norm(&mesh.area_vector(mesh.cell_nodes(index)));
-        for &point in points {
+    let is_rod = mesh.cell_dimension() == 1;
+    for (index, gyration) in mesh.cell_indices().zip(&directors.gyration) {
+        let nodes = mesh.cell_nodes(index);
+        let (share, inertia) = match is_rod {
+            true => (mesh.rod_length(nodes) / 2.0, 1.0),
+            false => (norm(&mesh.area_vector(nodes)) / 3.0, INERTIA),
+        };
+        for &point in directors.of_cell(index.cell) {
             let ends = directors.edges[point - first];
             let reach = distance(mesh.point(point), &mesh.mean_place(&ends));
-            let mass = INERTIA * of(index) * area / 3.0 * gyration / reach.powi(2);
-            masses.push(TurningMass { director: point, ends, mass });
+            let own = of(index) * share * gyration / reach.powi(2);
+            masses.push(TurningMass { director: point, ends, mass: inertia * own, own });
         }
     }
     masses

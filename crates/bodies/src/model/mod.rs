@@ -7,6 +7,7 @@
 //! Theory: pages *Stiffness and the reduced space* and *Exact networks and patches* of the book.
 
 mod assembly;
+mod bending;
 mod blocks;
 mod cavity;
 mod component;
@@ -36,6 +37,7 @@ mod prepared;
 mod pressed;
 mod pressure;
 mod relaxation;
+mod rod;
 mod rows;
 mod sensitivity;
 mod shares;
@@ -48,6 +50,7 @@ mod support;
 mod system;
 mod tension;
 
+pub use bending::{BendingSprings, bending_springs};
 pub use blocks::{BlockStiffness, CompressedRows};
 pub use cavity::Cavity;
 pub use component::Component;
@@ -70,7 +73,6 @@ pub use network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 pub(crate) use numbering::{dofs, places};
 pub(crate) use parts::{PartVectors, Places};
 pub use patches::patch_springs;
-pub use plate::{BendingSprings, plate_springs};
 pub(crate) use prepared::{BranchRule, Branches, origin};
 pub use prepared::{Precision, PreparedNetwork};
 pub use pressed::PressedFaces;

@@ -5,7 +5,7 @@ use super::numbering::dofs;
 use super::steady::steady_law;
 use crate::element::SpringKind;
 use crate::error::{Error, ErrorKind, Result};
-use crate::springs::{Law, Measure, distance, linear};
+use crate::springs::{Law, Measure, Turns, distance, linear};
 use crate::stiffness::gather;
 use faer::sparse::Triplet;
 use smallvec::SmallVec;
@@ -129,6 +129,18 @@ impl MeasureSpring {
     ) -> MeasureSpring {
         let law = Some(Box::new(SpringLaw::new(steady_law(), &[t, k])));
         MeasureSpring { kind, points, constant: k, rest: c, measure, law }
+    }
+
+    /// A spring on a sum of turns, at rest at the positions x of its points, `[points × 3]`, m.
+    pub(super) fn turning(
+        kind: SpringKind,
+        points: SmallVec<[usize; 4]>,
+        x: &[f64],
+        turns: Turns,
+        constant: f64,
+    ) -> MeasureSpring {
+        let measure = Measure::Turns(Box::new(turns));
+        MeasureSpring { kind, points, constant, rest: measure.value(x, 3), measure, law: None }
     }
 
     /// Energy, force and its slope if the measure is c.

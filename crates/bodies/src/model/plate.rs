@@ -7,75 +7,45 @@
 
 use super::network::{LengthSpring, MeasureSpring, Network};
 use crate::element::SpringKind;
-use crate::material::{CellMap, EnergyMap, Hooke, Material};
+use crate::material::{CellMap, Hooke};
 use crate::mesh::{Directors, Mesh};
-use crate::springs::{BEND_POINTS, Measure, Turns, cross, distance, dot, norm, turn_points};
+use crate::springs::{BEND_POINTS, Turns, cross, distance, dot, norm, turn_points};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use smallvec::SmallVec;
 
-/// Which springs resist the bending of a sheet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum BendingSprings {
-    /// Three springs of each triangle on its turns from all its directors: the plate, at any Poisson's ratio.
-    #[default]
-    Directors,
-    /// One spring of each triangle on its turn from each director. Between two triangles they are a spring on the angle between both, which other programs
-    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is.
-    Hinges,
+/// The springs of a sheet as a plate, three of each triangle on its turns from all its directors, by the moduli of its membrane, N/m: a plate of thickness t has
+/// `D = C t²/12` of them, N·m.
+pub(super) fn plate(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>) -> Network {
+    sheet(mesh, directors, moduli, |triangle, stiffness| triangle.bends(stiffness))
 }
 
-crate::named!(BendingSprings {
-    "directors" => Directors,
-    "hinges" => Hinges,
-});
+/// The springs of a sheet with hinges, one of each triangle on its turn from each director.
+pub(super) fn hinges(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>) -> Network {
+    sheet(mesh, directors, moduli, |triangle, stiffness| triangle.hinges(stiffness))
+}
 
-impl BendingSprings {
-    /// The springs of the directors of a sheet, or none. `moduli` are those of the membrane, N/m: a plate of thickness t has `D = C t²/12` of them, N·m.
-    pub fn of(self, mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
-        let mut network = Network { dimension: mesh.dimension, ..Network::default() };
-        let Some(directors) = &mesh.directors else { return network };
-        let mut holds = vec![0.0; directors.edges.len()];
-        let first = mesh.node_count();
-        for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
-            let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
-            for director in directors.of_cells[cell] {
-                let middle = mesh.mean_place(&directors.edges[director - first]);
-                // As stiff for the mass of the director as the membrane is for that of its points, so that no explicit step is shorter.
-                let share = directors.gyration[cell] / distance(&middle, mesh.point(director)).powi(2);
-                holds[director - first] += share * membrane[(0, 0)];
-            }
-            let points: SmallVec<[usize; BEND_POINTS]> =
-                nodes.iter().copied().chain(directors.of_cells[cell]).collect();
-            let triangle = Triangle::of(mesh, &points);
-            let stiffness = membrane * directors.gyration[cell];
-            match self {
-                BendingSprings::Directors => network.others.extend(triangle.bends(&stiffness)),
-                BendingSprings::Hinges => network.others.extend(triangle.hinges(&stiffness)),
-            }
+/// What the springs of a triangle are by the flexural stiffness.
+type Springs = fn(&Triangle, &Matrix3<f64>) -> [MeasureSpring; 3];
+
+fn sheet(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>, springs: Springs) -> Network {
+    let mut network = Network { dimension: mesh.dimension, ..Network::default() };
+    let mut holds = vec![0.0; directors.edges.len()];
+    let first = mesh.node_count();
+    for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
+        let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
+        for &director in directors.of_cell(cell) {
+            let middle = mesh.mean_place(&directors.edges[director - first]);
+            // As stiff for the mass of the director as the membrane is for that of its points, so that no explicit step is shorter.
+            let share = directors.gyration[cell] / distance(&middle, mesh.point(director)).powi(2);
+            holds[director - first] += share * membrane[(0, 0)];
         }
-        network.lengths = levers(mesh, directors, &holds);
-        network
+        let points: SmallVec<[usize; BEND_POINTS]> = nodes.iter().chain(directors.of_cell(cell)).copied().collect();
+        let triangle = Triangle::of(mesh, &points);
+        let stiffness = membrane * directors.gyration[cell];
+        network.others.extend(springs(&triangle, &stiffness));
     }
-}
-
-/// The springs of the directors of a sheet as a plate, which are its finite elements too.
-pub fn plate_springs(mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
-    BendingSprings::Directors.of(mesh, moduli)
-}
-
-/// The springs of the directors of a sheet with laws of large deformation, of which a plate has the moduli at rest.
-pub(super) fn plate_at_large_deformation(mesh: &Mesh, laws: &EnergyMap) -> Network {
-    let hooke = |cell: usize| {
-        let (energy, state) = laws.at(0, cell);
-        let material = Material::new(energy.young(), energy.poisson(), state);
-        Hooke::Isotropic(material.expect("a law is that of a material").moduli())
-    };
-    match &mesh.directors {
-        None => Network { dimension: mesh.dimension, ..Network::default() },
-        Some(directors) => {
-            plate_springs(mesh, &CellMap::of_blocks(vec![(0..directors.of_cells.len()).map(hooke).collect()]))
-        }
-    }
+    network.lengths = levers(mesh, directors, &holds);
+    network
 }
 
 /// A triangle of a sheet, with the directors of its edges.
@@ -142,9 +112,8 @@ impl<'a> Triangle<'a> {
     ) -> MeasureSpring {
         let places: SmallVec<[usize; BEND_POINTS]> = places.into_iter().collect();
         let x: Vec<f64> = places.iter().flat_map(|p| &self.positions[3 * p..3 * p + 3]).copied().collect();
-        let measure = Measure::Turns(Box::new(turns));
         let points = places.iter().map(|&place| self.points[place]).collect();
-        MeasureSpring { kind, points, constant, rest: measure.value(&x, 3), measure, law: None }
+        MeasureSpring::turning(kind, points, &x, turns, constant)
     }
 }
 

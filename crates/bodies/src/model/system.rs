@@ -3,8 +3,8 @@
 //! Theory: page *Stiffness and the reduced space* of the book.
 
 use super::Entries;
+use super::bending::bending_springs;
 use super::numbering::dofs;
-use super::plate::plate_springs;
 use crate::element::Tabulation;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::{CellBlock, CellIndex, Mesh};
@@ -61,7 +61,7 @@ fn assembled(mesh: &Mesh, moduli: CellMap<Hooke>) -> Entries {
             }
         }
     });
-    entries.extend(plate_springs(mesh, &moduli).stiffness(&mesh.points));
+    entries.extend(bending_springs(mesh, &moduli).stiffness(&mesh.points));
     entries
 }
 

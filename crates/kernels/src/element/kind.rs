@@ -38,7 +38,7 @@ pub enum SpringKind {
     /// The stretch of the fibres at a quadrature point of a cell. For exact networks only.
     #[serde(skip)]
     Fibre,
-    /// A weighted sum of the turns of a triangle from the directors of its edges, in m. For sheets that bend only.
+    /// A weighted sum of the turns of a triangle from the directors of its edges, or of a rod from those of its ends, in m. For sheets and rods that bend only.
     #[serde(skip)]
     Bend,
     /// The turn of a triangle about one of its edges, from its plane to a director or to the apex of another triangle, in rad. For sheets that bend only.

@@ -1,4 +1,4 @@
-//! The directors of a sheet that bends: a point for each edge, which says how the sheet is inclined there.
+//! The directors of a sheet that bends: a point for each edge, which says how the sheet is inclined there. Those of rods are in `joints`.
 //!
 //! Theory: page *Sheets that bend* of the book.
 
@@ -18,7 +18,7 @@ const FOLDED: f64 = 0.1;
 const THINNEST: f64 = 1e-4;
 
 impl Mesh {
-    /// The number of points that are nodes of cells. Those after them are the directors of a sheet.
+    /// The number of points that are nodes of cells. Those after them are the directors of a sheet or of rods.
     pub fn node_count(&self) -> usize {
         self.point_count() - self.directors.as_ref().map_or(0, |directors| directors.edges.len())
     }
@@ -42,12 +42,12 @@ impl Mesh {
         }
         let mut normals: Vec<([usize; 2], [f64; 3], f64)> = Vec::new();
         let mut places: HashMap<[usize; 2], usize> = HashMap::new();
-        let mut of_cells = Vec::with_capacity(block.cells().len());
+        let mut of_cells = Vec::with_capacity(3 * block.cells().len());
         let first = self.point_count();
         for nodes in block.cells() {
             let area = self.area_vector(nodes);
             let normal = area.map(|a| a / norm(&area));
-            of_cells.push(std::array::from_fn(|corner| {
+            of_cells.extend((0..3).map(|corner| {
                 let edge = ascending([nodes[(corner + 1) % 3], nodes[(corner + 2) % 3]]);
                 let place = *places.entry(edge).or_insert_with(|| {
                     normals.push((edge, [0.0; 3], 0.0));
@@ -81,13 +81,18 @@ impl Mesh {
             let middle = self.mean_place(&[*a, *b]);
             self.points.extend(middle.iter().zip(normal).map(|(x, n)| x + reach * n / size));
         }
+        let edges = normals.into_iter().map(|(edge, ..)| edge).collect();
+        Ok(self.directed(Directors { edges, of_cells, gyration, torsion: Vec::new() }))
+    }
+
+    /// The mesh with these directors, whose points are its last ones already.
+    pub(super) fn directed(mut self, directors: Directors) -> Mesh {
         if let Some(numbering) = &mut self.numbering {
             let next = 1 + numbering.nodes.iter().copied().max().unwrap_or(0);
-            numbering.nodes.extend((next..).take(normals.len()));
+            numbering.nodes.extend((next..).take(directors.edges.len()));
         }
-        let edges = normals.into_iter().map(|(edge, ..)| edge).collect();
-        self.directors = Some(Directors { edges, of_cells, gyration });
-        Ok(self)
+        self.directors = Some(directors);
+        self
     }
 
     /// A plane mesh as a surface in space at z = 0.
@@ -107,7 +112,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// The points with the directors of the edges of which both ends are among them.
+    /// The points with the directors of the edges of which both ends are among them, and those of the joints that are.
     pub fn with_directors_of(&self, points: &[usize]) -> Vec<usize> {
         let Some(Directors { edges, .. }) = &self.directors else { return points.to_vec() };
         let mut is_in = vec![false; self.point_count()];

@@ -17,7 +17,7 @@ pub struct Mesh {
     pub points: Vec<f64>,
     /// The cells, one block per element type.
     pub blocks: Vec<CellBlock>,
-    /// The directors of a sheet that bends, which are the last points.
+    /// The directors of a sheet or of rods that bend, which are the last points.
     pub directors: Option<Directors>,
     /// The groups by name.
     pub groups: BTreeMap<String, Group>,
@@ -35,15 +35,27 @@ pub struct Mesh {
     pub quality: Quality,
 }
 
-/// The directors of a sheet. They are the last points of its mesh, and no cell has them as nodes.
+/// The directors of a sheet or of rods. They are the last points of the mesh, and no cell has them as nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Directors {
-    /// The ends of the edge of each director, ascending.
+    /// The ends of the edge of each director of a sheet, ascending; of a director of rods the joint that it turns with, twice.
     pub edges: Vec<[usize; 2]>,
-    /// The points that are the directors of each triangle, in the order of the corners that are opposite to their edges.
-    pub of_cells: Vec<[usize; 3]>,
-    /// `t²/12` of each triangle, m²: a plate of thickness t resists curvature by that times the stiffness of the membrane.
+    /// The points that are the directors of the cells, cell after cell: of a triangle those of the edges opposite to its corners, of a rod the two of its first
+    /// end and the two of its second.
+    pub of_cells: Vec<usize>,
+    /// The square of the radius of gyration of each cell, m²: `t²/12` of a plate of thickness t, which resists curvature by that times the stiffness of the
+    /// membrane, and `I/A` of a rod.
     pub gyration: Vec<f64>,
+    /// `G J/(E A)` of each rod, m², by which it resists torsion; none of a sheet.
+    pub torsion: Vec<f64>,
+}
+
+impl Directors {
+    /// The points that are the directors of a cell.
+    pub fn of_cell(&self, cell: usize) -> &[usize] {
+        let each = self.of_cells.len() / self.gyration.len();
+        &self.of_cells[cell * each..(cell + 1) * each]
+    }
 }
 
 /// The cells of one element type.

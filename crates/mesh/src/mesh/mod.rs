@@ -14,6 +14,7 @@ mod carrier;
 mod coincident;
 mod connection;
 mod content;
+mod couples;
 mod directors;
 mod disc;
 mod disjoint;
@@ -31,6 +32,7 @@ mod hanging;
 mod include;
 mod indices;
 mod inspection;
+mod joints;
 mod lines;
 mod listing;
 #[allow(clippy::module_inception)]

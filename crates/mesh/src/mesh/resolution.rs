@@ -124,6 +124,8 @@ impl Mesh {
                 let group = mesh.groups.entry(name.clone()).or_default();
                 let parts = block.connectivity.chunks_exact(block.nodes_per_cell).map(sorted);
                 match (block.dimension, dimension - block.dimension) {
+                    // The ends of lines are points, and loads act on them as such.
+                    (0, _) => {}
                     (_, 1) => group.sides.extend(parts),
                     (1, _) => group.edges.extend(parts),
                     _ => {}

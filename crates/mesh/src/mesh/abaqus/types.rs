@@ -118,7 +118,7 @@ pub(super) fn stand_in(name: &str) -> Option<&'static str> {
         return Some("membranes, without bending stiffness");
     }
     if starts(&["B2", "B3", "PIPE"]) {
-        return Some("rods, without bending stiffness");
+        return Some("rods, which need bending = \"rod\" to bend");
     }
     starts(&["SC"]).then_some("solids")
 }

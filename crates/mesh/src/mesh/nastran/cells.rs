@@ -100,7 +100,7 @@ pub(super) fn other(card: &Card) -> Result<Other> {
 pub(super) fn stand_in(name: &str) -> Option<&'static str> {
     match name {
         "CTRIA3" | "CTRIAR" | "CTRIA6" | "CQUAD4" | "CQUADR" | "CQUAD8" => Some("membranes, without bending stiffness"),
-        "CBAR" | "CBEAM" | "CBEAM3" => Some("rods, without bending stiffness"),
+        "CBAR" | "CBEAM" | "CBEAM3" => Some("rods, which need bending = \"rod\" to bend"),
         _ => None,
     }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, MaterialMap};
 use crate::mesh::{Field, Mesh, Selection};
 use crate::model::{Action, Cavity, Component, PressedFaces, Support, nodal_forces, unheld_bodies};
-use crate::study::scene::{Hold, LoadKind, MeasuredEntry, Part, Scene};
+use crate::study::scene::{Hold, LoadCase, LoadKind, MeasuredEntry, Part, Scene};
 use std::path::Path;
 
 fn read_measured(scene: &Scene, entry: &MeasuredEntry, mesh: &Mesh) -> Result<Field> {
@@ -33,15 +33,23 @@ pub fn held(scene: &Scene, mesh: &Mesh) -> Result<Support> {
         }
         fixed.fix(&points, directions, d);
         if *clamp {
-            let clamped = mesh.with_directors_of(&points).split_off(points.len());
-            if clamped.is_empty() {
-                let expected = "a sheet with bending = \"plate\" of which both ends of an edge are held";
-                return Err(at(Error::expected("clamp", expected, "none")));
-            }
-            fixed.fix(&clamped, directions, d);
+            fixed.fix(&clamped(mesh, &points).map_err(at)?, directions, d);
         }
     }
     Ok(fixed)
+}
+
+/// The directors that go with these points.
+///
+/// # Errors
+/// There are none.
+fn clamped(mesh: &Mesh, points: &[usize]) -> Result<Vec<usize>> {
+    let clamped = mesh.with_directors_of(points).split_off(points.len());
+    if clamped.is_empty() {
+        let expected = "a sheet with bending = \"plate\" of which both ends of an edge are in the part, or rods with bending = \"rod\"";
+        return Err(Error::expected("clamp", expected, "none"));
+    }
+    Ok(clamped)
 }
 
 /// The support of the `[[fix]]` entries, and the load cases with the displacements that were measured at points of the mesh.
@@ -81,7 +89,11 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
         let Acting { forces, support, pressed, cavity } = match load.single() {
             Some((part, action)) => {
                 let weights = if load.is_acceleration() { &masses } else { &thicknesses };
-                acting(mesh, weights, &fixed, (load.key(), part, action)).map_err(at)?
+                if matches!(action, Action::Moment(_)) && scene.law().is_some() {
+                    let expected = "small deformation; a displacement with clamp = true turns edges and joints at large deformation";
+                    return Err(at(Error::expected("moment", expected, "a law")));
+                }
+                acting(mesh, weights, &fixed, (load, part, action)).map_err(at)?
             }
             None => Acting { forces: Vec::new(), support: fixed.clone(), pressed: None, cavity: None },
         };
@@ -147,19 +159,24 @@ struct Acting {
     cavity: Option<Cavity>,
 }
 
-/// What the action with this key does. `weights` is what makes a content of a cell a volume or,
+/// What the action of a load does. `weights` is what makes a content of a cell a volume or,
 /// for accelerations, a mass.
 fn acting(
     mesh: &Mesh,
     weights: &CellMap<f64>,
     fixed: &Support,
-    (key, part, action): (&str, &Part, &Action),
+    (load, part, action): (&LoadCase, &Part, &Action),
 ) -> Result<Acting> {
-    let d = mesh.dimension;
+    let (d, key) = (mesh.dimension, load.key());
     let entries = match action {
         Action::Traction(v) | Action::Body(v) => v.len(),
         Action::Pressure(_) | Action::Volume(_) => d,
         Action::Force(v) => v.len(),
+        Action::Moment(v) if mesh.directors.is_some() => v.len(),
+        Action::Moment(_) => {
+            let expected = "bending = \"plate\" or \"rod\" in the material: other bodies have no joints or edges that a moment turns";
+            return Err(Error::expected(key, expected, "none"));
+        }
         Action::Displacement(v) => v.len(),
     };
     if entries != d {
@@ -170,7 +187,7 @@ fn acting(
         Action::Traction(v) | Action::Body(v) => v.iter().position(uses_z),
         Action::Displacement(v) => v.iter().position(|c| c.as_ref().is_some_and(uses_z)),
         Action::Pressure(p) => uses_z(p).then_some(0),
-        Action::Force(_) | Action::Volume(_) => None,
+        Action::Force(_) | Action::Volume(_) | Action::Moment(_) => None,
     };
     if let (Some(i), 2) = (of_z, d) {
         let key = if matches!(action, Action::Pressure(_)) { key.to_string() } else { format!("{key}[{i}]") };
@@ -207,7 +224,8 @@ fn acting(
     if let Action::Displacement(given) = action {
         let moved = |p: usize| given.iter().map(move |u| Some(u.as_ref()?.at(mesh.point(p))));
         let largest = points.iter().flat_map(|&p| moved(p)).flatten().fold(0.0, |a: f64, u| a.max(u.abs()));
-        for &p in &points {
+        let moving = if load.is_clamped() { clamped(mesh, &points)? } else { Vec::new() };
+        for &p in points.iter().chain(&moving) {
             for (k, u) in moved(p).enumerate().filter_map(|(k, u)| Some((k, u?))) {
                 let dof = p * d + k;
                 let rounding = if matches!(given[k], Some(Component::Varying(_))) { ROUNDING * largest } else { 0.0 };

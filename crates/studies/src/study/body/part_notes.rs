@@ -74,7 +74,11 @@ fn of_conditions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
         let is_of_cells = match action {
             Action::Body(_) => true,
             Action::Pressure(_) => mesh.cell_dimension() < mesh.dimension,
-            Action::Traction(_) | Action::Force(_) | Action::Displacement(_) | Action::Volume(_) => false,
+            Action::Traction(_)
+            | Action::Force(_)
+            | Action::Displacement(_)
+            | Action::Volume(_)
+            | Action::Moment(_) => false,
         };
         (!is_of_cells).then(|| (format!("the load {}", load.name), part))
     });

@@ -30,7 +30,7 @@ impl Quantities {
         let weigh = |load: &LoadCase| -> Result<Option<Vec<f64>>> {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
             let (unit, part) = match load.single() {
-                Some((_, Action::Displacement(_) | Action::Volume(_))) => return Ok(None),
+                Some((_, Action::Displacement(_) | Action::Volume(_) | Action::Moment(_))) => return Ok(None),
                 Some((part, Action::Pressure(_))) if mesh.cell_dimension() < mesh.dimension => {
                     (Action::body(&along_x), part)
                 }

@@ -202,5 +202,9 @@ fn constants(mesh: &Mesh, given: &DraftMaterial, section: Option<&Section>, scal
         let words = "a surface resists no bending without it, and gives way to loads across it";
         lines.push(format!("# bending = \"plate\"       # {words}"));
     }
+    if explain && mesh.dimension == 3 && mesh.cell_dimension() == 1 {
+        let words = "lines turn freely where they meet without it, and are rods of a round section with it";
+        lines.push(format!("# bending = \"rod\"         # {words}"));
+    }
     lines
 }

@@ -37,7 +37,7 @@ impl Scene {
             Action::Traction(v) | Action::Body(v) => v.iter().any(|c| matches!(c, Component::Varying(_))),
             Action::Displacement(v) => v.iter().any(|c| matches!(c, Some(Component::Varying(_)))),
             Action::Pressure(component) => matches!(component, Component::Varying(_)),
-            Action::Force(_) | Action::Volume(_) => false,
+            Action::Force(_) | Action::Volume(_) | Action::Moment(_) => false,
         };
         let of_place = |entry: &MaterialEntry| {
             entry.condition.is_some() || entry.axes.is_some() || entry.fibre.is_some() || entry.varies()

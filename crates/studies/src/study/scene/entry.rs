@@ -114,7 +114,8 @@ pub struct FixEntry {
     /// The part is held in these directions, some of `x`, `y` and `z`.
     #[schemars(extend("x-default" = "all"))]
     pub axes: Option<Vec<String>>,
-    /// The edges of a sheet keep their direction where both ends are held; without it the sheet can turn about them. A sheet has `bending = "plate"` in its material.
+    /// The edges of a sheet keep their direction where both ends are held, and so do the joints of rods that are held; without it the body can turn about them. Such a body has
+    /// `bending` in its material.
     #[serde(default)]
     pub clamp: bool,
 }

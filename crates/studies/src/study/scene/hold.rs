@@ -9,6 +9,6 @@ pub struct Hold {
     pub part: Part,
     /// The directions in which it is held; all if absent.
     pub axes: Option<Vec<usize>>,
-    /// Whether edges of a sheet whose ends are held keep their direction.
+    /// Whether edges of a sheet whose ends are held, and joints of rods that are held, keep their direction.
     pub clamp: bool,
 }

@@ -4,6 +4,7 @@ use super::bending::Bending;
 use super::load::LoadCase;
 use super::material::MaterialEntries;
 use crate::error::{Error, ErrorKind, Result};
+use crate::model::BendingSprings;
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
 use crate::study::own_name::{BODY, QUADRATIC, expect_own_name};
 use std::path::Path;
@@ -39,8 +40,8 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
             return Err(Error::expected("material.law", expected, "none"));
         }
         let needs_points_alone = fit.recipe.whole().is_some() || fit.engine.is_some();
-        if needs_points_alone && material.first().bending == Bending::Plate {
-            let expected = "fits to cells, without an engine, of a sheet with bending = \"plate\"";
+        if needs_points_alone && material.first().bending != Bending::None {
+            let expected = "fits to cells, without an engine, of a sheet or of rods that bend";
             return Err(Error::expected(place, expected, "another").of_kind(ErrorKind::Unsupported));
         }
         // What an engine needs of the scene is known before the fits, which may take long.
@@ -52,7 +53,8 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
             let expected = "a density in [material]: what an engine reaches depends on the masses";
             return Err(Error::expected(format!("{place}.engine"), expected, "none"));
         }
-        if fit.bending.is_some() && material.first().bending != Bending::Plate {
+        let of_sheets = fit.bending == Some(BendingSprings::Hinges) || material.first().bending == Bending::None;
+        if fit.bending.is_some() && of_sheets && material.first().bending != Bending::Plate {
             let expected = "a sheet with bending = \"plate\" in its material";
             return Err(Error::expected(format!("{place}.bending"), expected, "a body that does not bend as one"));
         }

@@ -48,6 +48,8 @@ pub enum LoadKind {
         action: Action,
         /// Whether the body force is an acceleration, by which the density is multiplied.
         is_acceleration: bool,
+        /// Whether a displacement moves directors as well.
+        clamp: bool,
     },
     /// Other loads of the scene at the same time, by their indices.
     Sum(Vec<usize>),
@@ -82,8 +84,14 @@ impl LoadCase {
                 Action::Force(_) => "force",
                 Action::Body(_) => "body",
                 Action::Displacement(_) => "displacement",
+                Action::Moment(_) => "moment",
             },
         }
+    }
+
+    /// Whether a displacement moves directors as well.
+    pub fn is_clamped(&self) -> bool {
+        matches!(self.kind, LoadKind::Single { clamp: true, .. })
     }
 
     /// Whether the body force is an acceleration, by which the density is multiplied.
@@ -114,7 +122,7 @@ pub struct LoadEntry {
     #[serde(rename = "where")]
     pub condition: Option<String>,
     /// A traction in Pa acts on the sides of the part: for each direction a number or an expression of x, y, z in m, such as `"-1e5*y"`.
-    /// One of `traction`, `pressure`, `volume`, `force`, `body`, `gravity`, `displacement` and `sum` is required.
+    /// One of `traction`, `pressure`, `volume`, `force`, `body`, `gravity`, `displacement`, `moment` and `sum` is required.
     pub traction: Option<Vec<Varying>>,
     /// A pressure acts on the sides of the part against the normal that points out of the body: a number in Pa, a text with a unit such as
     /// `"1 kPa"`, or an expression of x, y, z in m. Of a surface in space it acts on the cells, against the outward normal of a closed surface and
@@ -136,6 +144,13 @@ pub struct LoadEntry {
     /// The part has this displacement in m: for each direction a number, an expression of x, y, z in m, such as `"-0.1*y"`, or `"free"`. At
     /// least one direction is moved.
     pub displacement: Option<Vec<PrescribedComponent>>,
+    /// The directors of the part are displaced as well, each by the expressions at its own place: the edges of a sheet whose ends are in the part, and the joints of rods.
+    /// So a rotation that is prescribed turns the body with its points. The key goes with `displacement`.
+    #[serde(default)]
+    pub clamp: bool,
+    /// A moment in N·m acts on the part in all, a vector: on the joints of rods in equal shares, or on the edges of a sheet whose ends are in the part, in shares by
+    /// their lengths. The material has `bending` and no law.
+    pub moment: Option<Vec<f64>>,
     /// The load consists of these other loads at the same time: names of two or more loads of forces.
     pub sum: Option<Vec<String>>,
     /// `measured` has displacements that were measured under this load.
@@ -327,6 +342,12 @@ impl LoadEntry {
         }
         if let Some(v) = self.displacement {
             actions.push(Action::Displacement(prescribed(v)?));
+        } else if self.clamp {
+            return Err(Error::expected("clamp", "\"displacement\" beside it", "none"));
+        }
+        if let Some(v) = self.moment {
+            range::largest("moment", v.iter().copied(), "N·m")?;
+            actions.push(Action::Moment(v));
         }
         if is_sum {
             if !actions.is_empty() || self.group.is_some() || self.condition.is_some() {
@@ -335,7 +356,7 @@ impl LoadEntry {
             return Ok(LoadCase { name, kind: LoadKind::Sum(Vec::new()), measured: self.measured, reactions });
         }
         if actions.len() != 1 {
-            let expected = "one of \"traction\", \"pressure\", \"volume\", \"force\", \"body\", \"gravity\", \"displacement\", or \"sum\"";
+            let expected = "one of \"traction\", \"pressure\", \"volume\", \"force\", \"body\", \"gravity\", \"displacement\", \"moment\", or \"sum\"";
             let hint = if actions.len() > 1 {
                 "; loads that act together are a load with sum = [\"…\", \"…\"]"
             } else {
@@ -350,7 +371,7 @@ impl LoadEntry {
         };
         Ok(LoadCase {
             name,
-            kind: LoadKind::Single { part, action, is_acceleration },
+            kind: LoadKind::Single { part, action, is_acceleration, clamp: self.clamp },
             measured: self.measured,
             reactions,
         })

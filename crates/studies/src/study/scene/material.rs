@@ -87,12 +87,16 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_length")]
     #[schemars(schema_with = "distribution::length_schema", extend("x-default" = "1 m in the plane"))]
     pub thickness: Option<Distribution>,
-    /// A surface in space of triangles resists bending as this says. It is the same in every entry of `[[material]]`.
+    /// A surface of triangles or lines of two nodes, in space, resist bending as this says. It is the same in every entry of `[[material]]`.
     #[serde(default)]
     pub bending: Bending,
-    /// A sheet that bends has this flexural stiffness D in N·m, above 0, in place of that of its thickness. It is the same in every entry of `[[material]]`.
-    #[schemars(extend("x-default" = "`E t³/(12 (1 − ν²))`"))]
+    /// A sheet that bends has this flexural stiffness D in N·m, and rods that bend have this E I in N·m², above 0, in place of that of thickness or
+    /// area. It is the same in every entry of `[[material]]`.
+    #[schemars(extend("x-default" = "`E t³/(12 (1 − ν²))`, `E A²/(4 π)`"))]
     pub flexural: Option<f64>,
+    /// Rods that bend have this torsional stiffness G J in N·m², above 0. It is the same in every entry of `[[material]]`.
+    #[schemars(extend("x-default" = "flexural / (1 + ν)"))]
+    pub torsional: Option<f64>,
     /// Rods have this cross-section in m², above 0.
     #[serde(default, deserialize_with = "value::optional_area")]
     #[schemars(schema_with = "value::area_schema", extend("x-default" = "1 m²"))]
@@ -318,8 +322,7 @@ impl MaterialEntry {
         }
         let thickness = self.thickness.as_ref().and_then(Distribution::number);
         Material::for_body(2, young, poisson, state, thickness)?;
-        let density = self.density.as_ref().and_then(Distribution::number);
-        density.map_or(Ok(()), |density| range::positive("density", density, "kg/m³").map(|_| ()))
+        number(&self.density).map_or(Ok(()), |density| range::positive("density", density, "kg/m³").map(|_| ()))
     }
 }
 
@@ -375,24 +378,21 @@ impl MaterialEntries {
                 let expected = format!("\"group\" or \"where\": {} has what is left of the body", self.key(other));
                 return Err(Error::expected(self.key(i), expected, "neither"));
             }
-            let same = |key: &str, is_same: bool| match is_same {
-                true => Ok(()),
-                false => {
-                    let expected = format!("that of {}", self.key(0));
-                    Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "another"))
-                }
-            };
-            same("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress))?;
-            same("bending", entry.bending == first.bending)?;
-            same("flexural", entry.flexural == first.flexural)?;
-            same("relaxation", entry.law.is_some() || entry.relaxation == first.relaxation)?;
-            if entry.law.is_some() != first.law.is_some() {
-                let expected = "a law in every [[material]] or in none";
-                return Err(Error::expected(format!("{}.law", self.key(i)), expected, "one in some"));
+            let alike = [
+                ("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress)),
+                ("bending", entry.bending == first.bending),
+                ("flexural", entry.flexural == first.flexural),
+                ("torsional", entry.torsional == first.torsional),
+                ("relaxation", entry.law.is_some() || entry.relaxation == first.relaxation),
+            ];
+            if let Some((key, _)) = alike.into_iter().find(|(_, is_same)| !is_same) {
+                let expected = format!("that of {}", self.key(0));
+                return Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "another"));
             }
-            if entry.density.is_some() != first.density.is_some() {
-                let expected = "a density in every [[material]] or in none";
-                return Err(Error::expected(format!("{}.density", self.key(i)), expected, "one in some"));
+            let has = |entry: &MaterialEntry| [("law", entry.law.is_some()), ("density", entry.density.is_some())];
+            if let Some(((key, _), _)) = has(entry).into_iter().zip(has(first)).find(|(own, other)| own != other) {
+                let expected = format!("a {key} in every [[material]] or in none");
+                return Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "one in some"));
             }
         }
         Ok(())
