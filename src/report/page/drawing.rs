@@ -51,9 +51,14 @@ impl<'a> Drawing<'a> {
         // A spring has its ends, its place and two numbers, and two points with their displacements.
         let each = 4 + 6 * (loads + 1);
         let most = (MOST_NUMBERS / (each * networks.len().max(1))).clamp(100, MOST_SPRINGS);
-        let springs: Vec<Vec<usize>> = networks.iter().map(|(_, network)| drawn(network, &on_surface, most)).collect();
+        let springs: Vec<Vec<usize>> =
+            networks.iter().map(|(_, network)| drawn(mesh, network, &on_surface, most)).collect();
         for ((name, network), springs) in networks.iter().zip(&springs) {
-            let all = network.lengths.len();
+            let all = between_nodes(mesh, network).count();
+            let levers = network.lengths.len() - all;
+            if levers > 0 {
+                left_out.push(format!("{name}: {levers} springs hold directors and are not drawn."));
+            }
             if springs.len() < all {
                 left_out
                     .push(format!("{name}: drawn are {} of {all} springs, those on the surface first.", springs.len()));
@@ -63,7 +68,9 @@ impl<'a> Drawing<'a> {
             left_out
                 .push(format!("{name}: {} springs do not join two points and are not drawn.", network.others.len()));
         }
-        let mut is_drawn = vec![mesh.point_count() <= FEW_POINTS; mesh.point_count()];
+        let mut is_drawn = vec![mesh.point_count() <= FEW_POINTS; mesh.node_count()];
+        // Directors say how a sheet is inclined, and are no part of its shape.
+        is_drawn.resize(mesh.point_count(), false);
         triangles.iter().flatten().chain(edges.iter().flatten()).for_each(|&p| is_drawn[p] = true);
         for ((_, network), springs) in networks.iter().zip(&springs) {
             springs.iter().flat_map(|&s| network.lengths[s].points).for_each(|p| is_drawn[p] = true);
@@ -112,21 +119,27 @@ fn surface(mesh: &Mesh, edges: &[[usize; 2]]) -> Vec<bool> {
     on
 }
 
+/// The springs of a network on lengths that join nodes of the mesh, and not directors, which are after them.
+fn between_nodes<'a>(mesh: &Mesh, network: &'a Network) -> impl Iterator<Item = usize> + 'a {
+    let nodes = mesh.node_count();
+    (0..network.lengths.len()).filter(move |&s| network.lengths[s].points[1] < nodes)
+}
+
 /// Chooses the springs that are drawn: of more springs than `most`, those on the surface, and of those some in even steps.
-fn drawn(network: &Network, on_surface: &[bool], most: usize) -> Vec<usize> {
-    let all = network.lengths.len();
-    if all <= most {
-        return (0..all).collect();
+fn drawn(mesh: &Mesh, network: &Network, on_surface: &[bool], most: usize) -> Vec<usize> {
+    let all = || between_nodes(mesh, network);
+    if all().count() <= most {
+        return all().collect();
     }
     // Springs are counted first: a list of those of the surface would be as long as the network.
     let is_seen = |s: &usize| network.lengths[*s].points.iter().all(|&p| on_surface[p]);
-    match (0..all).filter(is_seen).count() {
-        0 => steps(all, most).collect(),
-        count => {
-            let mut kept = steps(count, most).peekable();
-            let seen = (0..all).filter(is_seen).enumerate();
-            seen.filter(|(place, _)| kept.next_if_eq(place).is_some()).map(|(_, s)| s).collect()
-        }
+    let some = |springs: &mut dyn Iterator<Item = usize>, count: usize| {
+        let mut kept = steps(count, most).peekable();
+        springs.enumerate().filter(|(place, _)| kept.next_if_eq(place).is_some()).map(|(_, s)| s).collect()
+    };
+    match all().filter(is_seen).count() {
+        0 => some(&mut all(), all().count()),
+        count => some(&mut all().filter(is_seen), count),
     }
 }
 
