@@ -2,11 +2,12 @@
 
 use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
-use springfit::element::Element;
+use springfit::element::{Element, SpringKind};
 use springfit::material::{Energy, Material, State};
 use springfit::mesh::{CellBlock, Mesh};
 use springfit::model::{
-    Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements, lumped_masses,
+    BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
+    lumped_masses,
 };
 use springfit::solve::{Ending, Newton, System, lowest_modes};
 use springfit::study::{Scene, run};
@@ -352,7 +353,45 @@ fn wrong_rods_are_refused() {
         let error = answer(material, rest).unwrap_err().to_string();
         assert!(error.contains(expected), "{material}: {error}");
     }
-    let hinges = format!("{force}[[fit]]\nobjective = \"offdiag\"\nbending = \"hinges\"\n");
-    let error = answer("bending = \"rod\"", &hinges).unwrap_err().to_string();
+    let hinges =
+        format!("{}[[fit]]\nobjective = \"offdiag\"\nbending = \"hinges\"\n", force.replace("clamp = true\n", ""));
+    let error = answer("", &hinges).unwrap_err().to_string();
     assert!(error.contains("fit[1].bending: expected a sheet"), "{error}");
+}
+
+/// Hinges of rods are springs on single angles, which programs hold: of second order, and refused where rods meet at a corner.
+#[test]
+fn rods_in_line_have_hinges() {
+    let force = 1e-4;
+    let errors: Vec<f64> = [4, 8, 16]
+        .into_iter()
+        .map(|n| {
+            let mesh = line(&(0..=n).map(|i| [i as f64 / n as f64, 0.0, 0.0]).collect::<Vec<_>>());
+            BendingSprings::Hinges.check(&mesh).unwrap();
+            let fit = springfit::fit::ExactFit::default();
+            let bars = exact_network(&mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
+            let network = bars.joined(BendingSprings::Hinges.of(&mesh, &material().moduli().into()));
+            let mut support = Support::free(&mesh);
+            support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+            let mut load = vec![0.0; mesh.points.len()];
+            load[3 * n + 2] = force;
+            let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
+            let (u, _) = system.solve(&system.cholesky().unwrap().unwrap(), &load);
+            100.0 * (u[3 * n + 2] / (force / (3.0 * stiffness()[1])) - 1.0)
+        })
+        .collect();
+    // The sum of P (L − x)² l/(E I) over the joints, that of the clamp by half, is `1 + 1/(2 n²)` of the beam.
+    for (error, n) in errors.iter().zip([4.0, 8.0, 16.0f64]) {
+        assert!((error - 50.0 / n.powi(2)).abs() < 1e-6, "{n}: {errors:?}");
+    }
+    let corner = line(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+    let error = BendingSprings::Hinges.check(&corner).unwrap_err().to_string();
+    assert!(error.contains("bending: expected \"directors\"") && error.contains("[1.0, 0.0, 0.0] m"), "{error}");
+    // Programs that hold hinges hold these, with directors as points.
+    let folder = TempDir::new().unwrap();
+    let rest = format!("bending = \"hinges\"\n{CLAMPED}[[load]]\ngroup = \"TIP\"\nforce = [0, 0, 1e-3]\n");
+    let scene = scene(folder.path(), "density = 1000\nbending = \"rod\"", &rest).unwrap();
+    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let network = &outcome.fits[0].network;
+    assert_eq!(network.others.iter().filter(|spring| spring.kind == SpringKind::Hinge).count(), 5 * 8);
 }

@@ -4,6 +4,7 @@
 
 use super::network::Network;
 use super::{plate, rod};
+use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, EnergyMap, Hooke, Material};
 use crate::mesh::Mesh;
 
@@ -14,7 +15,7 @@ pub enum BendingSprings {
     #[default]
     Directors,
     /// One spring of each triangle on its turn from each director. Between two triangles they are a spring on the angle between both, which other programs
-    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is. Rods have none.
+    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is. Of each rod five springs on single turns, which other programs hold as well.
     Hinges,
 }
 
@@ -28,12 +29,29 @@ impl BendingSprings {
     pub fn of(self, mesh: &Mesh, moduli: &CellMap<Hooke>) -> Network {
         match &mesh.directors {
             None => Network { dimension: mesh.dimension, ..Network::default() },
-            Some(joints) if mesh.cell_dimension() == 1 => rod::rods(mesh, joints, moduli),
-            Some(directors) => match self {
-                BendingSprings::Directors => plate::plate(mesh, directors, moduli),
-                BendingSprings::Hinges => plate::hinges(mesh, directors, moduli),
+            Some(directors) => match (self, mesh.cell_dimension()) {
+                (BendingSprings::Directors, 1) => rod::beams(mesh, directors, moduli),
+                (BendingSprings::Hinges, 1) => rod::hinges(mesh, directors, moduli),
+                (BendingSprings::Directors, _) => plate::plate(mesh, directors, moduli),
+                (BendingSprings::Hinges, _) => plate::hinges(mesh, directors, moduli),
             },
         }
+    }
+
+    /// Proves that the body can have these springs.
+    ///
+    /// # Errors
+    /// Rods with hinges meet in a joint that has no one direction: kind `Unsupported`.
+    pub fn check(self, mesh: &Mesh) -> Result<()> {
+        let Some(joints) =
+            mesh.directors.as_ref().filter(|_| mesh.cell_dimension() == 1 && self == BendingSprings::Hinges)
+        else {
+            return Ok(());
+        };
+        let Some(joint) = rod::askew(mesh, joints) else { return Ok(()) };
+        let expected = "\"directors\": hinges hold joints of rods that are in line to 30 degrees";
+        let found = format!("\"hinges\" and another joint at {:?} m", mesh.point(joint));
+        Err(Error::expected("bending", expected, found).of_kind(ErrorKind::Unsupported))
     }
 }
 

@@ -9,7 +9,7 @@ use super::network::{LengthSpring, MeasureSpring, Network};
 use crate::element::SpringKind;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::{Directors, Mesh};
-use crate::springs::{Measure, Turns, cross, distance, norm};
+use crate::springs::{Measure, Turns, cross, distance, dot, norm};
 use nalgebra::{SMatrix, SVector};
 use smallvec::SmallVec;
 
@@ -32,8 +32,38 @@ const MEASURES: usize = 5;
 /// A share of a turn that is a rounding error, and is left out.
 const ROUNDING: f64 = 1e-12;
 
-/// The springs of rods on their joints, by the stiffness E A of each, N: a rod has `E I` of it by its radius of gyration, and G J by `torsion`.
-pub(super) fn rods(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>) -> Network {
+/// The most that a rod with hinges has along an axis of its joint, as a share: joints turn by 30 degrees. Single turns mix bending with twist by it.
+const ASKEW: f64 = 0.26;
+
+/// The springs of rods as beams on their joints, by the stiffness E A of each, N: a rod has `E I` of it by its radius of gyration, and G J by `torsion`.
+pub(super) fn beams(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>) -> Network {
+    rods(mesh, joints, moduli, bends)
+}
+
+/// The springs of rods with hinges, on single turns.
+pub(super) fn hinges(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>) -> Network {
+    rods(mesh, joints, moduli, single_turns)
+}
+
+/// The first joint that has rods along an axis of its own, so that it is no joint of rods in line.
+pub(super) fn askew(mesh: &Mesh, joints: &Directors) -> Option<usize> {
+    let from = |a: usize, b: usize| -> [f64; 3] { std::array::from_fn(|k| mesh.point(b)[k] - mesh.point(a)[k]) };
+    let is_askew = |end: usize, rod: &[f64; 3], directors: &[usize]| {
+        directors.iter().any(|&director| {
+            let axis = from(end, director);
+            dot(&axis, rod).abs() > ASKEW * norm(&axis) * norm(rod)
+        })
+    };
+    mesh.blocks[0].cells().enumerate().find_map(|(cell, nodes)| {
+        let (own, rod) = (joints.of_cell(cell), from(nodes[0], nodes[1]));
+        [0, 1].into_iter().find(|&end| is_askew(nodes[end], &rod, &own[2 * end..2 * end + 2])).map(|end| nodes[end])
+    })
+}
+
+/// What the springs of a rod with these points are by E I and G J.
+type Springs = fn(&Mesh, &[usize], [f64; 2]) -> [MeasureSpring; MEASURES];
+
+fn rods(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>, springs: Springs) -> Network {
     let mut network = Network { dimension: mesh.dimension, ..Network::default() };
     let first = mesh.node_count();
     let mut holds = vec![0.0; first];
@@ -58,7 +88,7 @@ pub(super) fn rods(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>) -> 
 ///
 /// A beam of the length l whose ends have turned by a and b from its line, in one plane, has the energy `E I/(2 l) (4 a² + 4 a b + 4 b²)`, which is
 /// `½ (3 E I/l) (a + b)² + ½ (E I/l) (a − b)²`: two springs in each of two planes, and `½ (G J/l) τ²` of the twist τ. The measures are l times these, in m, so that the constants are in N/m.
-fn springs(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSpring; MEASURES] {
+fn bends(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSpring; MEASURES] {
     let x: Vec<f64> = points.iter().flat_map(|&p| mesh.point(p)).copied().collect();
     let turns = turns(&x);
     let weights = weights(&x, &turns);
@@ -72,6 +102,22 @@ fn springs(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSp
         let turns = turns.expect("the places of a rod differ, and each measure has a share");
         MeasureSpring::turning(SpringKind::Bend, points.iter().copied().collect(), &x, turns, constants[measure])
     })
+}
+
+/// The springs of a rod with hinges: `½ (2 E I/l) a²` of each turn of an end about an axis of its joint, which two rods in line have as a spring `E I/l` on the angle
+/// between both, and `½ (G J/l) τ²` of the twist.
+fn single_turns(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSpring; MEASURES] {
+    let x: Vec<f64> = points.iter().flat_map(|&p| mesh.point(p)).copied().collect();
+    let length = mesh.rod_length(&points[..2]);
+    let all = turns(&x);
+    [(0, 2.0 * bend), (1, 2.0 * bend), (3, 2.0 * bend), (4, 2.0 * bend), (INCLINED.len(), twist)].map(
+        |(place, stiffness)| {
+            let places = all[place];
+            let own: Vec<f64> = places.iter().flat_map(|&p| &x[3 * p..3 * p + 3]).copied().collect();
+            let points = places.iter().map(|&p| points[p]).collect();
+            MeasureSpring::turning(SpringKind::Hinge, points, &own, Turns::of_hinge(), stiffness / length)
+        },
+    )
 }
 
 /// One turn of the points of a rod.

@@ -41,7 +41,7 @@ pub enum SpringKind {
     /// A weighted sum of the turns of a triangle from the directors of its edges, or of a rod from those of its ends, in m. For sheets and rods that bend only.
     #[serde(skip)]
     Bend,
-    /// The turn of a triangle about one of its edges, from its plane to a director or to the apex of another triangle, in rad. For sheets that bend only.
+    /// The turn of a triangle about one of its edges, from its plane to a director or to the apex of another triangle, in rad, or of a rod. For sheets and rods that bend only.
     #[serde(skip)]
     Hinge,
     /// A weighted sum of the squared distances of some pairs of points: a component of the strain of a surface at an edge. For exact networks only.

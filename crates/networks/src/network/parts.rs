@@ -195,7 +195,7 @@ fn advice(spring: &SpringRecord, measure: &MeasureRecord, dimension: usize) -> &
     let is_embedded = measure.terms.iter().flat_map(|term| &term.gradients).any(|g| g.len() < dimension);
     match (measure.cells.len(), &spring.law) {
         _ if measure.kind == MeasureKind::Turn => {
-            "bending = \"hinges\" in the fit of a sheet has springs on the angles between triangles; those of rods are held by no program"
+            "bending = \"hinges\" in the fit of a sheet has springs on single angles, of sheets and of rods in line"
         }
         _ if measure.kind == MeasureKind::Squares => {
             "springs on strains are held by no program: objective = \"offdiag\" with nonnegative = true has springs on lengths alone"

@@ -43,7 +43,9 @@ pub fn fit_without_errors(
     let task = Task { name: &named.name, springs: named.springs.as_deref(), mesh, material, reference };
     let mut fitted = named.recipe.kind().fit(&task, progress)?;
     if mesh.directors.is_some() {
-        let sheet = named.bending.unwrap_or_default().of(mesh, &material.moduli());
+        let bending = named.bending.unwrap_or_default();
+        bending.check(mesh)?;
+        let sheet = bending.of(mesh, &material.moduli());
         fitted.network = std::mem::take(&mut fitted.network).joined(sheet);
     }
     let missing = || Error::at("engine", "belongs to a scene with supports");

@@ -86,11 +86,11 @@ fn common(kind: Kind, generator: &mut SchemaGenerator) -> [(String, Value); COMM
     let sheets = json!({
         "type": "string",
         "enum": BendingSprings::NAMES,
-        "description": "A sheet, whose material has bending = \"plate\", resists bending by these springs. `directors` are the plate at any Poisson's ratio. `hinges` \
+        "description": "A sheet or rods, whose material has bending = \"plate\" or \"rod\", resist bending by these springs. `directors` are the plate at any Poisson's ratio, and the beam. `hinges` \
                         are springs on the angles between triangles, which other programs hold; Poisson's ratio of their bending is near −1/3 whatever that of \
-                        the material is.",
+                        the material is. Of rods they are springs on single angles between rods and directors, of second order, where the rods of each joint are in line to 30 degrees.",
         "x-type": "`\"directors\"`, `\"hinges\"`",
-        "x-default": "`\"directors\"` of a sheet",
+        "x-default": "`\"directors\"` of what bends",
     });
     [(name, names), (objective, objectives), (springs, groups), (engine, settings), (bending, sheets)]
 }

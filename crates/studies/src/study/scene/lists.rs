@@ -4,7 +4,6 @@ use super::bending::Bending;
 use super::load::LoadCase;
 use super::material::MaterialEntries;
 use crate::error::{Error, ErrorKind, Result};
-use crate::model::BendingSprings;
 use crate::study::fits::{FitEntry, NamedFit, SceneFacts};
 use crate::study::own_name::{BODY, QUADRATIC, expect_own_name};
 use std::path::Path;
@@ -53,9 +52,8 @@ pub fn check_fits(fits: &[NamedFit], material: &MaterialEntries, loads: &[LoadCa
             let expected = "a density in [material]: what an engine reaches depends on the masses";
             return Err(Error::expected(format!("{place}.engine"), expected, "none"));
         }
-        let of_sheets = fit.bending == Some(BendingSprings::Hinges) || material.first().bending == Bending::None;
-        if fit.bending.is_some() && of_sheets && material.first().bending != Bending::Plate {
-            let expected = "a sheet with bending = \"plate\" in its material";
+        if fit.bending.is_some() && material.first().bending == Bending::None {
+            let expected = "a sheet with bending = \"plate\" in its material, or rods with \"rod\"";
             return Err(Error::expected(format!("{place}.bending"), expected, "a body that does not bend as one"));
         }
         fit.recipe.kind().check(&facts).map_err(|e| e.under(place))?;
