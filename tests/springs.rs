@@ -1,7 +1,7 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
-use crate::shapes::{Random, distorted, elements, materials};
-use springfit::element::{Element, SpringKind};
+use crate::shapes::{Random, distorted, elements, materials, text_with_angles, with_angles};
+use springfit::element::{Cell, Element, SHIPPED, SpringKind};
 use springfit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Search, Solver, Weight, element_errors, fit_cells,
 };
@@ -222,6 +222,39 @@ fn the_cells_symmetry_divides_springs_into_classes() {
 
 /// Near incompressibility the fully integrated cube locks, the selectively integrated one does not: the energy of a
 /// bending motion, u = xy, v = −x²/2 at the nodes, stays bounded.
+/// The angles of a cell are those of its sides: each corner of a side has one, which other sides do not have.
+#[test]
+fn complete_angles_are_those_of_all_sides() {
+    for name in SHIPPED.iter().map(|file| file.name).filter(|name| !name.starts_with("bar")) {
+        let element = with_angles(name);
+        let found = &element.springs.iter().find(|group| group.kind == SpringKind::Angle).unwrap().nodes;
+        let own: Vec<usize> = (0..element.cell.corners().len()).collect();
+        let sides: Vec<&[usize]> = match element.dimension() {
+            // The sides of a plane cell run around it.
+            2 => vec![&own],
+            _ => element.cell.sides().iter().map(|side| side.corners).collect(),
+        };
+        let mut expected: Vec<[usize; 3]> = Vec::new();
+        for side in sides {
+            let corner = |i: usize| element.corner_node(side[i % side.len()]).unwrap();
+            expected.extend((0..side.len()).map(|i| [corner(i), corner(i + 1), corner(i + 2)]));
+        }
+        let sorted = |n: &[usize]| [n[0].min(n[2]), n[1], n[0].max(n[2])];
+        let mut found: Vec<[usize; 3]> = found.iter().map(|nodes| sorted(nodes)).collect();
+        let mut expected: Vec<[usize; 3]> = expected.iter().map(|nodes| sorted(nodes)).collect();
+        // At the apex of a pyramid edges meet that no side has both of.
+        if element.cell == Cell::Pyramid {
+            expected.extend([[0, 4, 2], [1, 4, 3]]);
+        }
+        found.sort();
+        expected.sort();
+        assert_eq!(found, expected, "{name}");
+    }
+    let again = text_with_angles("tri3") + "\n[[springs]]\ngroup = \"more\"\nkind = \"angle\"\nnodes = \"complete\"\n";
+    let error = Element::parse(&again).unwrap_err().to_string();
+    assert!(error.contains("springs[3].nodes: expected angles at the corners that have no spring yet"), "{error}");
+}
+
 #[test]
 fn selective_integration_does_not_lock() {
     let full = Element::load("hex8").unwrap();

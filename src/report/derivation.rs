@@ -144,6 +144,11 @@ impl Derivation<'_> {
         }
     }
 
+    /// A constant in one line, in terms of E and ν where the material is isotropic.
+    pub(super) fn constant(&self, constants: &[Fraction]) -> String {
+        self.engineering(constants, Notation::Text).unwrap_or_else(|| self.linear(constants, Notation::Text))
+    }
+
     fn constant_latex(&self, constants: &[Fraction]) -> String {
         let linear = self.linear(constants, Notation::Latex);
         self.engineering(constants, Notation::Latex).map_or(linear.clone(), |other| format!("{linear} = {other}"))
@@ -172,7 +177,8 @@ impl Derivation<'_> {
         self.form.moduli.len() == 2
     }
 
-    fn meaning(&self) -> &'static str {
+    /// What the constants are in terms of.
+    pub(super) fn meaning(&self) -> &'static str {
         match self.plane {
             _ if !self.is_isotropic() && self.element.dimension() == 1 => "C11 = E, cross-section 1",
             Some(Plane::Stress) if !self.is_isotropic() => {
@@ -210,7 +216,7 @@ impl Derivation<'_> {
     }
 
     /// `|R − K|/|R|` at ν = 0.3, where the sides are numbers.
-    fn relative_error(&self, fit: &ClosedFit) -> Option<f64> {
+    pub(super) fn relative_error(&self, fit: &ClosedFit) -> Option<f64> {
         let at = [BigRational::new(3.into(), 10.into())];
         if self.form.variables.len() > 1 || !self.is_isotropic() {
             return None;
@@ -379,7 +385,7 @@ fn objective(fit: &ClosedFit) -> String {
 }
 
 /// The group of a spring and its nodes. A colon separates them where the group ends in a digit, as in "mid-mid 1: 4-5".
-fn named(group: &str, spring: &[usize]) -> String {
+pub(super) fn named(group: &str, spring: &[usize]) -> String {
     let nodes: Vec<String> = spring.iter().map(usize::to_string).collect();
     let colon = if group.ends_with(|c: char| c.is_ascii_digit()) { ":" } else { "" };
     format!("{group}{colon} {}", nodes.join("-"))

@@ -10,6 +10,7 @@ mod compliances;
 mod convergence;
 mod deformed;
 mod derivation;
+mod element_page;
 mod figure;
 mod fit_record;
 mod forecast;
@@ -67,6 +68,7 @@ pub use compliances::compliances;
 pub use convergence::{CONVERGENCE_FILES, convergence_csv, convergence_tables, convergence_text, write_convergence};
 pub use deformed::deformed;
 pub use derivation::Derivation;
+pub use element_page::{element_page_files, write_element_page};
 pub use figure::{
     Axis, Chart, Columns, Cost, Deformation, Moduli, ModulusCurve, PictureFormat, RunFolder, Series, Shape,
 };

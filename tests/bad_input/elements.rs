@@ -86,7 +86,7 @@ fn springs() {
         (VOLUME, crossed, "own.toml: springs[1].nodes[0]", "found [0, 1, 1, 0]"),
         (VOLUME, turned, "own.toml: springs[1].nodes[1]", "the list [2, 1, 0]"),
         (VOLUME, "kind = \"length\"\nnodes = \"complete\"", "own.toml: springs[1].nodes", "found none"),
-        (VOLUME, "kind = \"angle\"\nnodes = \"complete\"", "own.toml: springs[1].nodes", "found \"complete\""),
+        (VOLUME, "kind = \"area\"\nnodes = \"complete\"", "own.toml: springs[1].nodes", "found \"complete\""),
     ]);
 }
 

@@ -4,6 +4,8 @@ use super::markdown::root;
 use super::printed::compare;
 use springfit::report::deformed;
 use springfit::study::{Scene, run};
+use std::collections::BTreeSet;
+use std::path::Path;
 use std::process::Command;
 
 /// The words of a picture, one text a line.
@@ -72,6 +74,58 @@ fn the_figures_for_a_paper_are_those_of_a_fresh_run() {
     };
     compared("precision", "work-precision", &["--columns", "two"]);
     compared("poisson", "poisson", &["--of", "tet4"]);
+}
+
+/// Pictures are compared by their words and sizes: places on them may differ by a rounding.
+#[test]
+fn the_page_of_elements_is_what_the_command_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
+    assert!(
+        command.args(["elements", "--out", "elements"]).current_dir(folder.path()).output().unwrap().status.success()
+    );
+    let (made, known) = (folder.path().join("elements"), root().join("docs/src/elements"));
+    let names = |folder: &Path| -> BTreeSet<String> {
+        let all = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        all.filter(|name| !name.starts_with('.')).collect()
+    };
+    let text = |folder: &Path, name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    if std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some() {
+        names(&known).iter().for_each(|name| std::fs::remove_file(known.join(name)).unwrap());
+        names(&made).iter().for_each(|name| std::fs::write(known.join(name), text(&made, name)).unwrap());
+        return;
+    }
+    assert_eq!(names(&known), names(&made));
+    for name in names(&made) {
+        let (known, made) = (text(&known, &name), text(&made, &name));
+        if name.ends_with(".md") {
+            assert_eq!(known, made);
+            continue;
+        }
+        assert_eq!(words(&known), words(&made), "{name}");
+        assert!(made.len() < 10_000, "{name}: {} bytes", made.len());
+        expect_apart(&name, &made);
+    }
+}
+
+/// The numbers of nodes do not cover each other: they are ten pixels high, and the longest has two digits.
+fn expect_apart(name: &str, svg: &str) {
+    let number = |part: &str| {
+        let (attributes, rest) = part.split_once('>').unwrap();
+        let at = |key: &str| {
+            attributes.split_once(&format!(" {key}=\"")).unwrap().1.split('"').next().unwrap().parse::<f64>()
+        };
+        let digits = rest.split("</text>").next().unwrap().trim();
+        digits.parse::<usize>().ok().map(|_| [at("x").unwrap(), at("y").unwrap(), 3.0 * digits.len() as f64])
+    };
+    let numbers: Vec<[f64; 3]> = svg.split("<text").skip(1).filter_map(number).collect();
+    assert!(numbers.len() > 1, "{name}");
+    for (i, a) in numbers.iter().enumerate() {
+        for b in &numbers[..i] {
+            let clear = (a[0] - b[0]).abs() > a[2] + b[2] || (a[1] - b[1]).abs() > 8.0;
+            assert!(clear, "{name}: {a:?} {b:?}");
+        }
+    }
 }
 
 /// Of the study of the paper, whose command draws them.

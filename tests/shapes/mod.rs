@@ -36,34 +36,15 @@ pub fn distorted(element: &Element, random: &mut Random) -> Vec<f64> {
     }
 }
 
+/// The file of a shipped element with springs on the angles between its edges at every corner beside its own.
+pub fn text_with_angles(name: &str) -> String {
+    let file = SHIPPED.iter().find(|file| file.name == name).unwrap();
+    format!("{}\n[[springs]]\ngroup = \"angle\"\nkind = \"angle\"\nnodes = \"complete\"\n", file.text)
+}
+
 /// A shipped element to which springs are added on the angles between its edges at every corner.
 pub fn with_angles(name: &str) -> Element {
-    let element = Element::load(name).unwrap();
-    let node = |corner: usize| element.corner_node(corner).unwrap();
-    let mut edges: Vec<[usize; 2]> = Vec::new();
-    for side in element.cell.sides() {
-        let own: Vec<[usize; 2]> = match element.dimension() {
-            2 => vec![[side.corners[0], side.corners[1]]],
-            _ => side.cell.sides().iter().map(|edge| [0, 1].map(|end| side.corners[edge.corners[end]])).collect(),
-        };
-        for [a, b] in own.into_iter().map(|edge| edge.map(node)) {
-            if !edges.iter().any(|edge| edge.contains(&a) && edge.contains(&b)) {
-                edges.push([a, b]);
-            }
-        }
-    }
-    let mut angles = Vec::new();
-    for (i, [a, b]) in edges.iter().enumerate() {
-        for [c, d] in &edges[..i] {
-            let shared = [a, b].into_iter().find(|node| [c, d].contains(node));
-            let other = |x: &usize, y: &usize, shared: &usize| if x == shared { *y } else { *x };
-            angles.extend(shared.map(|node| [other(a, b, node), *node, other(c, d, node)]));
-        }
-    }
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("elements/{name}.toml"));
-    let text = std::fs::read_to_string(path).unwrap();
-    let own = format!("\n[[springs]]\ngroup = \"angle\"\nkind = \"angle\"\nnodes = {angles:?}\n");
-    Element::parse(&(text + &own)).unwrap()
+    Element::parse(&text_with_angles(name)).unwrap()
 }
 
 pub fn materials(dimension: usize) -> Vec<Material> {

@@ -31,14 +31,24 @@ impl Camera {
     pub fn of(mesh: &Mesh) -> Camera {
         let d = mesh.dimension;
         if d < 3 {
-            return Camera { across: [1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0], toward: [0.0, 0.0, 1.0] };
+            return Camera::straight();
         }
         let extent = |k: usize| {
             let values = || mesh.points.iter().skip(k).step_by(d);
             values().copied().fold(f64::NEG_INFINITY, f64::max) - values().copied().fold(f64::INFINITY, f64::min)
         };
         let turn = if extent(1) > 1.5 * extent(0) { 90.0 - TURN } else { TURN };
-        let (turn, elevation) = (f64::to_radians(turn), f64::to_radians(ELEVATION));
+        Camera::turned(turn, ELEVATION)
+    }
+
+    /// Straight at the plane of the first two axes.
+    pub fn straight() -> Camera {
+        Camera { across: [1.0, 0.0, 0.0], up: [0.0, 1.0, 0.0], toward: [0.0, 0.0, 1.0] }
+    }
+
+    /// From the front, turned around the vertical to the right and raised above the horizon by these degrees.
+    pub fn turned(turn: f64, elevation: f64) -> Camera {
+        let (turn, elevation) = (turn.to_radians(), elevation.to_radians());
         let across = [turn.cos(), turn.sin(), 0.0];
         let toward = [turn.sin() * elevation.cos(), -turn.cos() * elevation.cos(), elevation.sin()];
         Camera { across, up: cross(toward, across), toward }

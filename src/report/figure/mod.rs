@@ -2,6 +2,7 @@
 
 mod axis;
 mod camera;
+mod cell;
 mod chart;
 mod convergence;
 mod converter;
@@ -24,6 +25,7 @@ pub use moduli::{Moduli, ModulusCurve};
 pub use run_folder::RunFolder;
 pub use sheet::Columns;
 
+pub(super) use cell::cell_picture;
 pub(super) use chart::stacked;
 pub(super) use convergence::{CONVERGENCE_TABLE, convergence_chart, convergence_charts};
 pub(super) use palette::{COLORS, faded};

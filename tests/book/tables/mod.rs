@@ -52,7 +52,7 @@ impl Kept {
 /// What makes a table anew, whether that takes long, and how well it must agree.
 type Maker = (&'static str, fn() -> String, bool, Kept);
 
-const MAKERS: [Maker; 28] = [
+const MAKERS: [Maker; 29] = [
     ("creep bar", creep::bar, false, Kept::Roughly),
     ("creep yield", creep::yielding, false, Kept::Roughly),
     ("creep kidney", creep::kidney_let_go, true, Kept::ToRounding),
@@ -78,7 +78,8 @@ const MAKERS: [Maker; 28] = [
     ("stability", stability::table, true, Kept::Magnitude),
     ("tensile", tensile::table, false, Kept::ToRounding),
     ("truths", truths::table, true, Kept::ToRounding),
-    ("angles", angles::table, false, Kept::ToRounding),
+    ("angles", angles::table, true, Kept::ToRounding),
+    ("angles on bodies", angles::bodies, false, Kept::ToRounding),
     ("related", related::table, false, Kept::Roughly),
     ("sparsity", related::sparsity, false, Kept::Roughly),
 ];

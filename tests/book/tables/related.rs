@@ -6,7 +6,7 @@ use springfit::fit::{fit_element, plain};
 use springfit::material::Moduli;
 use springfit::solve::Standing;
 use springfit::springs::Springs;
-use springfit::study::{FitEntry, FitOutcome, NamedFit};
+use springfit::study::{FitEntry, FitOutcome, NamedFit, Output};
 
 const SCENES: [&str; 3] = ["tissue_tri", "square_quad", "cube_tet"];
 /// Poisson's ratio of the scenes.
@@ -32,20 +32,30 @@ fn rows() -> Vec<(String, FitEntry)> {
     published.into_iter().chain(own.map(|(name, entry)| (name.to_string(), entry))).collect()
 }
 
-/// `e_rms` in percent under the first load of each scene, and the springs of the network.
+/// `e_rms` in percent under the first load of each scene with the springs of the network, and the processor time for each cell that is fitted, of
+/// the last scene that the method fits.
 pub fn table() -> String {
     let rows = rows();
-    let columns: Vec<Vec<String>> = SCENES.iter().map(|name| column(name, &rows)).collect();
+    let columns: Vec<Vec<Option<(String, f64)>>> = SCENES.iter().map(|name| column(name, &rows)).collect();
     let row = |(i, (name, _)): (usize, &(String, FitEntry))| {
-        std::iter::once(name.clone()).chain(columns.iter().map(|column| column[i].clone())).collect::<Vec<_>>()
+        let cells = columns.iter().map(|column| column[i].as_ref().map_or("–".into(), |(cell, _)| cell.clone()));
+        let seconds = columns.iter().rev().find_map(|column| Some(column[i].as_ref()?.1)).unwrap();
+        let microseconds = 1e6 * seconds;
+        let time = format!("{microseconds:.*} us", if microseconds < 10.0 { 2 } else { 0 });
+        std::iter::once(name.clone()).chain(cells).chain([time]).collect::<Vec<_>>()
     };
     let header: Vec<String> = SCENES.iter().map(|name| format!("`{name}`")).collect();
-    let header: Vec<&str> = std::iter::once("fit").chain(header.iter().map(String::as_str)).collect();
+    let header: Vec<&str> =
+        std::iter::once("fit").chain(header.iter().map(String::as_str)).chain(["time of a cell"]).collect();
     markdown(&header, &rows.iter().enumerate().map(row).collect::<Vec<_>>())
 }
 
-fn column(name: &str, rows: &[(String, FitEntry)]) -> Vec<String> {
+/// What a scene gives of each row, and seconds for each cell; none where the method is not for its cells.
+fn column(name: &str, rows: &[(String, FitEntry)]) -> Vec<Option<(String, f64)>> {
     let scene = scene(name);
+    // Times are not compared, so that they are repeated only where they are written.
+    let output = Output { time: std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some(), ..scene.output().clone() };
+    let scene = scene.with_output(output);
     let element = scene.build_mesh().unwrap().blocks[0].element.clone();
     let refuses = |entry: &FitEntry| {
         let Ok(method) = Method::of_name(&entry.objective) else { return false };
@@ -58,8 +68,12 @@ fn column(name: &str, rows: &[(String, FitEntry)]) -> Vec<String> {
     let fits: Vec<Option<NamedFit>> =
         rows.iter().map(|(_, entry)| (!refuses(entry)).then(|| fit(entry.clone()))).collect();
     let outcome = outcome(&scene.with_fits(fits.iter().flatten().cloned().collect()));
-    let mut found = outcome.fits.iter();
-    fits.iter().map(|fit| fit.as_ref().map_or("–".into(), |_| cell(found.next().unwrap()))).collect()
+    let (mut found, cells) = (outcome.fits.iter(), outcome.mesh.cell_count());
+    let mut next = || {
+        let fit = found.next().unwrap();
+        (cell(fit), fit.seconds_per_element(cells))
+    };
+    fits.iter().map(|fit| fit.as_ref().map(|_| next())).collect()
 }
 
 fn cell(fit: &FitOutcome) -> String {

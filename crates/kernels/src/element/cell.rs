@@ -154,6 +154,12 @@ impl Cell {
         if edges.is_empty() { vec![[0, 1]] } else { edges }
     }
 
+    /// The place in `positions`, `[nodes × dimension]`, of the node at a corner, if there is one.
+    pub fn corner_node(self, corner: usize, positions: &[f64]) -> Option<usize> {
+        let at = self.corners()[corner];
+        positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < SAME))
+    }
+
     /// Whether the point is in the cell or on its boundary, up to rounding.
     pub fn contains(self, at: &[f64]) -> bool {
         let centre = self.centre();

@@ -98,7 +98,8 @@ pub struct SpringEntry {
     pub group: String,
     /// The springs measure a length, an angle, or another of these kinds.
     pub kind: SpringKind,
-    /// Each spring has one of these lists of nodes, from 0; `"complete"` takes all pairs of nodes that have no spring yet.
+    /// Each spring has one of these lists of nodes, from 0; `"complete"` takes all pairs of nodes that have no spring yet, and with the kind
+    /// `angle` the angles between all edges that meet at a corner.
     #[schemars(extend("x-type" = "lists of indices, or `\"complete\"`", "x-default" = "the whole cell"))]
     pub nodes: Option<NodeLists>,
     /// A spring of the kind `measure` has this expression of `x0, y0, z0, x1, …`, the coordinates of its nodes.
@@ -116,7 +117,7 @@ pub enum SpringClass {
     Auto,
 }
 
-/// Lists of nodes, or `"complete"`: all pairs of nodes that have no spring yet.
+/// Lists of nodes, or `"complete"`: all pairs of nodes, or all angles between edges at a corner, that have no spring yet.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "lists of nodes, or \"complete\"")]
 pub enum NodeLists {

@@ -1,5 +1,6 @@
 //! Groups of springs, made from the entries of an element file.
 
+use super::cell::Cell;
 use super::definition::{Definition, NodeLists, SpringEntry};
 use super::formula::coordinate_names;
 use super::invariance::expect_invariant;
@@ -43,7 +44,7 @@ pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<S
     let mut taken = HashSet::new();
     for (i, entry) in definition.springs.iter().enumerate() {
         let key = |rest: &str| format!("springs[{i}].{rest}");
-        let nodes = nodes_of(i, entry, definition, &taken)?;
+        let nodes = nodes_of(i, entry, definition, positions, &taken)?;
         for (p, list) in nodes.iter().enumerate() {
             if !taken.insert(identity(entry, list)) {
                 let what = if entry.kind == SpringKind::Length { "pair" } else { "list" };
@@ -85,21 +86,26 @@ fn nodes_of(
     i: usize,
     entry: &SpringEntry,
     definition: &Definition,
+    positions: &[f64],
     taken: &HashSet<(SpringKind, String, Vec<usize>)>,
 ) -> Result<Vec<Vec<usize>>> {
     let key = |rest: &str| format!("springs[{i}].{rest}");
     let (count, d) = (definition.nodes.len(), definition.cell.dimension());
     let lists = match (&entry.nodes, entry.kind) {
-        (Some(NodeLists::Named(name)), SpringKind::Length) if name == "complete" => {
-            let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| vec![a, b]));
-            let free: Vec<Vec<usize>> = pairs.filter(|pair| !taken.contains(&identity(entry, pair))).collect();
+        (Some(NodeLists::Named(name)), SpringKind::Length | SpringKind::Angle) if name == "complete" => {
+            let (all, what) = match entry.kind {
+                SpringKind::Angle => (corner_angles(definition.cell, positions), "angles at the corners"),
+                _ => (pairs(count), "pairs"),
+            };
+            let free: Vec<Vec<usize>> =
+                all.into_iter().filter(|list| !taken.contains(&identity(entry, list))).collect();
             if free.is_empty() {
-                return Err(Error::expected(key("nodes"), "pairs that have no spring yet", "none"));
+                return Err(Error::expected(key("nodes"), format!("{what} that have no spring yet"), "none"));
             }
             return Ok(free);
         }
         (Some(NodeLists::Named(name)), _) => {
-            let expected = "lists of nodes, or \"complete\" with the kind \"length\"";
+            let expected = "lists of nodes, or \"complete\" with the kind \"length\" or \"angle\"";
             return Err(Error::expected(key("nodes"), expected, format!("\"{name}\"")));
         }
         (Some(NodeLists::Given(lists)), _) => lists,
@@ -142,6 +148,29 @@ fn nodes_of(
         }
     }
     Ok(lists.clone())
+}
+
+/// All pairs of nodes.
+fn pairs(count: usize) -> Vec<Vec<usize>> {
+    (0..count).flat_map(|a| (a + 1..count).map(move |b| vec![a, b])).collect()
+}
+
+/// The angles between two edges that meet at a corner, for all such edges: the nodes at their other ends, and that of the corner between
+/// them. Corners without a node have none.
+fn corner_angles(cell: Cell, positions: &[f64]) -> Vec<Vec<usize>> {
+    let edges: Vec<[usize; 2]> = cell
+        .edges()
+        .into_iter()
+        .filter_map(|[a, b]| Some([cell.corner_node(a, positions)?, cell.corner_node(b, positions)?]))
+        .collect();
+    let mut angles = Vec::new();
+    for (i, &[a, b]) in edges.iter().enumerate() {
+        for &[c, d] in &edges[..i] {
+            let met = [[a, b, c, d], [b, a, c, d], [a, b, d, c], [b, a, d, c]];
+            angles.extend(met.iter().find(|[_, b, c, _]| b == c).map(|[a, b, _, d]| vec![*a, *b, *d]));
+        }
+    }
+    angles
 }
 
 /// The measure of the file, which must not change under rigid motions; an error if another kind has a measure.

@@ -249,8 +249,7 @@ impl Element {
 
     /// The node at a corner of the cell, if there is one.
     pub fn corner_node(&self, corner: usize) -> Option<usize> {
-        let at = self.cell.corners()[corner];
-        self.positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < cell::SAME))
+        self.cell.corner_node(corner, &self.positions)
     }
 
     /// One table per side, in the order of the sides of the cell. It is exact for a constant traction on flat sides.

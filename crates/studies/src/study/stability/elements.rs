@@ -37,9 +37,14 @@ const RESHAPE: &str = "move the nodes, or mesh anew: the finite element has no s
 /// What helps where a spring has no gradient.
 const UNMEASURED: &str =
     "leave the group of such springs out of the fit, or move the nodes: no angle may be straight, no length zero";
-/// What helps where a motion is too soft.
-const SOFT: &str =
+/// What helps where a motion is too soft on a slender cell.
+const SLENDER: &str =
     "choose frobenius, offdiag or modal, which have an optimum here, or mesh anew without such slender cells";
+/// What helps where a motion is too soft beside the change of content.
+const INCOMPRESSIBLE: &str =
+    "choose frobenius, offdiag or modal, which have an optimum here, or a Poisson's ratio farther from its bounds";
+/// What helps where a motion is too soft otherwise.
+const SOFT: &str = "choose frobenius, offdiag or modal, which have an optimum here";
 /// What helps where the optimum is not known.
 const INEXACT: &str = "choose springs of which none is a combination of the others, or leave a group out";
 /// The density, kg/m³.
@@ -120,7 +125,7 @@ impl Subject<'_> {
             _ if fits.deficient > 0 => of(Verdict::Dependent),
             _ if fits.unreached > 0 => {
                 of(Verdict::Refused("no end is reached: a motion is too soft beside the stiffest".into()))
-                    .with_way_out(SOFT)
+                    .with_way_out(self.stiffer())
             }
             (Objective::Spectral(_), _) => {
                 let certificate = fits.certificates[0];
@@ -160,6 +165,16 @@ impl Subject<'_> {
         match geometry.set(&element.tabulation, &case.x) {
             Ok(()) if !springs.functions().is_empty() => UNMEASURED,
             Ok(()) | Err(_) => RESHAPE,
+        }
+    }
+
+    /// What helps where a motion is too soft beside the stiffest.
+    fn stiffer(&self) -> &'static str {
+        match self.case.family {
+            Family::Poisson => INCOMPRESSIBLE,
+            Family::Needle | Family::Cap | Family::Sliver | Family::Near => SLENDER,
+            Family::Young | Family::Size | Family::Place | Family::Bent | Family::Corner | Family::Reversed => SOFT,
+            Family::Contrast | Family::Mesh | Family::Motion | Family::Collapse => SOFT,
         }
     }
 
