@@ -41,6 +41,7 @@ mod numpy;
 mod outside;
 mod overlaps;
 mod places;
+mod polygons;
 mod polytope;
 mod quality;
 mod range;
