@@ -95,6 +95,7 @@ impl Forecast {
         let held = cases.first().map_or(0, |case| case.support.prescribed.iter().flatten().count());
         let mut forecast = Forecast::of_fits(mesh, material, scene.fits(), energy);
         forecast.unknowns -= held;
+        let networks: f64 = forecast.stages.iter().filter_map(|stage| stage.bytes).sum();
         let finer = scene.reference().filter(|entry| !entry.is_of_cells());
         let iterates = energy.is_none() && scene.solver().iterates(mesh, cases.len());
         let is_linear = energy.is_none();
@@ -124,8 +125,9 @@ impl Forecast {
         let (seconds, bytes) = if iterates {
             let models = 1.0 + scene.fits().len() as f64;
             let each = COMPARED + ITERATED * cases.len() as f64;
-            // The body and one network are there at the same time.
-            (models * each * mesh.points.len() as f64, BlockStiffness::expected_bytes(mesh, 2, 2) as f64)
+            // The stiffnesses of the body and of one network are there at the same time, and the springs of all networks.
+            let bytes = BlockStiffness::expected_bytes(mesh, 2, 2) as f64 + networks;
+            (models * each * mesh.points.len() as f64, bytes)
         } else {
             let factor = factor_cost(mesh)?;
             // The finite elements and one network are assembled one after the other, and their factors are there at the same time.
