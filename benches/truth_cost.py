@@ -4,8 +4,8 @@
 
 Each body is run as it is and with `from = "cells"` in [reference], which asks for no other reference; with --against, by one program and by another.
 Bodies that do not lock must take as long in both ways: the median of the ratios of the pairs, with half the distance between their quartiles over the
-root of their number. Bodies that lock are there for what the reference takes. Times are those of user and system, so that other work on the machine
-changes little.
+root of their number. Bodies that lock are there for what the reference takes. Times are those of user and system, of one thread, because threads that
+wait for others take time as well: other work on the machine then changes little.
 """
 
 import argparse
@@ -49,7 +49,8 @@ def seconds(program, text, folder):
     scene = folder / "scene.toml"
     scene.write_text(text)
     command = [program, "run", str(scene), "--out", str(folder / "out")]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    one_thread = os.environ | {"RAYON_NUM_THREADS": "1"}
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=one_thread)
     said = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)

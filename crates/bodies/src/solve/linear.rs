@@ -3,7 +3,6 @@
 //! Theory: page *Precision* of the book.
 
 use super::cholesky::{Analysis, Cholesky, Pivoted, out_of_memory};
-use super::lanczos::noise;
 use super::ordering::Places;
 use crate::error::{Error, Result};
 use crate::memory;
@@ -23,6 +22,8 @@ use std::sync::{Arc, OnceLock};
 const REFINEMENTS: usize = 60;
 /// The refinement ends if a correction is not below this share of the previous one.
 const SLOWEST: f64 = 0.5;
+/// The fraction of the golden ratio.
+const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// The share of a load that a solution with a symmetric factor with pivots may leave. One that leaves more has lost half of its digits to pivots that are
 /// small beside what they eliminate.
 const ACCURATE: f64 = 1e-8;
@@ -187,7 +188,9 @@ impl System {
 
     /// Whether a solution with the factor leaves little of a load that moves all: refinements then find the other digits.
     fn is_accurate(&self, factor: &Factor) -> bool {
-        let load = self.apply(&noise(self.size()));
+        // Multiples of the golden ratio are spread evenly, and neighbours differ: every motion has a part in them.
+        let rough: Vec<f64> = (0..self.size()).map(|i| (i as f64 * GOLDEN).fract() - 0.5).collect();
+        let load = self.apply(&rough);
         let mut u = load.clone();
         factor.solve(&mut u);
         let left: Vec<f64> = load.iter().zip(self.apply(&u)).map(|(f, inner)| f - inner).collect();
