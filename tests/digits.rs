@@ -48,6 +48,15 @@ fn springs_in_a_row_keep_their_digits_at_any_contrast() {
     }
 }
 
+/// Springs that push make matrices that are not positive definite, with zeros on the diagonal at a ratio of −1, where a factor needs pivots.
+#[test]
+fn springs_that_push_in_a_row_keep_their_digits() {
+    for (count, ratio) in [(65, -1.0), (3, -1.0), (64, -0.5), (64, -2.0), (64, -1e-3), (64, -1e6)] {
+        let (left, error) = row(count, ratio);
+        assert!(left < 1e-9 && error < 1e-12, "{count}, {ratio}: {error:e}, {left:e} is left");
+    }
+}
+
 /// A motion that is next to none: the matrix is positive definite, but has no incomplete factor. That is what is said of it, whatever
 /// the solver; it is not said to release energy.
 #[test]

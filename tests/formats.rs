@@ -228,8 +228,6 @@ fn cards_of_every_layout_are_read() {
         error(system, "bdf")
             .starts_with("line 1: system 3: is named by a grid point or a system, and is not in the file")
     );
-    let partial = "CTETRA,1,1,1,2,3,4,5,6\n";
-    assert_eq!(error(partial, "bdf"), "line 1: CTETRA: expected no middle nodes, or all 6, found 2 in element 1");
     let nodes: Vec<String> = (1..=27).map(|node| node.to_string()).collect();
     let full = format!(
         "CHEXA,1,1,{},\n,{},\n,{},\n,{}\n",
@@ -313,8 +311,11 @@ fn faults_of_surfaces_name_the_line() {
         error("v 0 0 0\nf 1 1 2\n", "obj"),
         "line 2: expected the number of one of 1 points before it, found \"2\""
     );
-    let five = "OFF\n5 1 0\n0 0 0\n1 0 0\n1 1 0\n0 2 0\n0 1 0\n5 0 1 2 3 4\n";
-    assert!(error(five, "off").starts_with("line 8: expected triangles or quadrangles"));
+    // A star, and one of five corners that are not in one plane.
+    for corner in ["0.5 -1 0", "0 1 3"] {
+        let five = format!("OFF\n5 1 0\n0 0 0\n1 0 0\n1 1 0\n0 2 0\n{corner}\n5 0 1 2 3 4\n");
+        assert!(error(&five, "off").starts_with("line 8: expected flat faces of three corners or more"));
+    }
     assert_eq!(error("OFF\n3 1 0\n0 0 0\n", "off"), "the file ends too early: expected 3 points, found 1");
     let counts = "ply\nformat ascii 1.0\nelement vertex 99999999999999\nproperty float x\nproperty float y\nproperty float z\n\
                   end_header\n0 0 0\n";
@@ -393,4 +394,134 @@ fn no_surface_cut_short_is_read() {
             }
         }
     }
+}
+
+/// The volume, area or length.
+fn content(mesh: &Mesh) -> f64 {
+    let mut total = 0.0;
+    for block in &mesh.blocks {
+        each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, |_, _, g| total += g.content())
+            .unwrap();
+    }
+    total
+}
+
+/// Polygons of more than four corners are triangles with the same area, whichever side their corners turn to; and what has no area or is there
+/// again is no part of a surface.
+#[test]
+fn polygons_are_cut_and_idle_faces_left_out() {
+    // An L with a corner in the middle of a side, a comb, and a regular polygon of 40 corners, each tilted in space.
+    let round: Vec<[f64; 2]> =
+        (0..40).map(|k| (f64::from(k) * std::f64::consts::TAU / 40.0).sin_cos().into()).collect();
+    let bent = vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]];
+    let comb = vec![
+        [0.0, 0.0],
+        [5.0, 0.0],
+        [5.0, 3.0],
+        [4.0, 3.0],
+        [4.0, 1.0],
+        [3.0, 1.0],
+        [3.0, 3.0],
+        [2.0, 3.0],
+        [2.0, 1.0],
+        [1.0, 1.0],
+        [1.0, 3.0],
+        [0.0, 3.0],
+    ];
+    for (corners, expected) in [(bent, 4.0), (comb, 11.0), (round, 20.0 * (std::f64::consts::TAU / 40.0).sin())] {
+        for turned in [false, true] {
+            let n = corners.len();
+            let place = |[x, y]: &[f64; 2]| format!("{} {} {}\n", 0.6 * x, y, 0.8 * x);
+            let places: String = corners.iter().map(place).collect();
+            let order: Vec<usize> = if turned { (0..n).rev().collect() } else { (0..n).collect() };
+            let listed = |first: usize| order.iter().map(|k| (k + first).to_string()).collect::<Vec<_>>().join(" ");
+            let off = format!("OFF\n{n} 1 0\n{places}{n} {}\n", listed(0));
+            let obj =
+                format!("{}f {}\n", places.lines().map(|line| format!("v {line}\n")).collect::<String>(), listed(1));
+            let ply = format!(
+                "ply\nformat ascii 1.0\nelement vertex {n}\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                 property list uchar int vertex_indices\nend_header\n{places}{n} {}\n",
+                listed(0)
+            );
+            let vtk = format!(
+                "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS {n} double\n{places}POLYGONS 1 {}\n{n} {}\n",
+                n + 1,
+                listed(0)
+            );
+            for (text, ending) in [(off, "off"), (obj, "obj"), (ply, "ply"), (vtk, "vtk")] {
+                let source = parse(text.as_bytes(), ending).unwrap();
+                let mesh = Mesh::resolve(&source, &[], 1.0).unwrap();
+                assert_eq!((mesh.cell_count(), mesh.point_count()), (n - 2, n), "{ending}");
+                assert!((content(&mesh) - expected).abs() < 1e-12, "{ending}: {}, {expected}", content(&mesh));
+                assert!(
+                    source.annotations.remarks.iter().any(|said| said.starts_with("1 ")),
+                    "{:?}",
+                    source.annotations
+                );
+            }
+        }
+    }
+    let idle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 2 3 1\nf 1 2 2\nf 1 2 4\nf 2 4 3\n";
+    let source = parse(idle.as_bytes(), "obj").unwrap();
+    let said =
+        ["2 faces without area left out", "1 face with the corners of an earlier one in the same order left out"];
+    assert_eq!(source.annotations.remarks, said);
+    assert!((content(&Mesh::resolve(&source, &[], 1.0).unwrap()) - 1.0).abs() < 1e-15);
+    let both = parse(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n", "obj").unwrap();
+    assert!(Mesh::resolve(&both, &[], 1.0).unwrap_err().to_string().contains("expected each cell once"));
+}
+
+/// Prisms over pentagons and hexagons are hexahedra and wedges whose shared bases are divided alike.
+#[test]
+fn prisms_of_vtk_are_divided_alike() {
+    for (n, cell_type, remark) in [
+        (5, 15, "3 prisms over a pentagon are a hexahedron and a wedge each here"),
+        (6, 16, "3 prisms over a hexagon are two hexahedra each here"),
+    ] {
+        let layers = 4;
+        let points: String = (0..layers)
+            .flat_map(|z| (0..n).map(move |k| (z, (f64::from(k) * std::f64::consts::TAU / f64::from(n)).sin_cos())))
+            .map(|(z, (sine, cosine))| format!("{cosine} {sine} {z}\n"))
+            .collect();
+        // The bases of the second prism begin at another corner, and the last is listed before it.
+        let prism = |layer: i32, first: i32| {
+            let base =
+                |layer: i32| (0..n).map(|k| (layer * n + (k + first) % n).to_string()).collect::<Vec<_>>().join(" ");
+            format!("{} {} {}\n", 2 * n, base(layer), base(layer + 1))
+        };
+        let cells = prism(0, 0) + &prism(1, 2) + &prism(2, 1);
+        let text = format!(
+            "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n{points}CELLS 3 {}\n{cells}\
+             CELL_TYPES 3\n{cell_type}\n{cell_type}\n{cell_type}\n",
+            layers * n,
+            3 * (2 * n + 1)
+        );
+        let source = parse(text.as_bytes(), "vtk").unwrap();
+        assert_eq!(source.annotations.remarks, [remark]);
+        let mesh = Mesh::resolve(&source, &[], 1.0).unwrap();
+        assert_eq!((mesh.cell_count(), mesh.quality.pieces, mesh.reversed), (6, Some(1), 0));
+        assert_eq!(mesh.quality.hanging.unwrap_or(0), 0);
+        let volume = content(&mesh);
+        let expected = 3.0 * 0.5 * f64::from(n) * (std::f64::consts::TAU / f64::from(n)).sin();
+        assert!((volume - expected).abs() < 1e-12, "{volume}, {expected}");
+    }
+}
+
+/// Middle nodes that a card leaves out are those of a neighbour on the same edge, or are made halfway along it, once for two elements.
+#[test]
+fn middle_nodes_that_cards_of_nastran_leave_out_are_made() {
+    let points = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,2.,0.,0.\nGRID,6,,2.,1.,0.\nGRID,7,,3.,0.,0.\nGRID,8,,3.,1.,0.\n\
+                  GRID,11,,.5,0.,0.\nGRID,12,,1.,.6,0.\nGRID,13,,1.5,0.,0.\n";
+    let cells = "CQUAD8,1,1,1,2,3,4,11,12\nCQUAD8,2,1,2,5,6,3,13\nCQUAD8,3,1,5,7,8,6,,9\nGRID,9,,3.,.5,0.\n";
+    let source = parse(format!("{points}{cells}").as_bytes(), "bdf").unwrap();
+    let said = "3 elements lack some of the middle nodes: 6 were made halfway between the ends of their edges, and 2 are those of other elements";
+    assert!(source.annotations.remarks.iter().any(|remark| remark == said), "{:?}", source.annotations.remarks);
+    let mesh = Mesh::resolve(&source, &[], 1.0).unwrap();
+    assert_eq!((mesh.cell_count(), mesh.point_count(), mesh.quality.pieces), (3, 18, Some(1)));
+    let of = |cell: usize| mesh.blocks[0].cell(cell).iter().map(|&p| mesh.point(p).to_vec()).collect::<Vec<_>>();
+    assert_eq!(of(0)[4..], [[0.5, 0.0], [1.0, 0.6], [0.5, 1.0], [0.0, 0.5]]);
+    assert_eq!(of(1)[4..], [[1.5, 0.0], [2.0, 0.5], [1.5, 1.0], [1.0, 0.6]]);
+    let solid = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\nGRID,5,,.5,0.,0.\nCTETRA,1,1,1,2,3,4,5\n";
+    let mesh = Mesh::resolve(&parse(solid.as_bytes(), "bdf").unwrap(), &[], 1.0).unwrap();
+    assert_eq!((mesh.blocks[0].element.name.as_str(), mesh.point_count()), ("tet10", 10));
 }

@@ -71,10 +71,10 @@ fn the_figure_of_a_refusal_is_the_least_that_would_do() {
     assert!(!String::from_utf8_lossy(&found.stderr).contains("factorised instead"));
 }
 
-/// The factor with pivots of a network that is not positive definite takes several times as much as a Cholesky factor.
+/// The factor with pivots of a network that is not positive definite takes as much as a Cholesky factor; L and U do not fit here.
 #[cfg(target_os = "linux")]
 #[test]
-fn an_indefinite_network_keeps_its_status_where_its_factor_does_not_fit() {
+fn the_factor_of_an_indefinite_network_fits_where_that_of_the_body_does() {
     let folder = TempDir::new().unwrap();
     let text = scene(16, "", "[solver]\nmethod = \"cholesky\"")
         .replace("size = [0.02, 0.02, 0.02]", "size = [0.02, 0.02, 0.002]");
@@ -83,12 +83,10 @@ fn an_indefinite_network_keeps_its_status_where_its_factor_does_not_fit() {
     let found = program(folder.path(), limit, &["run", "scene.toml", "--out", "out"]);
     let text = String::from_utf8_lossy(&found.stderr).into_owned() + &String::from_utf8_lossy(&found.stdout);
     assert!(found.status.success(), "{text}");
-    let words = [
-        "indefinite, a motion releases energy",
-        "no displacements are given (the factor of the stiffness",
-        " GB of memory",
-    ];
-    assert!(words.iter().all(|word| text.contains(word)), "{text}");
+    assert!(text.contains("indefinite, a motion releases energy"), "{text}");
+    assert!(!text.contains("no displacements are given"), "{text}");
+    let report = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
+    assert!(report.contains("\"ldl\""), "{text}");
 }
 
 /// Where no estimate saw it coming, the program ends as with every other error.

@@ -13,6 +13,8 @@ reader; it runs as a program of its own, so that a crash ends one file. A row of
     told         the other differences
     left_out     cells of fewer dimensions than the body that are in no group
     unfitted     why a mesh that was read could not be fitted, so that its volume was not compared
+
+broken.csv beside this script has the files that are damaged or state no body, each with the reason; their refusals are counted apart.
 """
 import argparse
 import collections
@@ -158,19 +160,31 @@ def row_of(program, files, entry):
     return row
 
 
-def summary(rows):
+def summary(rows, broken):
     """The tables at the end."""
-    print(f"\n{'format':12}{'files':>7}{'read':>7}{'refused':>9}{'of them with a body':>21}{'silent differences':>20}{'unchecked':>11}")
+
+    def is_body(row):
+        return row["holds"] == "yes" and (row["project"], row["path"]) not in broken
+
+    heads = ["files", "read", "refused", "broken", "with a body", "of them refused", "silent differences", "unchecked"]
+    widths = [max(7, len(head) + 2) for head in heads]
+    print(f"\n{'format':12}" + "".join(f"{head:>{width}}" for head, width in zip(heads, widths)))
     for name in [*sorted({row["format"] for row in rows}), "all"]:
         of = [row for row in rows if name in ("all", row["format"])]
         refused = [row for row in of if row["outcome"] == "refused"]
-        counts = [len(of), len(of) - len(refused), len(refused), sum(row["holds"] == "yes" for row in refused),
-                  sum(bool(row.get("silent")) for row in of), sum(row["holds"].startswith("unknown") for row in of)]  # fmt: skip
-        print(f"{name:12}" + "".join(f"{count:>{width}}" for count, width in zip(counts, (7, 7, 9, 21, 20, 11))))
-    print("\nrefusals by kind, of files with a body")
-    kinds = collections.Counter((row["format"], row["kind"]) for row in rows if row["outcome"] == "refused" and row["holds"] == "yes")
+        counts = [len(of), len(of) - len(refused), len(refused), sum((row["project"], row["path"]) in broken for row in refused),
+                  sum(map(is_body, of)), sum(map(is_body, refused)), sum(bool(row.get("silent")) for row in of),
+                  sum(row["holds"].startswith("unknown") for row in of)]  # fmt: skip
+        print(f"{name:12}" + "".join(f"{count:>{width}}" for count, width in zip(counts, widths)))
+    bodies, refused = sum(map(is_body, rows)), [row for row in rows if row["outcome"] == "refused" and is_body(row)]
+    print(f"\n{len(refused)} of {bodies} files with a body are refused, {100 * len(refused) / max(bodies, 1):.1f} %")
+    kinds = collections.Counter((row["format"], row["kind"]) for row in refused)
     for (name, kind), count in kinds.most_common():
         print(f"{count:5}  {name}: {kind}")
+    print("\nbroken files by reason")
+    reasons = collections.Counter(broken[row["project"], row["path"]] for row in rows if (row["project"], row["path"]) in broken)
+    for reason, count in reasons.most_common():
+        print(f"{count:5}  {reason}")
 
 
 def main():
@@ -193,7 +207,8 @@ def main():
             rows.append(row)
             table.writerow(row)
             file.flush()
-    summary(rows)
+    broken = {(row["project"], row["path"]): row["reason"] for row in csv.DictReader((FOLDER / "broken.csv").open())}
+    summary(rows, broken)
 
 
 if __name__ == "__main__":

@@ -459,11 +459,11 @@ def nastran_cards(path):
 
 
 ABAQUS = [
-    (r"(D?C3D4|F3D4)", "tet4"), (r"D?C3D10", "tet10"), (r"(D?C3D8|F3D8|CSS8|SC8)", "hex8"), (r"D?C3D20", "hex20"), (r"D?C3D27", "hex27"),
-    (r"(D?C3D6|SC6|F3D6)", "wedge6"), (r"D?C3D15", "wedge15"), (r"C3D5", "pyramid5"), (r"C3D13", "pyramid13"),
-    (r"(CPS|CPE|CAX|DC2D|DCAX|S|STRI|M3D|SFM3D|R3D|CPEG|DS|AC2D)3", "tri3"),
-    (r"(CPS|CPE|CAX|DC2D|DCAX|S|M3D|SFM3D|R3D|CPEG|DS|AC2D)4", "quad4"), (r"(CPS|CPE|CAX|DC2D|S|M3D|SFM3D|CPEG)6|STRI65", "tri6"),
-    (r"(CPS|CPE|CAX|DC2D|DCAX|S|M3D|SFM3D|CPEG)8", "quad8"), (r"(M3D9|S9)", "quad9"), (r"(T[23]D2|B[23]1|B[23]3|D)", "bar2"),
+    (r"D?C3D4", "tet4"), (r"D?C3D10", "tet10"), (r"(D?C3D8|CSS8|SC8)", "hex8"), (r"D?C3D20", "hex20"), (r"D?C3D27", "hex27"),
+    (r"(D?C3D6|SC6)", "wedge6"), (r"D?C3D15", "wedge15"), (r"C3D5", "pyramid5"), (r"C3D13", "pyramid13"),
+    (r"(CPS|CPE|DC2D|S|STRI|M3D|SFM3D|R3D|CPEG|DS|AC2D)3", "tri3"),
+    (r"(CPS|CPE|DC2D|S|M3D|SFM3D|R3D|CPEG|DS|AC2D)4", "quad4"), (r"(CPS|CPE|DC2D|S|M3D|SFM3D|CPEG)6|STRI65", "tri6"),
+    (r"(CPS|CPE|DC2D|S|M3D|SFM3D|CPEG)8", "quad8"), (r"(M3D9|S9)", "quad9"), (r"(T[23]D2|B[23]1|B[23]3)", "bar2"),
     (r"(T[23]D3|B[23]2)", "bar3"),
 ]  # fmt: skip
 
@@ -553,8 +553,8 @@ def abaqus(path):
 
 
 def abaqus_kind(name):
-    """The kind of an element type; None for one without a body."""
-    if re.match(r"MASS|ROTARYI|SPRING|DASHPOT|CONN|GAP|DCOUP|JOINT|ITS|DRAG|RB|R2D2|U\d|VU\d|HEATCAP", name):
+    """The kind of an element type; None for one without a solid body: CalculiX's D and F3D4 to F3D8 are of flows."""
+    if re.match(r"D$|F3D\d|MASS|ROTARYI|SPRING|DASHPOT|CONN|GAP|DCOUP|JOINT|ITS|DRAG|RB|R2D2|U\d|VU\d|HEATCAP", name):
         return None
     for pattern, kind in ABAQUS:
         if re.fullmatch(f"(?:{pattern})[A-Z]*5?", name):

@@ -7,14 +7,16 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Groups whose matrices are in memory at a time.
-const BATCH: usize = 8192;
+/// Entries of matrices that are in memory at a time, about: 8 MB, more than all threads need to have work, and little beside the matrix of a body.
+const BATCH: usize = 1 << 20;
+/// Groups that one thread works out at a time.
+const PART: usize = 64;
 
 impl<const D: usize> BlockMatrix<D, D> {
     /// `Σ_g K_g`: `matrix(groups, entries)` fills `entries`, zero before, with the symmetric matrices of some groups, one after the other,
     /// each `[nodes · D × nodes · D]`, or stops all with an error.
     ///
-    /// The matrices of some thousand groups at a time are worked out on all threads; then each thread adds them into rows of its own.
+    /// The matrices of some groups at a time are worked out on all threads; then each thread adds them into rows of its own.
     /// Each block is a sum in the order of the groups, the same on any number of threads.
     ///
     /// # Errors
@@ -40,13 +42,20 @@ impl<const D: usize> BlockMatrix<D, D> {
     ) -> Result<(), E> {
         let pattern = self.pattern.clone();
         let threads = rayon::current_num_threads();
-        for first in (0..groups.len()).step_by(BATCH) {
-            let batch: Vec<usize> = (first..(first + BATCH).min(groups.len())).collect();
+        let size = |group: usize| (groups.of(group).len() * D).pow(2);
+        let mut end = 0;
+        while end < groups.len() {
+            let first = end;
+            let mut entries = 0;
+            while end < groups.len() && entries < BATCH {
+                entries += size(end);
+                end += 1;
+            }
+            let batch: Vec<usize> = (first..end).collect();
             let parts: Vec<Result<Vec<f64>, E>> = batch
-                .par_chunks(64)
+                .par_chunks(PART)
                 .map(|part| {
-                    let sizes = part.iter().map(|&group| (groups.of(group).len() * D).pow(2));
-                    let mut entries = vec![0.0; sizes.sum()];
+                    let mut entries = vec![0.0; part.iter().map(|&group| size(group)).sum()];
                     matrix(part[0]..part[0] + part.len(), &mut entries)?;
                     Ok(entries)
                 })
@@ -70,7 +79,7 @@ impl<const D: usize> BlockMatrix<D, D> {
             }
             pieces.into_par_iter().for_each(|(rows, values)| {
                 let before = pattern.starts[rows.start];
-                for (part, entries) in batch.chunks(64).zip(&parts) {
+                for (part, entries) in batch.chunks(PART).zip(&parts) {
                     let mut offset = 0;
                     for &group in part {
                         let nodes = groups.of(group);

@@ -1,4 +1,4 @@
-//! Cholesky factorisation of a sparse matrix, with checks of the memory that it needs.
+//! Cholesky factorisation of a sparse matrix, and that with pivots of one that is symmetric alone, with checks of the memory that they need.
 
 use super::ordering::{Graph, Places};
 use crate::error::{Error, ErrorKind, Result};
@@ -6,10 +6,10 @@ use crate::memory;
 use crate::model::ADVICE;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::solvers::LltError;
-use faer::perm::Perm;
+use faer::perm::{Perm, PermRef};
 use faer::prelude::MatMut;
 use faer::sparse::linalg::cholesky::{
-    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Side, get_global_parallelism};
@@ -24,6 +24,18 @@ pub(super) struct Analysis(Arc<SymbolicCholesky<usize>>);
 pub struct Cholesky {
     analysis: Analysis,
     values: Vec<f64>,
+}
+
+/// The factors `L` and `B` of `P A Pᵀ = L B Lᵀ` with blocks of one and two rows in B (Bunch & Kaufman, Math. Comp. 31, 1977), of a matrix that is not
+/// positive definite. Pivots are sought among columns that are eliminated together, so that the factor has the entries of a Cholesky factor; where
+/// none of them will do, it has few digits.
+#[derive(Debug, Clone)]
+pub struct Pivoted {
+    analysis: Analysis,
+    values: Vec<f64>,
+    subdiagonal: Vec<f64>,
+    /// The order of the pivots, and its inverse.
+    order: [Vec<usize>; 2],
 }
 
 impl Analysis {
@@ -105,6 +117,60 @@ impl Analysis {
             Ok(_) => Ok(Some(Cholesky { analysis: self.clone(), values })),
             Err(LltError::NonPositivePivot { .. }) => Ok(None),
         }
+    }
+}
+
+impl Analysis {
+    /// The factors with pivots, whatever digits they have.
+    ///
+    /// # Errors
+    /// They do not fit into memory.
+    pub fn pivoted(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Pivoted> {
+        let what = "the factor of the stiffness";
+        let par = get_global_parallelism();
+        let scratch = self.0.factorize_numeric_intranode_lblt_scratch::<f64>(par, Default::default());
+        let rows = self.0.nrows();
+        memory::require(
+            what,
+            8 * (self.0.len_val() + 3 * rows) as u64 + scratch.unaligned_bytes_required() as u64,
+            ADVICE,
+        )?;
+        let full = || out_of_memory(what, FaerError::OutOfMemory);
+        let mut values = Vec::new();
+        values.try_reserve_exact(self.0.len_val()).map_err(|_| full())?;
+        values.resize(self.0.len_val(), 0.0);
+        let mut room = MemBuffer::try_new(scratch).map_err(|_| full())?;
+        let mut subdiagonal = vec![0.0; rows];
+        let mut order = [vec![0; rows], vec![0; rows]];
+        let [forward, inverse] = &mut order;
+        self.0.factorize_numeric_intranode_lblt(
+            &mut values,
+            &mut subdiagonal,
+            forward,
+            inverse,
+            matrix,
+            Side::Lower,
+            par,
+            MemStack::new(&mut room),
+            Default::default(),
+        );
+        Ok(Pivoted { analysis: self.clone(), values, subdiagonal, order })
+    }
+}
+
+impl Pivoted {
+    pub(super) fn rows(&self) -> usize {
+        self.analysis.0.nrows()
+    }
+
+    pub(super) fn solve(&self, x: MatMut<'_, f64>) {
+        let Analysis(symbolic) = &self.analysis;
+        let par = get_global_parallelism();
+        let mut room = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(x.ncols(), par));
+        let [forward, inverse] = &self.order;
+        let order = PermRef::new_checked(forward, inverse, forward.len());
+        let factor = IntranodeLbltRef::new(symbolic, &self.values, &self.subdiagonal, order);
+        factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
     }
 }
 

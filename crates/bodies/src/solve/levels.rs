@@ -51,7 +51,7 @@ enum Hierarchy {
 /// How linear equations were solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Solved {
-    /// The equations were solved by `cholesky`, `lu` or `multigrid`.
+    /// The equations were solved by `cholesky`, `ldl`, `lu` or `multigrid`.
     pub method: String,
     /// This number of displacements is not held.
     pub unknowns: usize,

@@ -62,6 +62,20 @@ impl CellList {
         self.types[cell]
     }
 
+    /// Changes the numbers of the nodes of a cell.
+    ///
+    /// # Panics
+    /// There are more or fewer.
+    pub fn set_nodes(&mut self, cell: usize, nodes: &[u64]) {
+        let range = self.range(cell);
+        self.nodes[range].copy_from_slice(nodes);
+    }
+
+    /// The numbers of the nodes of a cell.
+    pub fn nodes(&self, cell: usize) -> &[u64] {
+        &self.nodes[self.range(cell)]
+    }
+
     fn range(&self, cell: usize) -> std::ops::Range<usize> {
         cell.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[cell]
     }

@@ -43,6 +43,7 @@ mod numpy;
 mod outside;
 mod overlaps;
 mod places;
+mod polygons;
 mod polytope;
 mod quality;
 mod range;

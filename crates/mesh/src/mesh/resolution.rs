@@ -346,7 +346,11 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
         let expected =
             format!("{} nodes in {} dimensions as in {}", element.nodes(), element.dimension(), element.name);
         let found = format!("{} nodes in {}", block.nodes_per_cell, block.dimension);
-        return Err(Error::expected("cells", expected, found));
+        let way = "; polygons of more corners are read where they are flat: ParaView's filter Triangulate makes triangles of others";
+        let error = Error::expected("cells", expected, found);
+        // The number of polygons in VTK.
+        let is_polygon = matches!(format, Format::Vtk) && number == 7;
+        return Err(if is_polygon { error.followed_by(way) } else { error });
     }
     Ok(element)
 }

@@ -66,6 +66,10 @@ impl Deck {
                 self.system.extend(reals(lines, line)?);
                 Block::System
             }
+            Block::Generation(mut generation) => {
+                self.read_generation(lines, line, &mut generation)?;
+                Block::Generation(generation)
+            }
             Block::Datum(datum) => {
                 self.sections.read(datum, line);
                 Block::Datum(datum)
@@ -91,8 +95,13 @@ impl Deck {
             let frame = self.frame.unwrap_or(crate::mesh::frame::BASIC);
             point = Frame { system, ..frame }.place(point);
         }
-        self.model.listing.node_numbers.push(number);
-        self.model.listing.points.push(point);
+        if self.made > 0 {
+            // A node that a keyword has made is moved.
+            self.model.put_node(number, point);
+        } else {
+            self.model.listing.node_numbers.push(number);
+            self.model.listing.points.push(point);
+        }
         if let Some(set) = set {
             self.model.node_sets.sets[set].numbers.push(number);
         }

@@ -1,5 +1,6 @@
 //! The lines of an input file, keyword by keyword.
 
+use super::generation::Generation;
 use super::keyword::Keyword;
 use super::model::{Instance, Model, Surface};
 use super::sections::{Datum, Sections};
@@ -17,7 +18,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// surfaces groups of sides. Of several instances the groups have the name of the instance before their own.
 ///
 /// # Errors
-/// The file has an element type without an element here, nodes or elements that are generated, or it is damaged.
+/// The file has an element type without an element here, nodes or elements that are made in a way that is not read, or it is damaged.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
     let mut deck = Deck::default();
@@ -57,6 +58,8 @@ pub(super) enum Block {
     Instance,
     System,
     Datum(Datum),
+    /// Nodes or elements that are made of others.
+    Generation(Generation),
 }
 
 pub(super) struct Element {
@@ -91,6 +94,8 @@ pub(super) struct Deck {
     pub(super) annotations: Annotations,
     /// How many elements each type has that is something else here, and their dimension.
     pub(super) stand_ins: BTreeMap<String, (usize, usize)>,
+    /// How many nodes and elements keywords have made.
+    pub(super) made: usize,
 }
 
 /// The keywords that prescribe what is not taken from a file.
@@ -154,15 +159,16 @@ impl Deck {
             "ELEMENT" => self.open_elements(lines, keyword)?,
             "NSET" => {
                 let set = self.model.node_sets.named(keyword.required(lines, "NSET")?, line);
+                self.model.node_sets.sets[set].is_unsorted |= keyword.has("UNSORTED");
                 if let Some(name) = keyword.value("ELSET").filter(|name| !name.is_empty()) {
                     let of = self.known_elements(lines, name)?;
                     self.model.node_sets.sets[set].of_elements.push(of);
                 }
-                self.block = Block::NodeSet(set, keyword.has("GENERATE"));
+                self.block = Block::NodeSet(set, keyword.says("GENERATE"));
             }
             "ELSET" => {
                 let set = self.model.element_sets.named(keyword.required(lines, "ELSET")?, line);
-                self.block = Block::ElementSet(set, keyword.has("GENERATE"));
+                self.block = Block::ElementSet(set, keyword.says("GENERATE"));
             }
             "SURFACE" => {
                 let kind = keyword.value("TYPE").unwrap_or("ELEMENT").to_ascii_uppercase();
@@ -215,9 +221,10 @@ impl Deck {
                 self.sections.section(value("ELSET"), value("MATERIAL"));
                 self.block = Block::Datum(Datum::Size);
             }
-            "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" | "SUBSTRUCTURE" | "TRANSFORM SYSTEM" => {
-                let problem = "expected nodes and elements with their numbers, found a keyword that makes them: let the program that wrote \
-                               the file write them one by one";
+            "NGEN" | "NFILL" | "NCOPY" | "ELGEN" | "ELCOPY" => self.block = self.open_generation(lines, keyword)?,
+            "NMAP" | "SUBSTRUCTURE" | "TRANSFORM SYSTEM" => {
+                let problem = "expected nodes and elements with their numbers, found a keyword that makes or moves them: let the program that \
+                               wrote the file write them one by one";
                 return Err(lines.unsupported(problem));
             }
             _ => {}
@@ -241,6 +248,7 @@ impl Deck {
         };
         let set = keyword.value("ELSET").filter(|_| !self.is_apart());
         let set = set.map(|name| self.model.element_sets.named(name, lines.number()));
+        self.model.begin_type(&name.to_ascii_uppercase(), 0);
         self.block =
             Block::Elements(Element { cell_type, type_name: name.to_ascii_uppercase(), set, numbers: Vec::new() });
         Ok(())
@@ -263,6 +271,7 @@ impl Deck {
                 Err(lines.fault(format!("expected {expected}, found {} before this line", numbers.len() - 1)))
             }
             Block::System => self.close_system(lines),
+            Block::Generation(generation) => self.close_generation(lines, generation),
             _ => Ok(()),
         }
     }
@@ -280,9 +289,9 @@ impl Deck {
             return Err(lines.fault("the file ends before *NODE"));
         }
         let [node_names, element_names, surface_names] = self.model.names(self.instances.len());
-        let Model { listing, node_sets, element_sets, surfaces, left_out, shells } = self.model;
+        let Model { listing, node_sets, element_sets, surfaces, left_out, shells, .. } = self.model;
         // Each instance has as many members again as its part lists.
-        let length = length.saturating_mul(self.instances.len().max(1));
+        let length = length.saturating_add(self.made).saturating_mul(self.instances.len().max(1));
         let mut resolved = listing.resolve(length, "element")?;
         // A line for a range may stand for as many members as it likes: what a deck may name grows with its length.
         let most = (1 << 20) + 2 * length;

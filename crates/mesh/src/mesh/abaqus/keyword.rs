@@ -45,6 +45,11 @@ impl Keyword {
         self.value(parameter).is_some()
     }
 
+    /// Whether a parameter without a value is there, whole or as its first letters, of which three are enough.
+    pub fn says(&self, parameter: &str) -> bool {
+        self.parameters.iter().any(|(key, _)| key.len() >= 3 && parameter.starts_with(key.as_str()))
+    }
+
     /// The value of a parameter that the keyword must have.
     ///
     /// # Errors

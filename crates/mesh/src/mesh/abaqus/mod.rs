@@ -2,8 +2,10 @@
 
 mod data;
 mod deck;
+mod generation;
 mod include;
 mod keyword;
+mod made;
 mod model;
 mod placement;
 mod sections;

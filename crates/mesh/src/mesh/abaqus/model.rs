@@ -4,7 +4,7 @@ use super::placement::place;
 use super::sets::{On, Patch, Sets};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::listing::Listing;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// What the lines of a part, of an instance or of a flat file state.
 #[derive(Default, Clone)]
@@ -17,6 +17,25 @@ pub(super) struct Model {
     pub left_out: HashSet<u64>,
     /// The numbers of elements of types of shells and membranes, whose first two sides are their faces.
     pub shells: HashSet<u64>,
+    nodes: Places,
+    cells: Places,
+    /// The first cell of each type name, in the order of the cells.
+    type_names: Vec<(usize, String)>,
+}
+
+/// Where the numbers of a growing list are, as far as they have been asked for.
+#[derive(Default, Clone)]
+struct Places {
+    places: HashMap<u64, usize>,
+    seen: usize,
+}
+
+impl Places {
+    fn find(&mut self, numbers: &[u64], number: u64) -> Option<usize> {
+        self.places.extend(numbers.iter().enumerate().skip(self.seen).map(|(place, &number)| (number, place)));
+        self.seen = numbers.len();
+        self.places.get(&number).copied()
+    }
 }
 
 /// A surface by its patches.
@@ -38,6 +57,40 @@ pub(super) struct Instance {
 }
 
 impl Model {
+    /// The place of the node with this number.
+    pub fn node(&mut self, number: u64) -> Option<usize> {
+        self.nodes.find(&self.listing.node_numbers, number)
+    }
+
+    /// The place of the cell with this number.
+    pub fn cell(&mut self, number: u64) -> Option<usize> {
+        self.cells.find(&self.listing.cells.numbers, number)
+    }
+
+    /// Adds a node, or moves the one of this number.
+    pub fn put_node(&mut self, number: u64, point: [f64; 3]) {
+        match self.node(number) {
+            Some(place) => self.listing.points[place] = point,
+            None => {
+                self.listing.node_numbers.push(number);
+                self.listing.points.push(point);
+            }
+        }
+    }
+
+    /// Says the type of the last `added` cells and of those that follow.
+    pub fn begin_type(&mut self, name: &str, added: usize) {
+        if self.type_names.last().is_none_or(|(_, last)| last != name) {
+            self.type_names.push((self.listing.cells.len() - added, name.to_string()));
+        }
+    }
+
+    /// The type of a cell as the file names it.
+    pub fn type_name(&self, cell: usize) -> &str {
+        let after = self.type_names.partition_point(|(first, _)| *first <= cell);
+        after.checked_sub(1).map_or("", |of| &self.type_names[of].1)
+    }
+
     /// Adds an instance of a part, where its lines put it. The numbers of the first stay, those of others follow.
     ///
     /// # Errors

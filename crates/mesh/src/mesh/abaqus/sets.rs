@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::indices::Indices;
 use crate::mesh::listing::missing;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Sets of one kind by name.
 #[derive(Default, Clone)]
@@ -27,6 +27,8 @@ pub(super) struct Set {
     pub sets: Vec<usize>,
     /// Indices of sets of elements whose nodes belong to this set.
     pub of_elements: Vec<usize>,
+    /// Whether its numbers keep the order of the file where it bounds what a keyword makes.
+    pub is_unsorted: bool,
 }
 
 impl Sets {
@@ -42,6 +44,25 @@ impl Sets {
 
     pub fn find(&self, name: &str) -> Option<usize> {
         self.places.get(&name.to_uppercase()).copied()
+    }
+
+    /// The numbers that a set has so far, in the order in which keywords that make nodes go through them: ascending, or as they are listed. `numbers`
+    /// are those that exist, for ranges. `None` if an unsorted set is not one list.
+    pub fn so_far(&self, set: usize, numbers: &[u64]) -> Option<Vec<u64>> {
+        let of = &self.sets[set];
+        if of.is_unsorted {
+            return (of.ranges.is_empty() && of.sets.is_empty()).then(|| of.numbers.clone());
+        }
+        let (mut found, mut waiting, mut met) = (BTreeSet::new(), vec![set], HashSet::from([set]));
+        while let Some(set) = waiting.pop() {
+            let of = &self.sets[set];
+            found.extend(&of.numbers);
+            for &[from, to, step] in &of.ranges {
+                found.extend(numbers.iter().filter(|&&n| from <= n && n <= to && (n - from).is_multiple_of(step)));
+            }
+            waiting.extend(of.sets.iter().filter(|&&other| met.insert(other)));
+        }
+        Some(found.into_iter().collect())
     }
 
     /// Adds the sets of an instance, whose names begin with its own, and whose numbers grow by so much.

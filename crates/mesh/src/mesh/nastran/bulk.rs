@@ -2,6 +2,7 @@
 
 use super::card::Card;
 use super::cells::{Other, element, other, stand_in};
+use super::middles::{self, LACKING};
 use super::properties::Properties;
 use super::systems::{Grid, Systems};
 use crate::error::{Error, ErrorKind, Result};
@@ -56,6 +57,8 @@ struct Bulk {
     stand_ins: BTreeMap<String, (usize, usize)>,
     /// The property of each cell.
     properties: Vec<Option<u64>>,
+    /// The cells that lack middle nodes.
+    partial: Vec<usize>,
     sets: Vec<SetCard>,
 }
 
@@ -116,6 +119,10 @@ impl Bulk {
                 }
                 if let Some(found) = element(card)? {
                     let dimension = found.cell_type.dimension();
+                    let corners = found.nodes.len() - found.cell_type.middles().len();
+                    if found.nodes[corners..].contains(&LACKING) {
+                        self.partial.push(self.listing.cells.len());
+                    }
                     self.listing.cells.push(card.line, found.number, found.cell_type, found.nodes);
                     self.properties.push(found.property);
                     if stand_in(name).is_some() {
@@ -190,6 +197,7 @@ impl Bulk {
         if self.listing.points.is_empty() {
             return Err(Error::new("the file ends before a GRID card").of_kind(ErrorKind::Syntax));
         }
+        middles::complete(&mut self.listing, &self.partial, &mut self.annotations);
         let mut resolved = self.listing.resolve(length, "element")?;
         let mut of_property: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
         for (cell, property) in self.properties.iter().enumerate() {

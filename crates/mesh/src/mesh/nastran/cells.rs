@@ -1,6 +1,7 @@
 //! The element cards of Nastran, and their node orders.
 
 use super::card::Card;
+use super::middles::LACKING;
 use crate::error::{ErrorKind, Result};
 use crate::mesh::lines::whole;
 use crate::mesh::polytope::CellType;
@@ -115,14 +116,14 @@ pub(super) struct ElementCard {
     /// The number of its property.
     pub property: Option<u64>,
     pub cell_type: CellType,
-    /// In the order of VTK.
+    /// In the order of VTK; [`LACKING`] stands for middle nodes that the card leaves out.
     pub nodes: Vec<u64>,
 }
 
 /// The element of the card; `None` for another card.
 ///
 /// # Errors
-/// The card has a wrong field, or some of its middle nodes alone.
+/// The card has a wrong field.
 pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
     let Some(shape) = SHAPES.iter().find(|shape| shape.name == card.name.trim_end_matches('_')) else {
         return Ok(None);
@@ -151,14 +152,11 @@ pub(super) fn element(card: &Card) -> Result<Option<ElementCard>> {
     }
     let mut cell_type = shape.corners;
     if let Some(full) = shape.full.filter(|_| given > 0) {
-        if given < middles {
-            let expected = format!("no middle nodes, or all {middles}");
-            return Err(card.unsupported(&expected, &format!("{given} in element {number}")));
-        }
         cell_type = full;
         for index in start..start + middles {
-            let node = whole(card.field(index));
-            nodes.push(node.ok_or_else(|| card.expected("the number of a grid point", card.field(index)))?);
+            let field = card.field(index);
+            let node = if field.is_empty() { Some(LACKING) } else { whole(field) };
+            nodes.push(node.ok_or_else(|| card.expected("the number of a grid point", field))?);
         }
         let order: &[usize] = match cell_type {
             CellType::HEX20 => &HEX20,

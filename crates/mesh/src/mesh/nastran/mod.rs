@@ -4,6 +4,7 @@ mod bulk;
 mod card;
 mod cells;
 mod include;
+mod middles;
 mod properties;
 mod systems;
 

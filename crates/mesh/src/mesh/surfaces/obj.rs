@@ -10,7 +10,7 @@ use crate::mesh::source::MeshSource;
 /// curves are passed over.
 ///
 /// # Errors
-/// A face has more than four corners, names a point that is not there, or the file has no points.
+/// A face of more than four corners is not flat, a face names a point that is not there, or the file has no points.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
     let mut points: Vec<[f64; 3]> = Vec::new();
@@ -54,9 +54,9 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
                         return Err(lines.expected("a line of two points or more", &nodes.len().to_string()));
                     }
                     nodes.windows(2).for_each(|ends| {
-                        faces.push(ends);
+                        faces.push(ends, &points);
                     });
-                } else if nodes.len() < 3 || !faces.push(&nodes) {
+                } else if nodes.len() < 3 || !faces.push(&nodes, &points) {
                     let found = format!("{} corners", nodes.len());
                     return Err(lines.expected(TRIANGULATE, &found).of_kind(ErrorKind::Unsupported));
                 }

@@ -9,7 +9,7 @@ use crate::mesh::source::MeshSource;
 /// Reads an OFF file; colours, normals and texture coordinates are passed over.
 ///
 /// # Errors
-/// The file is binary, has faces with more than four corners, or is damaged or cut short.
+/// The file is binary, has faces of more than four corners that are not flat, or is damaged or cut short.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut lines = Lines::new(bytes);
     let mut first = next(&mut lines, "the word OFF")?;
@@ -38,12 +38,12 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
         let mut words = next(&mut lines, &format!("{face_count} faces, found {i}"))?;
         let corners = lines.whole(words.first().copied().unwrap_or_default(), "a number of corners")?;
         // The corners of a face may be on several lines.
-        while (words.len() as u64) <= corners.min(5) {
+        while (words.len() as u64) <= corners {
             words.extend(next(&mut lines, &format!("{corners} corners of a face, found {}", words.len() - 1))?);
         }
         let mut nodes = Vec::new();
         // Colours may follow the corners.
-        for k in 1..=corners.min(5) {
+        for k in 1..=corners {
             let word = words.get(k as usize).copied().unwrap_or_default();
             let node = lines.whole(word, "the index of a point")?;
             let known = usize::try_from(node).ok().filter(|&node| node < points.len());
@@ -51,7 +51,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
                 known.ok_or_else(|| lines.expected(&format!("an index below {point_count}"), &node.to_string()))?,
             );
         }
-        if !faces.push(&nodes) {
+        if !faces.push(&nodes, &points) {
             return Err(lines.expected(TRIANGULATE, &format!("{corners} corners")).of_kind(ErrorKind::Unsupported));
         }
     }

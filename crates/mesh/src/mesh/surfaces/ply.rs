@@ -9,7 +9,7 @@ use crate::mesh::source::MeshSource;
 /// Reads the `vertex` and `face` elements of a PLY file; other elements and properties are passed over.
 ///
 /// # Errors
-/// The file has faces with more than four corners, or is damaged or cut short.
+/// The file has faces of more than four corners that are not flat, or is damaged or cut short.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let mut reader = Reader::new(bytes);
     let elements = header(&mut reader)?;
@@ -24,7 +24,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
         reader.announce("of them", element.count);
         match element.name.as_str() {
             "vertex" => vertices(&mut reader, element, &mut points)?,
-            "face" => polygons(&mut reader, element, points.len(), &mut faces)?,
+            "face" => polygons(&mut reader, element, &points, &mut faces)?,
             _ => {
                 if element.properties.is_empty() {
                     continue;
@@ -207,7 +207,8 @@ fn vertices(reader: &mut Reader, element: &Element, points: &mut Vec<[f64; 3]>) 
     Ok(())
 }
 
-fn polygons(reader: &mut Reader, element: &Element, point_count: usize, faces: &mut Faces) -> Result<()> {
+fn polygons(reader: &mut Reader, element: &Element, points: &[[f64; 3]], faces: &mut Faces) -> Result<()> {
+    let point_count = points.len();
     let is_corners = |p: &Property| p.list.is_some() && (p.name == "vertex_indices" || p.name == "vertex_index");
     let Some(corners) = element.properties.iter().position(is_corners) else {
         return Err(reader.expected("a list vertex_indices", "none"));
@@ -220,10 +221,6 @@ fn polygons(reader: &mut Reader, element: &Element, point_count: usize, faces: &
                 continue;
             };
             let count = count.index(reader)?;
-            if !(3..=4).contains(&count) {
-                let found = format!("face {face} with {count} corners");
-                return Err(reader.expected(TRIANGULATE, &found).of_kind(ErrorKind::Unsupported));
-            }
             nodes.clear();
             for _ in 0..count {
                 let node = property.scalar.index(reader)?;
@@ -231,7 +228,10 @@ fn polygons(reader: &mut Reader, element: &Element, point_count: usize, faces: &
                 let expected = || reader.expected(&format!("an index below {point_count}"), &node.to_string());
                 nodes.push(known.ok_or_else(expected)?);
             }
-            faces.push(&nodes);
+            if nodes.len() < 3 || !faces.push(&nodes, points) {
+                let found = format!("face {face} with {count} corners");
+                return Err(reader.expected(TRIANGULATE, &found).of_kind(ErrorKind::Unsupported));
+            }
         }
         reader.count_one();
     }

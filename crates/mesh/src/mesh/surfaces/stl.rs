@@ -45,7 +45,8 @@ fn binary(facets: &[u8]) -> MeshSource {
                 f64::from(f32::from_le_bytes([facet[at], facet[at + 1], facet[at + 2], facet[at + 3]]))
             }))
         };
-        faces.push(&[0, 1, 2].map(corner));
+        let corners = [0, 1, 2].map(corner);
+        faces.push(&corners, &[]);
     }
     faces.into_source(points.points, 0)
 }
@@ -91,7 +92,7 @@ fn text(bytes: &[u8]) -> Result<MeshSource> {
                 continue;
             }
             Place::Facet if is("endfacet") && corners.len() == 3 => {
-                faces.push(&corners);
+                faces.push(&corners, &[]);
                 place = Place::Solid;
                 continue;
             }

@@ -26,6 +26,8 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
         32 => (3, 18),
         14 => (3, 5),
         27 => (3, 13),
+        15 => (3, 10),
+        16 => (3, 12),
         2 => return Some((0, None)),
         4 | 68 => return Some((1, None)),
         6 | 7 | 69 | 70 => return Some((2, None)),
@@ -38,20 +40,6 @@ pub(super) fn shape(cell_type: u8) -> Option<(usize, Option<usize>)> {
 /// Whether VTK has a cell type with this number.
 pub(super) fn is_known(cell_type: u8) -> bool {
     matches!(cell_type, 1..=16 | 21..=37 | 41 | 42 | 51..=56 | 60..=81)
-}
-
-/// The cells of which a chain of points, of lines or of triangles consists: the type of each, and its nodes.
-pub(super) fn pieces(cell_type: u8, nodes: &[usize]) -> Option<(u8, Vec<Vec<usize>>)> {
-    Some(match cell_type {
-        2 => (1, nodes.iter().map(|&node| vec![node]).collect()),
-        4 => (3, nodes.windows(2).map(<[usize]>::to_vec).collect()),
-        // Every other triangle of a strip is turned round.
-        6 => {
-            let turned = |(i, t): (usize, &[usize])| if i % 2 == 0 { t.to_vec() } else { vec![t[1], t[0], t[2]] };
-            (5, nodes.windows(3).enumerate().map(turned).collect())
-        }
-        _ => return None,
-    })
 }
 
 /// The type with the same nodes, in the same order, of a cell of Lagrange's of degree 1 or 2; those of other degrees stay.

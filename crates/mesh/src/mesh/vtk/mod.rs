@@ -2,6 +2,7 @@
 
 mod cells;
 mod compression;
+mod division;
 mod document;
 mod grid_kind;
 mod image;

@@ -1,7 +1,8 @@
 //! Pieces of an unstructured grid, and the mesh that they form.
 
-use super::cells::{pieces, plain, shape};
-use crate::error::{Error, Result};
+use super::cells::{plain, shape};
+use super::division::Division;
+use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::annotations::Annotations;
 use crate::mesh::grouping::Gather;
 use crate::mesh::numbering::NumberOrigin;
@@ -90,6 +91,7 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
     let places: HashMap<&str, usize> = arrays.iter().enumerate().map(|(i, name)| (name.as_str(), i)).collect();
     let mut points = Vec::new();
     let mut cells: Gather<Key> = Gather::new();
+    let mut division = Division::default();
     let mut nodes = Vec::new();
     for mut piece in all {
         check_lengths(&piece)?;
@@ -114,10 +116,8 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
                 continue;
             }
             let Some((_, node_count)) = shape(cell_type) else {
-                return Err(Error::new(format!(
-                    "cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown; ParaView's filter Tetrahedralize makes tetrahedra of \
-                     all cells that VTK knows"
-                )));
+                let problem = format!("cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown");
+                return Err(Error::new(format!("{problem}; {TETRAHEDRALIZE}")));
             };
             let end = usize::try_from(end).unwrap_or(usize::MAX);
             let Some(cell) = piece.connectivity.get(start..end) else {
@@ -142,8 +142,10 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
             key.2.clear();
             key.2.extend(columns.iter().map(|(&place, values)| (place, values[i])));
             start = end;
-            if let Some((cell_type, parts)) = pieces(cell_type, &nodes) {
-                for part in parts {
+            let unlike =
+                |expected| Error::new(format!("cell {i}: expected {expected}")).of_kind(ErrorKind::Unsupported);
+            if let Some(parts) = division.parts(cell_type, &nodes, &points).map_err(unlike)? {
+                for (cell_type, part) in parts {
                     (key.0, key.1) = (cell_type, part.len());
                     cells.list(&key).extend(part);
                 }
@@ -154,6 +156,7 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
             cells.list(&key).extend_from_slice(&nodes);
         }
     }
+    division.tell(&mut annotations);
     let blocks = cells.into_lists().filter_map(|((cell_type, nodes_per_cell, values), connectivity)| {
         let (dimension, _) = shape(cell_type)?;
         let groups = values.into_iter().map(|(place, value)| format!("{}={value}", arrays[place])).collect();
@@ -171,6 +174,9 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
     let origin = NumberOrigin::VtkPlace;
     Ok(MeshSource { format: Format::Vtk, origin, blocks: blocks.collect(), points, numbers, space, annotations })
 }
+
+/// The way out for cells that are not taken.
+const TETRAHEDRALIZE: &str = "ParaView's filter Tetrahedralize makes tetrahedra of all cells that VTK knows";
 
 /// The type of cells without nodes.
 const EMPTY: u8 = 0;

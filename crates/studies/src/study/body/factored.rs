@@ -124,8 +124,7 @@ impl Factored {
 }
 
 fn by_factor(factor: &Factor, system: &System, residual: f64) -> Solved {
-    let method = if factor.is_positive_definite() { "cholesky" } else { "lu" };
-    Solved { method: method.into(), unknowns: system.size(), iterations: None, residual, levels: None }
+    Solved { method: factor.method().into(), unknowns: system.size(), iterations: None, residual, levels: None }
 }
 
 /// The Cholesky factor of the equations of the finite elements.
