@@ -26,7 +26,7 @@ pub enum BlockStiffness {
 /// What solves with a stiffness, as blocks of it for each point: the levels after it, the vectors, and what is in memory while they are
 /// built. Measured in space: 33 for hexahedra, 44 for tetrahedra, and up to 110 for networks with positive constants, whose stiffness is that of few of their
 /// springs, on hexahedra of 20 nodes.
-const LEVELS: usize = 70;
+const LEVELS: usize = 62;
 
 impl BlockStiffness {
     /// Whether the stiffness of that mesh can be stored so: a mesh of the plane or of space without directors, whose points can be counted in 32 bits.
