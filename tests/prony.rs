@@ -727,6 +727,53 @@ fn measured_moduli_give_their_series() {
     }
 }
 
+/// A creep test of a series gives that series: the compliance is integrated from `∫ G(t − s) dJ(s) = 1`, of which the fit knows nothing.
+#[test]
+fn measured_compliances_give_their_series() {
+    // The creep of one term is known: J = (1 − g e^(−t/λ))/(G_0 (1 − g)) with λ = τ/(1 − g). λ is one of the times of the fit.
+    let times: Vec<f64> = (0..41).map(|i| 0.01 * 10f64.powf(i as f64 / 10.0)).collect();
+    let (share, delay, modulus) = (0.4, 1.0, 8e3);
+    let creep = |t: &f64| (1.0 - share * f64::exp(-t / delay)) / (modulus * (1.0 - share));
+    let compliances: Vec<f64> = times.iter().map(creep).collect();
+    let fitted = ModulusTest::Creep { times: &times, compliances: &compliances }.fit().unwrap();
+    assert!(fitted.error < 1e-9 && (fitted.modulus / modulus - 1.0).abs() < 1e-6, "{fitted:?}");
+    let large: Vec<&[f64; 2]> = fitted.terms.iter().filter(|[share, _]| *share > 1e-5).collect();
+    assert!(large.len() == 1 && (large[0][0] - share).abs() < 1e-5, "{fitted:?}");
+    assert!((large[0][1] / (delay * (1.0 - share)) - 1.0).abs() < 1e-5, "{fitted:?}");
+    // Several terms at any times: steps of the integral by the trapezoidal rule, which errs with their square.
+    let known = [[0.3, 0.05], [0.25, 0.7], [0.2, 6.0]];
+    let relaxed = |t: f64| known.iter().fold(1.0, |sum, [g, tau]| sum + g * f64::exp_m1(-t / tau));
+    let (step, count) = (2e-3, 4000);
+    let mut creep = vec![1.0 / relaxed(0.0)];
+    for n in 1..=count {
+        let mean = |m: usize| (relaxed(step * (n - m) as f64) + relaxed(step * (n - m + 1) as f64)) / 2.0;
+        let before: f64 = (1..n).map(|m| mean(m) * (creep[m] - creep[m - 1])).sum();
+        creep.push(creep[n - 1] + (1.0 - relaxed(step * n as f64) * creep[0] - before) / mean(n));
+    }
+    let places: Vec<usize> = (0..25).map(|i| (10f64.powf(i as f64 / 24.0 * (count as f64).log10())) as usize).collect();
+    let mut places: Vec<usize> = places.into_iter().filter(|n| *n > 0).collect();
+    places.dedup();
+    let times: Vec<f64> = places.iter().map(|n| step * *n as f64).collect();
+    let compliances: Vec<f64> = places.iter().map(|n| creep[*n] / modulus).collect();
+    let fitted = ModulusTest::Creep { times: &times, compliances: &compliances }.fit().unwrap();
+    assert!(fitted.error < 0.01, "{fitted:?}");
+    for t in &times {
+        let found = fitted.modulus * fitted.terms.iter().fold(1.0, |sum, [g, tau]| sum + g * f64::exp_m1(-t / tau));
+        assert!((found / (modulus * relaxed(*t)) - 1.0).abs() < 0.03, "{t}: {found} {}", modulus * relaxed(*t));
+    }
+    let wrong = |compliances: &[f64]| {
+        ModulusTest::Creep { times: &[1.0, 2.0, 3.0], compliances }.fit().unwrap_err().to_string()
+    };
+    for (message, pattern) in [
+        (wrong(&[1.0, 2.0]), "compliance: … found 2"),
+        (wrong(&[1.0, 2.0, 1.5]), "compliance: … rise with time, found 1.5 after 2"),
+        (wrong(&[-1.0, 2.0, 3.0]), "compliance: … 1/Pa above zero… found -1.0"),
+        (wrong(&[1.0, 2.0, 3.0]), "compliance: … at once…"),
+    ] {
+        reads(&message, pattern).unwrap();
+    }
+}
+
 /// A scene that has measured moduli moves as one that has their series; its note has the error.
 #[test]
 fn a_scene_takes_measured_moduli() {

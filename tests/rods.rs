@@ -305,6 +305,11 @@ fn scenes_have_rods_that_bend() {
         // The directors are as far from the joint as a rod is long.
         assert!((size / (0.125 * 1e-3 / twist) - 1.0).abs() < 1e-8, "{size}");
     }
+    // The nodes of a rod that twists stay where they are: errors are then those of the directors too, and not of rounding errors.
+    let folder = TempDir::new().unwrap();
+    let outcome = run(&scene(folder.path(), "bending = \"rod\"", &torque).unwrap(), &mut |_| {}).unwrap();
+    assert!(outcome.fits[0].loads[0].error.unwrap().max < 1e-6);
+    assert!(!outcome.of_loads.iter().any(|note| note.contains("held points")), "{:?}", outcome.of_loads);
     // The end is turned by 0.01 about y and kept where it is: a beam with both ends clamped and one turned.
     let turned = format!(
         "{CLAMPED}[[load]]\ngroup = \"TIP\"\ndisplacement = [\"0.01*z\", 0, \"-0.01*(x - 1)\"]\nclamp = true\n"
@@ -377,6 +382,14 @@ fn rods_in_line_have_hinges() {
             load[3 * n + 2] = force;
             let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
             let (u, _) = system.solve(&system.cholesky().unwrap().unwrap(), &load);
+            // A torque twists the end by M L/(G J), as both of its directors show: nothing of it is in the levers.
+            let torque = mesh.couples(&[n], [force, 0.0, 0.0]).unwrap();
+            let (twisted, _) = system.solve(&system.cholesky().unwrap().unwrap(), &torque);
+            for director in [3 * n + 1, 3 * n + 2] {
+                let turned = twisted[3 * director..3 * director + 3].iter().map(|u| u * u).sum::<f64>().sqrt();
+                let reach = (0..3).map(|k| (mesh.point(director)[k] - mesh.point(n)[k]).powi(2)).sum::<f64>().sqrt();
+                assert!((turned / (reach * force / stiffness()[2]) - 1.0).abs() < 1e-9, "{n}: {turned}");
+            }
             100.0 * (u[3 * n + 2] / (force / (3.0 * stiffness()[1])) - 1.0)
         })
         .collect();
@@ -393,5 +406,36 @@ fn rods_in_line_have_hinges() {
     let scene = scene(folder.path(), "density = 1000\nbending = \"rod\"", &rest).unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let network = &outcome.fits[0].network;
-    assert_eq!(network.others.iter().filter(|spring| spring.kind == SpringKind::Hinge).count(), 5 * 8);
+    assert_eq!(network.others.iter().filter(|spring| spring.kind == SpringKind::Hinge).count(), 6 * 8);
+}
+
+/// Sections of beams give a draft of the scene the area and the material of the deck, and profiles without a formula the material alone.
+#[test]
+fn drafts_take_the_sections_of_beams() {
+    let folder = TempDir::new().unwrap();
+    for (section, area) in [
+        ("*BEAM SECTION, ELSET=ALL, MATERIAL=STEEL, SECTION=CIRC\n0.01\n0, 1, 0", "0.000314"),
+        ("*BEAM SECTION, ELSET=ALL, MATERIAL=STEEL, SECTION=RECT\n0.01, 0.02\n0, 1, 0", "0.0002"),
+        ("*BEAM SECTION, ELSET=ALL, MATERIAL=STEEL, SECTION=PIPE\n0.01, 0.01\n0, 1, 0", "0.000314"),
+        ("*BEAM SECTION, ELSET=ALL, MATERIAL=STEEL, SECTION=BOX\n0.02, 0.02, 0.005, 0.005, 0.005, 0.005", "0.0003"),
+        ("*BEAM GENERAL SECTION, ELSET=ALL, MATERIAL=STEEL\n0.0005, 1e-8, 0, 1e-8, 2e-8", "0.0005"),
+        (
+            "*BEAM SECTION, ELSET=ALL, MATERIAL=STEEL, SECTION=I\n0.1, 0.1, 0.1, 0.1, 0.01, 0.01, 0.01",
+            "m^2, the cross-section\n",
+        ),
+    ] {
+        let deck = format!(
+            "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0.5\n*ELEMENT, TYPE=B31, ELSET=ALL\n1, 1, 2\n2, 2, 3\n*MATERIAL, NAME=STEEL\n*ELASTIC\n2e11, 0.3\n*DENSITY\n7850\n{section}\n"
+        );
+        std::fs::write(folder.path().join("beam.inp"), deck).unwrap();
+        let done = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"))
+            .args(["new", "beam.inp", "-o", "beam.toml"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(done.status.success());
+        let draft = std::fs::read_to_string(folder.path().join("beam.toml")).unwrap();
+        std::fs::remove_file(folder.path().join("beam.toml")).unwrap();
+        assert!(draft.contains(area) && draft.contains("7850"), "{section}: {draft}");
+    }
 }

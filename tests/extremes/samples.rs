@@ -509,6 +509,19 @@ measured = { time = [0.1, 1.0, 10.0], modulus = [3.0, 2.0, 1.0], of = "all" }
 objective = "exact"
 "#;
 
+/// In creep.
+pub const CREPT: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+[material.relaxation]
+measured = { time = [0.1, 1.0, 10.0], compliance = [1.0, 1.5, 2.0] }
+[[fit]]
+objective = "exact"
+"#;
+
 /// And over frequency.
 pub const DYNAMIC: &str = r#"
 [mesh]
@@ -604,7 +617,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 22] = [
+pub const ALL: [(&str, &str); 23] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -617,6 +630,7 @@ pub const ALL: [(&str, &str); 22] = [
     ("cavity", CAVITY),
     ("sheet", SHEET),
     ("frame", FRAME),
+    ("crept", CREPT),
     ("whole", WHOLE),
     ("coarse", COARSE),
     ("stretched", STRETCHED),

@@ -15,7 +15,7 @@ pub enum BendingSprings {
     #[default]
     Directors,
     /// One spring of each triangle on its turn from each director. Between two triangles they are a spring on the angle between both, which other programs
-    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is. Of each rod five springs on single turns, which other programs hold as well.
+    /// hold; Poisson's ratio is near −1/3 whatever that of the plate is. Of each rod six springs on single turns, which other programs hold as well.
     Hinges,
 }
 

@@ -61,7 +61,7 @@ pub(super) fn askew(mesh: &Mesh, joints: &Directors) -> Option<usize> {
 }
 
 /// What the springs of a rod with these points are by E I and G J.
-type Springs = fn(&Mesh, &[usize], [f64; 2]) -> [MeasureSpring; MEASURES];
+type Springs = fn(&Mesh, &[usize], [f64; 2]) -> Vec<MeasureSpring>;
 
 fn rods(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>, springs: Springs) -> Network {
     let mut network = Network { dimension: mesh.dimension, ..Network::default() };
@@ -88,36 +88,37 @@ fn rods(mesh: &Mesh, joints: &Directors, moduli: &CellMap<Hooke>, springs: Sprin
 ///
 /// A beam of the length l whose ends have turned by a and b from its line, in one plane, has the energy `E I/(2 l) (4 a² + 4 a b + 4 b²)`, which is
 /// `½ (3 E I/l) (a + b)² + ½ (E I/l) (a − b)²`: two springs in each of two planes, and `½ (G J/l) τ²` of the twist τ. The measures are l times these, in m, so that the constants are in N/m.
-fn bends(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSpring; MEASURES] {
+fn bends(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> Vec<MeasureSpring> {
     let x: Vec<f64> = points.iter().flat_map(|&p| mesh.point(p)).copied().collect();
     let turns = turns(&x);
     let weights = weights(&x, &turns);
     let length = mesh.rod_length(&points[..2]);
     let constants = [3.0 * bend, bend, 3.0 * bend, bend, twist].map(|stiffness| stiffness / length.powi(3));
-    std::array::from_fn(|measure| {
+    let spring = |(measure, constant): (usize, f64)| {
         let row = weights.row(measure) * length;
         let least = ROUNDING * row.amax();
         let shares = turns.iter().zip(row.iter()).filter(|(_, share)| share.abs() > least);
         let turns = Turns::new(shares.map(|(places, share)| (places.as_slice(), *share)), POINTS);
         let turns = turns.expect("the places of a rod differ, and each measure has a share");
-        MeasureSpring::turning(SpringKind::Bend, points.iter().copied().collect(), &x, turns, constants[measure])
-    })
+        MeasureSpring::turning(SpringKind::Bend, points.iter().copied().collect(), &x, turns, constant)
+    };
+    constants.into_iter().enumerate().map(spring).collect()
 }
 
 /// The springs of a rod with hinges: `½ (2 E I/l) a²` of each turn of an end about an axis of its joint, which two rods in line have as a spring `E I/l` on the angle
-/// between both, and `½ (G J/l) τ²` of the twist.
-fn single_turns(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> [MeasureSpring; MEASURES] {
+/// between both, and `½ (G J/l) τ²` of the twist, as halves on two turns: then both directors of a joint have the same torque, and their levers none.
+fn single_turns(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> Vec<MeasureSpring> {
     let x: Vec<f64> = points.iter().flat_map(|&p| mesh.point(p)).copied().collect();
     let length = mesh.rod_length(&points[..2]);
     let all = turns(&x);
-    [(0, 2.0 * bend), (1, 2.0 * bend), (3, 2.0 * bend), (4, 2.0 * bend), (INCLINED.len(), twist)].map(
-        |(place, stiffness)| {
-            let places = all[place];
-            let own: Vec<f64> = places.iter().flat_map(|&p| &x[3 * p..3 * p + 3]).copied().collect();
-            let points = places.iter().map(|&p| points[p]).collect();
-            MeasureSpring::turning(SpringKind::Hinge, points, &own, Turns::of_hinge(), stiffness / length)
-        },
-    )
+    let inclined = [0, 1, 3, 4].map(|place| (all[place], 2.0 * bend));
+    let twisted = [all[INCLINED.len()], all[INCLINED.len() + 1]].map(|places| (places, twist / 2.0));
+    let spring = |(places, stiffness): ([usize; 4], f64)| {
+        let own: Vec<f64> = places.iter().flat_map(|&p| &x[3 * p..3 * p + 3]).copied().collect();
+        let points = places.iter().map(|&p| points[p]).collect();
+        MeasureSpring::turning(SpringKind::Hinge, points, &own, Turns::of_hinge(), stiffness / length)
+    };
+    inclined.into_iter().chain(twisted).map(spring).collect()
 }
 
 /// One turn of the points of a rod.

@@ -18,6 +18,13 @@ pub enum ModulusTest<'a> {
         /// The moduli, `[times]`, Pa, falling.
         moduli: &'a [f64],
     },
+    /// A creep test: the compliance, strain over stress, at each time, s, after a stress was applied.
+    Creep {
+        /// The times, s, rising.
+        times: &'a [f64],
+        /// The compliances, `[times]`, 1/Pa, rising.
+        compliances: &'a [f64],
+    },
     /// A dynamic test: storage and loss modulus at each frequency.
     Frequencies {
         /// The frequencies `ω/2π`, Hz, rising.
@@ -36,7 +43,7 @@ pub struct FittedSeries {
     pub terms: Vec<[f64; 2]>,
     /// The modulus against a sudden strain, Pa.
     pub modulus: f64,
-    /// The root mean square of the relative errors; of complex moduli relative to their size.
+    /// The root mean square of the relative errors, of moduli or compliances as they were measured; of complex moduli relative to their size.
     pub error: f64,
 }
 
@@ -51,11 +58,12 @@ const NONE: f64 = 1e-9;
 
 impl ModulusTest<'_> {
     /// Fits `G(t) = G_∞ + Σ G_i e^(−t/τ_i)`, `G* = G_∞ + Σ G_i iωτ_i/(1 + iωτ_i)`, with G_∞, G_i ≥ 0 of the least squares of relative errors. There are
-    /// two times τ_i in each decade of the measurement, from its first time, or 1/ω, to its last.
+    /// two times τ_i in each decade of the measurement, from its first time, or 1/ω, to its last. Compliances are fitted by `J(t) = J_0 + Σ J_i (1 − e^(−t/λ_i))` with the
+    /// times λ_i, and the series of the modulus is the one that creeps so.
     ///
     /// # Errors
     /// A list has another length or a number that is not above zero (a loss may be zero), there are fewer than three rows, times or frequencies do not rise, or moduli rise with
-    /// time or fall with frequency by more than noise.
+    /// time or fall with frequency by more than noise, or compliances fall; or nothing of a compliance is there at once.
     pub fn fit(&self) -> Result<FittedSeries> {
         let (places, [first, last]) = self.checked()?;
         let count = ((last / first).log10() * PER_DECADE).ceil().max(1.0);
@@ -70,17 +78,26 @@ impl ModulusTest<'_> {
             }
         }
         let (parts, _) = solve_nonnegative(&Normal::new(gram, rhs));
-        let modulus: f64 = parts.iter().sum();
-        if !(modulus > 0.0 && modulus.is_finite()) {
+        let largest: f64 = parts.iter().sum();
+        if !(largest > 0.0 && largest.is_finite()) {
             let expected = "moduli that a series of terms above zero has";
             return Err(Error::expected("table", expected, "others").of_kind(ErrorKind::Infeasible));
         }
         let left =
             |(row, value): &(Vec<f64>, f64)| row.iter().zip(&parts).map(|(a, part)| a * part).sum::<f64>() - value;
         let squares: f64 = rows.iter().map(|row| left(row).powi(2)).sum();
-        let terms = times.iter().zip(&parts[1..]).map(|(time, part)| [part / modulus, *time]);
-        let terms = terms.filter(|[share, _]| *share > NONE).collect();
-        Ok(FittedSeries { terms, modulus, error: (squares / places.len() as f64).sqrt() })
+        let error = (squares / places.len() as f64).sqrt();
+        let own = times.iter().zip(&parts[1..]).map(|(time, part)| [part / largest, *time]);
+        let own: Vec<[f64; 2]> = own.filter(|[share, _]| *share > NONE).collect();
+        if let ModulusTest::Creep { .. } = self {
+            let at_once = parts[0] / largest;
+            if !(at_once > NONE) {
+                let expected = "a compliance of which a part is there at once, before the first time";
+                return Err(Error::expected("compliance", expected, "none").of_kind(ErrorKind::Infeasible));
+            }
+            return Ok(FittedSeries { terms: relaxing(at_once, &own), modulus: 1.0 / parts[0], error });
+        }
+        Ok(FittedSeries { terms: own, modulus: largest, error })
     }
 
     /// The rows of the least squares, each with its value, relative to the size of the modulus.
@@ -92,6 +109,11 @@ impl ModulusTest<'_> {
             ModulusTest::Relaxation { moduli, .. } => {
                 places.iter().zip(moduli).map(|(t, g)| (row(*g, 1.0, &|tau| f64::exp(-t / tau)), 1.0)).collect()
             }
+            ModulusTest::Creep { compliances, .. } => places
+                .iter()
+                .zip(compliances)
+                .map(|(t, j)| (row(*j, 1.0, &|tau| -f64::exp_m1(-t / tau)), 1.0))
+                .collect(),
             ModulusTest::Frequencies { storage, loss, .. } => {
                 let both = |(frequency, (real, imaginary)): (&f64, (&f64, &f64))| {
                     let w = TAU * frequency;
@@ -108,14 +130,16 @@ impl ModulusTest<'_> {
     /// The times or frequencies, and the first and the last relaxation time.
     fn checked(&self) -> Result<(&[f64], [f64; 2])> {
         let (name, places) = match *self {
-            ModulusTest::Relaxation { times, .. } => ("time", times),
+            ModulusTest::Relaxation { times, .. } | ModulusTest::Creep { times, .. } => ("time", times),
             ModulusTest::Frequencies { frequencies, .. } => ("frequency", frequencies),
         };
         let lists = match *self {
             ModulusTest::Relaxation { moduli, .. } => vec![("modulus", moduli)],
+            ModulusTest::Creep { compliances, .. } => vec![("compliance", compliances)],
             ModulusTest::Frequencies { storage, loss, .. } => vec![("storage", storage), ("loss", loss)],
         };
-        let rises = matches!(self, ModulusTest::Frequencies { .. });
+        let rises = !matches!(self, ModulusTest::Relaxation { .. });
+        let unit = if matches!(self, ModulusTest::Creep { .. }) { "1/Pa" } else { "Pa" };
         if places.len() < 3 {
             return Err(Error::expected(name, "three or more", places.len()));
         }
@@ -133,7 +157,7 @@ impl ModulusTest<'_> {
             if let Some(found) = list.iter().find(|x| !(is_sound(x) || *key == "loss" && **x == 0.0)) {
                 return Err(Error::expected(
                     *key,
-                    "numbers of Pa above zero, from 1e-30 to 1e30",
+                    format!("numbers of {unit} above zero, from 1e-30 to 1e30"),
                     format!("{found:?}"),
                 ));
             }
@@ -142,10 +166,40 @@ impl ModulusTest<'_> {
         let largest = list.iter().copied().fold(0.0, f64::max);
         let wrong = |pair: &&[f64]| if rises { pair[0] - pair[1] } else { pair[1] - pair[0] } > NOISE * largest;
         if let Some(pair) = list.windows(2).find(wrong) {
-            let expected = if rises { "moduli that rise with frequency" } else { "moduli that fall with time" };
+            let expected = match self {
+                ModulusTest::Relaxation { .. } => "moduli that fall with time",
+                ModulusTest::Creep { .. } => "compliances that rise with time",
+                ModulusTest::Frequencies { .. } => "moduli that rise with frequency",
+            };
             return Err(Error::expected(key, expected, format!("{} after {}", pair[1], pair[0])));
         }
         let ends = [places[0], places[places.len() - 1]];
-        Ok((places, if rises { [1.0 / (TAU * ends[1]), 1.0 / (TAU * ends[0])] } else { ends }))
+        let is_of_frequencies = matches!(self, ModulusTest::Frequencies { .. });
+        Ok((places, if is_of_frequencies { [1.0 / (TAU * ends[1]), 1.0 / (TAU * ends[0])] } else { ends }))
     }
+}
+
+/// The shares and times of the modulus whose compliance has the part `at_once` and these shares with times λ_i, which rise, of its largest.
+///
+/// With the Laplace transform, `f(s) = s J(s) = J_0 + Σ J_i/(1 + s λ_i)` and `s G(s) = 1/f(s) = G_0 − Σ G_i/(1 + s τ_i)`: each zero `s = −1/τ_i` of f is a time of the modulus, with
+/// `G_i = −τ_i/f′(s)`. f falls between its poles `−1/λ_i` from +∞ to −∞, so that there is one zero between each two and one beyond the last.
+fn relaxing(at_once: f64, shares: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let value = |rate: f64| at_once + shares.iter().map(|[share, time]| share / (1.0 - rate * time)).sum::<f64>();
+    let slope = |rate: f64| shares.iter().map(|[share, time]| share * time / (1.0 - rate * time).powi(2)).sum::<f64>();
+    let delayed: f64 = shares.iter().map(|[share, _]| share).sum();
+    let rates: Vec<f64> = shares.iter().map(|[_, time]| 1.0 / time).collect();
+    let beyond = rates.first().map(|largest| largest * (1.0 + delayed / at_once));
+    // Times rise, so rates fall: each zero is between a rate and the one before it.
+    let above = beyond.into_iter().chain(rates.iter().copied());
+    let zero = |(mut low, mut high): (f64, f64)| {
+        // The value falls with s = −rate, so it rises from −∞ with the rate. Halves of 2⁻⁵³ of an interval are its rounding.
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let middle = (low + high) / 2.0;
+            if value(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let rate = (low + high) / 2.0;
+        let time = 1.0 / rate;
+        [at_once * time / slope(rate), time]
+    };
+    rates.iter().copied().zip(above).map(zero).collect()
 }

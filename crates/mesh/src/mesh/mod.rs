@@ -29,6 +29,7 @@ mod frame;
 pub mod gmsh;
 mod grouping;
 mod hanging;
+mod idle;
 mod include;
 mod indices;
 mod inspection;

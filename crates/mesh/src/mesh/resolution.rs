@@ -53,6 +53,8 @@ impl Mesh {
                 false => error.followed_by(format!(" but {}", source.annotations.left_out_words())),
             });
         }
+        let of_surface = if dimension == 2 && source.space == Some(3) { source.without_idle_faces() } else { None };
+        let source = of_surface.as_ref().unwrap_or(source);
         let is_flat = dimension < 3 && in_one_plane(source);
         let space = match source.space {
             None if is_flat => 2,

@@ -3,7 +3,7 @@
 use super::generation::Generation;
 use super::keyword::Keyword;
 use super::model::{Instance, Model, Surface};
-use super::sections::{Datum, Sections};
+use super::sections::{Datum, Profile, Sections};
 use super::surfaces::{Members, add_surfaces};
 use super::types::{self, Kind};
 use crate::error::{ErrorKind, Result};
@@ -220,6 +220,18 @@ impl Deck {
                 let value = |key: &str| keyword.value(key).unwrap_or_default();
                 self.sections.section(value("ELSET"), value("MATERIAL"));
                 self.block = Block::Datum(Datum::Size);
+            }
+            "BEAM SECTION" | "BEAM GENERAL SECTION" => {
+                let value = |key: &str| keyword.value(key).unwrap_or_default();
+                self.sections.section(value("ELSET"), value("MATERIAL"));
+                let name = value("SECTION").to_ascii_uppercase();
+                let is_general = keyword.name == "BEAM GENERAL SECTION" && (name.is_empty() || name == "GENERAL");
+                // Profiles without a formula here give their material alone.
+                self.block = match Profile::named(&name) {
+                    _ if is_general => Block::Datum(Datum::Size),
+                    Some(profile) => Block::Datum(Datum::Profile(profile)),
+                    None => Block::Passed,
+                };
             }
             "NGEN" | "NFILL" | "NCOPY" | "ELGEN" | "ELCOPY" => self.block = self.open_generation(lines, keyword)?,
             "NMAP" | "SUBSTRUCTURE" | "TRANSFORM SYSTEM" => {

@@ -20,6 +20,47 @@ pub(super) enum Datum {
     Density,
     /// The thickness of a surface, or the area of a rod, of the last section.
     Size,
+    /// The lengths of a cross-section of beams, which give the area of the last section.
+    Profile(Profile),
+}
+
+/// A cross-section of beams.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Profile {
+    /// The radius.
+    Circle,
+    /// The radius and the thickness of the wall.
+    Pipe,
+    /// Both sides.
+    Rectangle,
+    /// Both sides, and the thicknesses of the four walls.
+    Box,
+}
+
+impl Profile {
+    /// That of a keyword; others have no area here.
+    pub fn named(name: &str) -> Option<Profile> {
+        match name.to_ascii_uppercase().as_str() {
+            "CIRC" => Some(Profile::Circle),
+            "PIPE" => Some(Profile::Pipe),
+            "RECT" => Some(Profile::Rectangle),
+            "BOX" => Some(Profile::Box),
+            _ => None,
+        }
+    }
+
+    fn area(self, lengths: &[f64]) -> Option<f64> {
+        let circle = |radius: f64| std::f64::consts::PI * radius * radius;
+        match (self, lengths) {
+            (Profile::Circle, [radius, ..]) => Some(circle(*radius)),
+            (Profile::Pipe, [radius, wall, ..]) => Some(circle(*radius) - circle(radius - wall)),
+            (Profile::Rectangle, [a, b, ..]) => Some(a * b),
+            (Profile::Box, [a, b, right, top, left, bottom, ..]) => {
+                Some(a * b - (a - right - left) * (b - top - bottom))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// The materials and sections of a file, as they are read.
@@ -56,6 +97,12 @@ impl Sections {
             Datum::Size => {
                 if let Some((.., size @ None)) = self.sections.last_mut() {
                     *size = first;
+                }
+            }
+            Datum::Profile(profile) => {
+                let lengths: Option<Vec<f64>> = std::iter::once(first).chain(numbers).collect();
+                if let Some((.., size @ None)) = self.sections.last_mut() {
+                    *size = lengths.and_then(|lengths| profile.area(&lengths)).filter(|area| *area > 0.0);
                 }
             }
             Datum::Elastic | Datum::Density => {}

@@ -25,7 +25,8 @@ pub fn load_notes(scene: &Scene, mesh: &Mesh, cases: &[Case]) -> Vec<String> {
 
 /// That a part of a force acts on held points, where it does nothing. Of a body force that is the weight of what is held.
 fn swallowed(case: &Case, load: &LoadCase) -> Option<String> {
-    if matches!(load.single()?.1, Action::Body(_) | Action::Displacement(_) | Action::Volume(_)) {
+    // A moment turns edges and joints that are held in their place.
+    if matches!(load.single()?.1, Action::Body(_) | Action::Displacement(_) | Action::Volume(_) | Action::Moment(_)) {
         return None;
     }
     let forces = || case.forces.iter().enumerate();

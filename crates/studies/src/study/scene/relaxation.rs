@@ -43,7 +43,7 @@ struct TermEntry {
     yield_stress: Option<f64>,
 }
 
-/// Measured moduli, of a relaxation test or of a dynamic one.
+/// Measured moduli, of a relaxation test, a creep test or a dynamic one.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct MeasuredModuli {
@@ -51,6 +51,8 @@ struct MeasuredModuli {
     time: Option<Vec<f64>>,
     /// The test has these moduli in Pa, above 0 and falling. The key belongs to `time`.
     modulus: Option<Vec<f64>>,
+    /// A creep test has these compliances, strain over stress in 1/Pa, above 0 and rising, at these times after a stress was applied. The key belongs to `time`, in place of `modulus`.
+    compliance: Option<Vec<f64>>,
     /// A dynamic test has these frequencies in Hz, above 0 and rising. The key stands in place of `time`.
     frequency: Option<Vec<f64>>,
     /// The test has these storage moduli in Pa, above 0 and rising. The key belongs to `frequency`.
@@ -128,13 +130,17 @@ impl MeasuredModuli {
     }
 
     fn fit(&self) -> Result<FittedSeries> {
-        match (&self.time, &self.modulus, &self.frequency, &self.storage, &self.loss) {
-            (Some(times), Some(moduli), None, None, None) => ModulusTest::Relaxation { times, moduli }.fit(),
-            (None, None, Some(frequencies), Some(storage), Some(loss)) => {
+        let of_time = (&self.time, &self.modulus, &self.compliance);
+        match (of_time, (&self.frequency, &self.storage, &self.loss)) {
+            ((Some(times), Some(moduli), None), (None, None, None)) => ModulusTest::Relaxation { times, moduli }.fit(),
+            ((Some(times), None, Some(compliances)), (None, None, None)) => {
+                ModulusTest::Creep { times, compliances }.fit()
+            }
+            ((None, None, None), (Some(frequencies), Some(storage), Some(loss))) => {
                 ModulusTest::Frequencies { frequencies, storage, loss }.fit()
             }
             _ => {
-                let expected = "\"time\" and \"modulus\", or \"frequency\", \"storage\" and \"loss\"";
+                let expected = "\"time\" and \"modulus\" or \"compliance\", or \"frequency\", \"storage\" and \"loss\"";
                 Err(Error::new(format!("expected {expected}, found others")))
             }
         }
