@@ -267,7 +267,8 @@ fn scene(folder: &Path, material: &str, rest: &str) -> springfit::error::Result<
     (1..9).for_each(|i| deck += &format!("{i}, {i}, {}\n", i + 1));
     deck += "*NSET, NSET=MIDDLE\n5\n*NSET, NSET=TIP\n9\n";
     std::fs::write(folder.join("rod.inp"), deck).unwrap();
-    let head = "[mesh]\nfile = \"rod.inp\"\nspace = 3\n[material]\nyoung = 1e7\npoisson = 0.3\narea = 1e-4";
+    let young = if material.contains("young") { "" } else { "young = 1e7\n" };
+    let head = format!("[mesh]\nfile = \"rod.inp\"\nspace = 3\n[material]\n{young}poisson = 0.3\narea = 1e-4");
     let fit = "[[fit]]\nname = \"rod\"\nobjective = \"exact\"";
     Scene::parse(&format!("{head}\n{material}\n{fit}\n{rest}"), &folder.join("rod.toml"))
 }
@@ -437,5 +438,48 @@ fn drafts_take_the_sections_of_beams() {
         let draft = std::fs::read_to_string(folder.path().join("beam.toml")).unwrap();
         std::fs::remove_file(folder.path().join("beam.toml")).unwrap();
         assert!(draft.contains(area) && draft.contains("7850"), "{section}: {draft}");
+    }
+}
+
+/// A quarter of a circle under a force across its plane bends and twists: `P R³ ((π/4)/(E I) + (3 π/4 − 2)/(G J))`; beams and hinges are of second order.
+#[test]
+fn arcs_bend_and_twist() {
+    let (radius, force): (f64, f64) = (0.5, 1e-3);
+    let [_, bend, twist] = stiffness();
+    let expected = force * radius.powi(3) * (PI / 4.0 / bend + (0.75 * PI - 2.0) / twist);
+    for springs in [BendingSprings::Directors, BendingSprings::Hinges] {
+        let errors = [8, 16, 32].map(|n| {
+            let at = |i: usize| PI / 2.0 * i as f64 / n as f64;
+            let mesh = line(&(0..=n).map(|i| [radius * at(i).cos(), radius * at(i).sin(), 0.0]).collect::<Vec<_>>());
+            let fit = springfit::fit::ExactFit::default();
+            let bars = exact_network(&mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
+            let network = bars.joined(springs.of(&mesh, &material().moduli().into()));
+            let mut support = Support::free(&mesh);
+            support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+            let mut load = vec![0.0; mesh.points.len()];
+            load[3 * n + 2] = force;
+            let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
+            let (u, _) = system.solve(&system.cholesky().unwrap().unwrap(), &load);
+            u[3 * n + 2] / expected - 1.0
+        });
+        for pair in errors.windows(2) {
+            assert!((3.5..4.5).contains(&(pair[0] / pair[1])), "{springs:?}: {errors:?}");
+        }
+        assert!(errors[2].abs() < 2e-3, "{springs:?}: {errors:?}");
+    }
+}
+
+/// Steel is so stiff along a rod that its forces are rounded at a share of what acts across it that is above the tolerance: steps that reach the rounding have converged.
+#[test]
+fn implicit_steps_end_at_the_rounding_of_stiff_rods() {
+    let folder = TempDir::new().unwrap();
+    for integrator in ["implicit-euler", "bdf2", "newmark"] {
+        let material = "young = 2e11\ndensity = 7850\nbending = \"rod\"\nlaw = \"stable-neo-hookean\"";
+        let rest = format!(
+            "{CLAMPED}[motion]\nduration = 0.02\nstep = 1e-3\nintegrator = \"{integrator}\"\ngravity = [0, 0, -9.81]\n"
+        );
+        let outcome = run(&scene(folder.path(), material, &rest).unwrap(), &mut |_| {}).unwrap();
+        let unsolved: Vec<usize> = outcome.motion.unwrap().models.iter().map(|model| model.unsolved).collect();
+        assert_eq!(unsolved, [0, 0], "{integrator}");
     }
 }

@@ -9,6 +9,7 @@ use super::rest::Rest;
 use super::solver::LinearSolver;
 use crate::error::Result;
 use crate::model::Elastic;
+use crate::solve::rounding;
 
 /// `F(x)`, `C` and `M` of a motion, on all degrees of freedom.
 pub(super) struct Resistance<'a> {
@@ -165,6 +166,13 @@ impl<'a> Resistance<'a> {
             energy += memory.add(u, force, Some(remembered))?;
         }
         (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)
+    }
+
+    /// A bound of the rounding errors of the elastic forces at the displacements u on these degrees of freedom, in the Euclidean norm, N, by the stiffness at rest.
+    pub fn rounding(&mut self, u: &[f64], order: &[usize]) -> f64 {
+        self.place(u);
+        let bound = rounding(self.rest.entries(), &self.x);
+        order.iter().map(|&dof| bound[dof].powi(2)).sum::<f64>().sqrt()
     }
 
     /// The elastic energy beyond that at rest, J.

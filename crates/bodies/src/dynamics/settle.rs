@@ -4,6 +4,7 @@
 
 use super::equations::{End, Equations};
 use super::resistance::Resistance;
+use crate::solve::ROUGHEST;
 use springfit_numerics::newton::{falls_enough, shifts};
 
 /// The largest number of halvings of a Newton step. Where a step of a millionth does not decrease the potential, the
@@ -257,7 +258,7 @@ impl Trial {
             if !accepted {
                 target.delta.copy_from_slice(&self.tried);
                 self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
-                return made;
+                return self.ended(resistance, equations.order(), made);
             }
             made.residual = Some(self.size);
             if is_rounding {
@@ -268,5 +269,14 @@ impl Trial {
             made.outcome = StepOutcome::Converged;
         }
         made
+    }
+
+    /// A step that no Newton step makes better, whose residual is above the tolerance. It has converged if the residual is within the rounding errors of the elastic forces, and these are small
+    /// beside what acts: slender rods are so much stiffer along than across that no state is better.
+    fn ended(&self, resistance: &mut Resistance, order: &[usize], made: Step) -> Step {
+        let left = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let (bound, acting) = (resistance.rounding(&self.u, order), left / self.size);
+        let is_rounding = left <= bound && bound <= ROUGHEST * acting;
+        Step { outcome: if is_rounding { StepOutcome::Converged } else { made.outcome }, ..made }
     }
 }

@@ -5,6 +5,7 @@
 use crate::element::Quadrature;
 use crate::model::{Elastic, Entries, Response, Support, displaced};
 use crate::springs::norm;
+use faer::sparse::Triplet;
 
 /// The number of roundings of a force: positions are rounded once, sums over the nodes and points of a cell a few
 /// times, and plane stress finds its thickness to 45 ε.
@@ -101,7 +102,7 @@ pub(super) fn masked(v: &[f64], support: &Support) -> Vec<f64> {
 }
 
 /// `64 ε Σ_e Σ_j |T^e_ij| |x_j|`.
-fn rounding(tangent: &Entries, x: &[f64]) -> Vec<f64> {
+pub(crate) fn rounding(tangent: &[Triplet<usize, usize, f64>], x: &[f64]) -> Vec<f64> {
     let mut bound = vec![0.0; x.len()];
     for entry in tangent {
         let size = ROUNDINGS * entry.val.abs();

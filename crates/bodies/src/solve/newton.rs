@@ -78,7 +78,7 @@ pub struct Equilibrium {
 
 /// The largest rounding error of the forces, relative to the applied forces, at which a balance of forces counts as an
 /// equilibrium. Beyond it the displacements would have less than four digits, which no report could show as a solution.
-pub(super) const ROUGHEST: f64 = 1e-4;
+pub(crate) const ROUGHEST: f64 = 1e-4;
 /// The relative accuracy to which prescribed displacements are reached. The last part of a displacement is added to the
 /// others, whose rounding it leaves.
 const REACHED: f64 = 1e-14;
