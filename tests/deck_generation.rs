@@ -1,7 +1,7 @@
 //! Nodes and elements that the keywords of Abaqus make of others: `*NGEN`, `*NFILL`, `*NCOPY`, `*ELGEN` and `*ELCOPY`, beside bodies in closed form.
 
 use springfit::mesh::{Mesh, MeshSource};
-use springfit::stiffness::each_cell;
+use springfit::model::content;
 use std::f64::consts::PI;
 
 fn source(text: &str) -> MeshSource {
@@ -14,16 +14,6 @@ fn read(text: &str) -> Mesh {
 
 fn error(text: &str) -> String {
     MeshSource::parse(text.as_bytes(), "inp").unwrap_err().to_string()
-}
-
-/// The volume, area or length.
-fn content(mesh: &Mesh) -> f64 {
-    let mut total = 0.0;
-    for block in &mesh.blocks {
-        each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, |_, _, g| total += g.content())
-            .unwrap();
-    }
-    total
 }
 
 /// The place of the node with this number.
@@ -112,7 +102,7 @@ fn copies_are_turned_and_reflected() {
     assert!((content(&mesh) - 1.5 * 12.0 * (PI / 6.0).sin()).abs() < 1e-12);
 }
 
-/// The last definition of a node counts, and elements that stand for others are told with those that are made.
+/// A node that is defined twice has its last place. A note counts elements that are read as another kind, and those that are made of them as well.
 #[test]
 fn what_is_made_is_as_what_is_listed() {
     let deck = "*NODE\n1, 0,0,0\n3, 2,0,0\n11, 0,1,0\n13, 2,1,0\n*NGEN\n1, 3\n11, 13\n*NODE\n2, 1.5,0,0\n\

@@ -3,6 +3,7 @@
 
 use springfit::element::{Quadrature, Tabulation};
 use springfit::mesh::{MESH_FORMATS, Mesh, MeshSource, NumberOrigin, listed_endings};
+use springfit::model::content;
 use springfit::stiffness::each_cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -394,16 +395,6 @@ fn no_surface_cut_short_is_read() {
             }
         }
     }
-}
-
-/// The volume, area or length.
-fn content(mesh: &Mesh) -> f64 {
-    let mut total = 0.0;
-    for block in &mesh.blocks {
-        each_cell(&block.element.tabulation, &mesh.points, &block.connectivity, |_, _, g| total += g.content())
-            .unwrap();
-    }
-    total
 }
 
 /// Polygons of more than four corners are triangles with the same area, whichever side their corners turn to; and what has no area or is there

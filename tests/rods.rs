@@ -45,6 +45,20 @@ fn line(points: &[[f64; 3]]) -> Mesh {
     frame(points, &rods)
 }
 
+/// The exact network of bars with these springs on joints.
+fn network(mesh: &Mesh, springs: BendingSprings) -> Network {
+    let fit = springfit::fit::ExactFit::default();
+    let bars = exact_network(mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
+    bars.joined(springs.of(mesh, &material().moduli().into()))
+}
+
+/// The equations of a network whose first node is clamped.
+fn clamped(network: &Network, mesh: &Mesh) -> System {
+    let mut support = Support::free(mesh);
+    support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+    System::new(&network.stiffness(&mesh.points), &support).unwrap()
+}
+
 /// The displacements of the nodes under forces (N) and moments (N·m) at nodes, with these nodes held and clamped.
 fn solved(mesh: &Mesh, clamped: &[usize], loads: &[(usize, [f64; 3], [f64; 3])]) -> Vec<f64> {
     let mut support = Support::free(mesh);
@@ -168,9 +182,7 @@ fn the_network_is_the_finite_elements() {
     let mut random = Random(5);
     let points: Vec<[f64; 3]> = (0..5).map(|p| [p as f64, random.next(), random.next()]).collect();
     let mesh = line(&points);
-    let fit = springfit::fit::ExactFit::default();
-    let bars = exact_network(&mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
-    let network: Network = bars.joined(bending_springs(&mesh, &material().moduli().into()));
+    let network = network(&mesh, BendingSprings::Directors);
     assert!(network.others.iter().all(|spring| spring.constant > 0.0));
     let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.0);
     let at = |p: usize| Vector3::from_column_slice(mesh.point(p));
@@ -374,14 +386,9 @@ fn rods_in_line_have_hinges() {
         .map(|n| {
             let mesh = line(&(0..=n).map(|i| [i as f64 / n as f64, 0.0, 0.0]).collect::<Vec<_>>());
             BendingSprings::Hinges.check(&mesh).unwrap();
-            let fit = springfit::fit::ExactFit::default();
-            let bars = exact_network(&mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
-            let network = bars.joined(BendingSprings::Hinges.of(&mesh, &material().moduli().into()));
-            let mut support = Support::free(&mesh);
-            support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+            let system = clamped(&network(&mesh, BendingSprings::Hinges), &mesh);
             let mut load = vec![0.0; mesh.points.len()];
             load[3 * n + 2] = force;
-            let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
             let (u, _) = system.solve(&system.cholesky().unwrap().unwrap(), &load);
             // A torque twists the end by M L/(G J), as both of its directors show: nothing of it is in the levers.
             let torque = mesh.couples(&[n], [force, 0.0, 0.0]).unwrap();
@@ -451,14 +458,9 @@ fn arcs_bend_and_twist() {
         let errors = [8, 16, 32].map(|n| {
             let at = |i: usize| PI / 2.0 * i as f64 / n as f64;
             let mesh = line(&(0..=n).map(|i| [radius * at(i).cos(), radius * at(i).sin(), 0.0]).collect::<Vec<_>>());
-            let fit = springfit::fit::ExactFit::default();
-            let bars = exact_network(&mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
-            let network = bars.joined(springs.of(&mesh, &material().moduli().into()));
-            let mut support = Support::free(&mesh);
-            support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+            let system = clamped(&network(&mesh, springs), &mesh);
             let mut load = vec![0.0; mesh.points.len()];
             load[3 * n + 2] = force;
-            let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
             let (u, _) = system.solve(&system.cholesky().unwrap().unwrap(), &load);
             u[3 * n + 2] / expected - 1.0
         });

@@ -17,7 +17,7 @@ pub(super) fn sheet_notes(outcome: &Outcome) -> Vec<Note> {
 fn thick(outcome: &Outcome) -> Option<Note> {
     let directors = outcome.mesh.directors.as_ref()?;
     let gyration = directors.gyration.iter().copied().fold(0.0, f64::max);
-    // Of a plate t²/12, of a round rod d²/16.
+    // The square of the radius of gyration is t²/12 of a plate, and d²/16 of a round rod.
     let (body, thickness) = match outcome.mesh.cell_dimension() {
         1 => ("rod", 4.0 * gyration.sqrt()),
         _ => ("sheet", (12.0 * gyration).sqrt()),

@@ -17,8 +17,8 @@ const RATIOS: [f64; 4] = [0.3, 0.45, 0.49, 0.4999];
 const MOVED: f64 = 0.15;
 /// Errors that differ by less, relative to the larger, have no order.
 const ALIKE: f64 = 0.1;
-/// The error that a run prints of its reference is proved on cells that are halved once more, of bodies of so many cells at this ratio: others take
-/// minutes.
+/// The test compares the error of the reference, as a run prints it, with the reference on cells that are halved once more. It does so for bodies of at most
+/// this number of cells and at this Poisson's ratio, because others take minutes.
 const FEW: usize = 50;
 const PROVED: f64 = 0.49;
 

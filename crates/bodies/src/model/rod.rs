@@ -8,7 +8,7 @@
 use super::network::{LengthSpring, MeasureSpring, Network};
 use crate::element::SpringKind;
 use crate::material::{CellMap, Hooke};
-use crate::mesh::{Directors, Mesh};
+use crate::mesh::{Directors, Mesh, axes_across};
 use crate::springs::{Measure, Turns, cross, distance, dot, norm};
 use nalgebra::{SMatrix, SVector};
 use smallvec::SmallVec;
@@ -160,11 +160,9 @@ fn weights(x: &[f64], turns: &[[usize; 4]; TURNS]) -> SMatrix<f64, MEASURES, TUR
 fn motions(x: &[f64]) -> [SVector<f64, 18>; MOTIONS] {
     let at = |place: usize| -> [f64; 3] { std::array::from_fn(|k| x[3 * place + k]) };
     let from = |a: usize, b: usize| -> [f64; 3] { std::array::from_fn(|k| at(b)[k] - at(a)[k]) };
-    let unit = |v: [f64; 3]| v.map(|x| x / norm(&v));
-    let along = unit(from(0, 1));
-    let far = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).expect("three axes");
-    let first = unit(cross(along, std::array::from_fn(|k| if k == far { 1.0 } else { 0.0 })));
-    let second = cross(along, first);
+    let rod = from(0, 1);
+    let along = rod.map(|x| x / norm(&rod));
+    let [first, second] = axes_across(along);
     let of = |parts: [(usize, [f64; 3]); 2]| {
         let mut motion = SVector::<f64, 18>::zeros();
         parts.into_iter().for_each(|(place, u)| motion.fixed_rows_mut::<3>(3 * place).copy_from_slice(&u));

@@ -40,7 +40,7 @@ impl Support {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Unheld {
-    /// The number of its points.
+    /// The number of its points; the directors of a sheet or of rods do not count.
     pub points: usize,
     /// Its point with the lowest index.
     pub first_point: usize,
@@ -58,17 +58,23 @@ fn is_straight<'a>(point: &dyn Fn(usize) -> &'a [f64], points: &[usize], centre:
 
 /// The bodies that can move without deforming, found by the rank of their rigid motions at the held degrees of freedom.
 pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
-    unheld_pieces((&mesh.points, mesh.dimension), mesh.pieces(), support)
+    unheld_pieces((&mesh.points, mesh.dimension), mesh.node_count(), mesh.pieces(), support)
 }
 
 /// Finds the parts of a network, connected by springs, that can move without deforming, as [`unheld_bodies`] does.
 /// `points` are `[points × dimension]`, m.
 pub fn unheld_parts(network: &Network, points: &[f64], support: &Support) -> Vec<Unheld> {
     let pieces = pieces_of(points.len() / network.dimension, network.springs().map(|(points, _)| points));
-    unheld_pieces((points, network.dimension), pieces, support)
+    unheld_pieces((points, network.dimension), points.len() / network.dimension, pieces, support)
 }
 
-fn unheld_pieces((points, d): (&[f64], usize), pieces: Vec<Vec<usize>>, support: &Support) -> Vec<Unheld> {
+/// The pieces that are not held; points from `nodes` on are not counted.
+fn unheld_pieces(
+    (points, d): (&[f64], usize),
+    nodes: usize,
+    pieces: Vec<Vec<usize>>,
+    support: &Support,
+) -> Vec<Unheld> {
     let point = |p: usize| &points[p * d..(p + 1) * d];
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
@@ -106,7 +112,8 @@ fn unheld_pieces((points, d): (&[f64], usize), pieces: Vec<Vec<usize>>, support:
         // To turn a straight rod in space about itself moves no point.
         let idle = usize::from(rank < motions && d == 3 && is_straight(&point, &body, &centre, extent));
         if rank + idle < motions {
-            unheld.push(Unheld { points: body.len(), first_point: body[0], motions: motions - idle - rank });
+            let counted = body.iter().filter(|p| **p < nodes).count();
+            unheld.push(Unheld { points: counted, first_point: body[0], motions: motions - idle - rank });
         }
     }
     unheld

@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
     IntranodeLbltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Side, get_global_parallelism};
+use faer::{Conj, Par, Side, get_global_parallelism};
 use std::sync::Arc;
 
 /// The analysis that all factors of matrices with one pattern share.
@@ -158,6 +158,14 @@ impl Analysis {
     }
 }
 
+impl Analysis {
+    /// How a factor solves for so many columns at once, and the memory that it needs besides.
+    fn room(&self, columns: usize) -> (Par, MemBuffer) {
+        let par = get_global_parallelism();
+        (par, MemBuffer::new(self.0.solve_in_place_scratch::<f64>(columns, par)))
+    }
+}
+
 impl Pivoted {
     pub(super) fn rows(&self) -> usize {
         self.analysis.0.nrows()
@@ -165,8 +173,7 @@ impl Pivoted {
 
     pub(super) fn solve(&self, x: MatMut<'_, f64>) {
         let Analysis(symbolic) = &self.analysis;
-        let par = get_global_parallelism();
-        let mut room = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(x.ncols(), par));
+        let (par, mut room) = self.analysis.room(x.ncols());
         let [forward, inverse] = &self.order;
         let order = PermRef::new_checked(forward, inverse, forward.len());
         let factor = IntranodeLbltRef::new(symbolic, &self.values, &self.subdiagonal, order);
@@ -181,8 +188,7 @@ impl Cholesky {
 
     pub(super) fn solve(&self, x: MatMut<'_, f64>) {
         let Analysis(symbolic) = &self.analysis;
-        let par = get_global_parallelism();
-        let mut room = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(x.ncols(), par));
+        let (par, mut room) = self.analysis.room(x.ncols());
         let factor = LltRef::new(symbolic, &self.values);
         factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
     }

@@ -12,20 +12,22 @@ impl MeshSource {
     pub(super) fn without_idle_faces(&self) -> Option<MeshSource> {
         let mut places = Coincident::default();
         let places: Vec<usize> = self.points.iter().map(|&point| places.index(point)).collect();
-        let [mut without_area, mut again] = [0, 0];
-        let mut blocks = self.blocks.clone();
-        for block in blocks.iter_mut().filter(|block| block.dimension == 2 && (3..=4).contains(&block.nodes_per_cell)) {
-            let kept = Kept::of(block, &self.points, &places);
-            without_area += kept.without_area;
-            again += kept.again;
-            block.connectivity = kept.list;
-        }
-        // A file of such faces alone is refused by what it has.
-        let is_left = blocks.iter().any(|block| block.dimension == 2 && !block.connectivity.is_empty());
-        if without_area + again == 0 || !is_left {
+        let is_of_faces = |block: &SourceBlock| block.dimension == 2 && (3..=4).contains(&block.nodes_per_cell);
+        let faces = |block: &SourceBlock| is_of_faces(block).then(|| Kept::of(block, &self.points, &places));
+        let kept: Vec<Option<Kept>> = self.blocks.iter().map(faces).collect();
+        let sum = |of: fn(&Kept) -> usize| kept.iter().flatten().map(of).sum::<usize>();
+        let [without_area, again] = [sum(|kept| kept.without_area), sum(|kept| kept.again)];
+        if without_area + again == 0 {
             return None;
         }
-        let mut source = MeshSource { blocks, ..self.clone() };
+        let mut source = self.clone();
+        for (block, kept) in source.blocks.iter_mut().zip(kept) {
+            block.connectivity = kept.map_or_else(|| std::mem::take(&mut block.connectivity), |kept| kept.list);
+        }
+        // A file of such faces alone is refused by what it has.
+        if !source.blocks.iter().any(|block| block.dimension == 2 && !block.connectivity.is_empty()) {
+            return None;
+        }
         let kinds = [(without_area, "without area"), (again, "with the corners of an earlier one in the same order")];
         for (count, what) in kinds.into_iter().filter(|(count, _)| *count > 0) {
             let faces = if count == 1 { "face" } else { "faces" };

@@ -94,10 +94,15 @@ fn axes_of(rods: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
     if !(share(&third) >= LEAST_SHARE) {
         return None;
     }
-    // Along the axis of the space that is farthest from the third one.
-    let far = (0..3).min_by(|&a, &b| third[a].abs().total_cmp(&third[b].abs()))?;
-    let first = unit(cross(third, std::array::from_fn(|k| if k == far { 1.0 } else { 0.0 })));
-    Some([first, cross(third, first)])
+    Some(axes_across(third))
+}
+
+/// Two unit vectors at right angles to a unit vector and to each other.
+pub fn axes_across(along: [f64; 3]) -> [[f64; 3]; 2] {
+    // The axis of the space that is farthest from it.
+    let far = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
+    let first = unit(cross(along, std::array::from_fn(|k| if k == far { 1.0 } else { 0.0 })));
+    [first, cross(along, first)]
 }
 
 /// One of the directions, on a spiral from the pole to the equator whose turns are as far apart as its points (golden angle).

@@ -70,6 +70,7 @@ pub use embedding::Embedding;
 pub use field::{Accepted, Field, Holder, Interpolation, NamedState, SampleReading, Samples, Scattered};
 pub use fill::{FaceCrossings, FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Fragments, Repair};
 pub use formats::{MESH_FORMATS, MeshFormat, listed_endings};
+pub use joints::axes_across;
 pub use mesh::{CellBlock, CellIndex, Chosen, Directors, Group, Mesh, SideIndex};
 pub use numbering::{NumberOrigin, Numbering};
 pub use numpy::NumpyFile;

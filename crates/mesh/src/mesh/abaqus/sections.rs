@@ -38,7 +38,7 @@ pub(super) enum Profile {
 }
 
 impl Profile {
-    /// That of a keyword; others have no area here.
+    /// The profile of this name; `None` for one whose area has no formula here.
     pub fn named(name: &str) -> Option<Profile> {
         match name.to_ascii_uppercase().as_str() {
             "CIRC" => Some(Profile::Circle),

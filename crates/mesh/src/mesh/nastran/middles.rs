@@ -40,7 +40,7 @@ pub(super) fn complete(listing: &mut Listing, cells: &[usize], annotations: &mut
                 taken += 1;
                 continue;
             }
-            // An end that is not there is a fault that is told when the nodes are looked up.
+            // An end may be missing in the file: the error comes later, when the nodes of the cell are looked up.
             let [Some(a), Some(b)] = ends.map(|end| places.get(&end).map(|&place| listing.points[place])) else {
                 continue;
             };

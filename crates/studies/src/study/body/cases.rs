@@ -101,12 +101,9 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
             let expected = "supports that hold every body";
             let place = mesh.point(body.first_point);
             let motions = if body.motions == 1 { "motion" } else { "motions" };
-            // Directors are no points that a user knows.
-            let own = mesh.pieces().into_iter().find(|piece| piece.contains(&body.first_point));
-            let points = own.map_or(body.points, |piece| piece.iter().filter(|p| **p < mesh.node_count()).count());
             let found = format!(
-                "{} rigid {motions} left to the body of {points} points at {place:?} m under load \"{}\"",
-                body.motions, load.name
+                "{} rigid {motions} left to the body of {} points at {place:?} m under load \"{}\"",
+                body.motions, body.points, load.name
             );
             return Err(Error::expected("fix", expected, found).of_kind(ErrorKind::Infeasible).in_file(scene.path()));
         }
