@@ -185,7 +185,7 @@ impl<W: Write + Seek> ArrayFile<W> {
     /// # Errors
     /// The file is too large, or the writer fails.
     pub fn real(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = f64>) -> io::Result<()> {
-        self.array(name, "<f8", shape, values.into_iter().map(f64::to_le_bytes))
+        self.array(name, "<f8", shape, &mut values.into_iter().map(f64::to_le_bytes))
     }
 
     /// Adds a list of texts, each filled up with zeros to the longest, in UTF-32.
@@ -197,8 +197,8 @@ impl<W: Write + Seek> ArrayFile<W> {
         let filled = |text: &&str| -> Vec<u32> {
             text.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest).collect()
         };
-        let letters = texts.iter().flat_map(filled).map(u32::to_le_bytes);
-        self.array(name, &format!("<U{longest}"), &[texts.len()], letters)
+        let mut letters = texts.iter().flat_map(filled).map(u32::to_le_bytes);
+        self.array(name, &format!("<U{longest}"), &[texts.len()], &mut letters)
     }
 
     /// Adds an array of 32-bit whole numbers.
@@ -206,7 +206,7 @@ impl<W: Write + Seek> ArrayFile<W> {
     /// # Errors
     /// The file is too large, or the writer fails.
     pub fn whole(&mut self, name: &str, shape: &[usize], values: impl IntoIterator<Item = usize>) -> io::Result<()> {
-        self.array(name, "<i4", shape, values.into_iter().map(|value| (value as i32).to_le_bytes()))
+        self.array(name, "<i4", shape, &mut values.into_iter().map(|value| (value as i32).to_le_bytes()))
     }
 
     /// Writes the list of the arrays, and returns what was written to.
@@ -223,7 +223,8 @@ impl<W: Write + Seek> ArrayFile<W> {
         name: &str,
         kind: &str,
         shape: &[usize],
-        values: impl Iterator<Item = [u8; N]>,
+        // Of no type of its own, so that this is compiled once for all arrays.
+        values: &mut dyn Iterator<Item = [u8; N]>,
     ) -> io::Result<()> {
         let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
         let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
@@ -239,7 +240,9 @@ impl<W: Write + Seek> ArrayFile<W> {
         self.file.write_all(header.as_bytes())?;
         // The file computes a checksum at each call.
         let mut buffer = BufWriter::new(&mut self.file);
-        values.into_iter().try_for_each(|value| buffer.write_all(&value))?;
+        for value in values {
+            buffer.write_all(&value)?;
+        }
         buffer.flush()
     }
 }
