@@ -181,8 +181,9 @@ pub(super) fn without_stress(
             continue;
         }
         let change = -pull / stiffness;
-        // Some fifty rounding errors of a stretch near one; the condensed tangent is that of no stress.
-        if change.abs() <= 1e-14 {
+        // Some fifty rounding errors of the stretch; the condensed tangent is that of no stress.
+        let stretch = free.iter().map(|&k| f[(k, k)]).fold(1.0, f64::max);
+        if change.abs() <= 1e-14 * stretch {
             let mut condensed = tangent;
             for row in 0..9 {
                 for column in 0..9 {

@@ -35,8 +35,16 @@ impl Arrays {
             if total > MOST {
                 return Err(Error::new("the arrays are larger than 64 GB").of_kind(ErrorKind::Limit));
             }
-            let mut content = Vec::new();
-            file.read_to_end(&mut content).map_err(|e| wrong(&e).at_key(&*name))?;
+            let (mut content, claimed) = (Vec::new(), file.size());
+            // What is packed may be longer than its entry claims.
+            file.by_ref()
+                .take(claimed.saturating_add(1))
+                .read_to_end(&mut content)
+                .map_err(|e| wrong(&e).at_key(&*name))?;
+            if content.len() as u64 != claimed {
+                let found = if content.len() as u64 > claimed { "more" } else { "fewer" };
+                return Err(wrong(&format!("expected {claimed} bytes, found {found}")).at_key(&*name));
+            }
             if let Some(array) = parse(&content).map_err(|e| e.at_key(&*name))? {
                 arrays.insert(name, array);
             }

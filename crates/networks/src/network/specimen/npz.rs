@@ -220,7 +220,13 @@ fn phystwin(arrays: &Arrays) -> Result<SpecimenFile> {
         parts.lengths.push(LengthPart { points, constant: stiffness.min(most) / rest[s], rest: rest[s], damper: 0.0 });
     }
     let mut notes = Vec::new();
-    let objects = scalar("num_object_points").map_or(count, |n| n as usize).min(count);
+    let objects = match scalar("num_object_points") {
+        None => count,
+        Some(n) if n.fract() == 0.0 && (0.0..=count as f64).contains(&n) => n as usize,
+        Some(n) => {
+            return Err(Error::expected("num_object_points", format!("a number of points from 0 to {count}"), n));
+        }
+    };
     if left_out > 0 {
         notes.push(format!(
             "{left_out} springs are below spring_Y_min = {least}, and are left out as PhysTwin leaves them out"
