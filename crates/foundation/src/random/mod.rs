@@ -34,8 +34,8 @@ pub fn unit_at(seed: u64, index: u64, coordinate: u64) -> f64 {
     (mixed >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// Spreads the bits of a number over all of its bits.
-fn mix(number: u64) -> u64 {
+/// Spreads the bits of a number over all of its bits, so that neighbouring numbers have no pattern.
+pub fn mix(number: u64) -> u64 {
     let mut z = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -4,7 +4,7 @@
 //! In the Bernstein basis it is bounded by its coefficients, and those at the corners of the box are values of it. Where the bounds
 //! do not decide, the box is divided (Johnen, Remacle, Geuzaine, J. Comput. Phys. 233, 2013).
 
-use super::cell::{Cell, SAME};
+use super::cell::{Cell, same_place};
 use super::quadrature::Quadrature;
 use super::{Element, Tabulation};
 use nalgebra::DMatrix;
@@ -229,8 +229,7 @@ fn straight(element: &Element) -> Option<(DMatrix<f64>, Vec<usize>)> {
         DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
     };
     let corners = element.cell.corners();
-    let is_at = |corner: &[f64], at: &[f64]| corner.iter().zip(at).all(|(a, b)| (a - b).abs() < SAME);
-    let node = |corner: &&[f64]| places.iter().position(|at| is_at(corner, at));
+    let node = |corner: &&[f64]| places.iter().position(|at| same_place(corner, at));
     let nodes: Option<Vec<usize>> = corners.iter().map(node).collect();
     // Singular values below this are zeros: terms that the corners cannot tell apart.
     let inverse = matrix(corners).pseudo_inverse(1e-12).ok()?;

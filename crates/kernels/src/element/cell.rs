@@ -9,6 +9,11 @@ use serde::{Deserialize, Serialize};
 /// more, and no two nodes are as near.
 pub(super) const SAME: f64 = 1e-9;
 
+/// Whether two places in a reference cell are the same.
+pub fn same_place(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < SAME)
+}
+
 /// The reference cell of an element.
 ///
 /// Intervals, squares and cubes span [−1, 1] in each coordinate. Triangle and tetrahedron have their corners at the
@@ -157,7 +162,7 @@ impl Cell {
     /// The place in `positions`, `[nodes × dimension]`, of the node at a corner, if there is one.
     pub fn corner_node(self, corner: usize, positions: &[f64]) -> Option<usize> {
         let at = self.corners()[corner];
-        positions.chunks_exact(at.len()).position(|x| x.iter().zip(at).all(|(x, c)| (x - c).abs() < SAME))
+        positions.chunks_exact(at.len()).position(|x| same_place(x, at))
     }
 
     /// Whether the point is in the cell or on its boundary, up to rounding.

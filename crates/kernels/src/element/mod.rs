@@ -24,7 +24,7 @@ mod symmetry;
 mod tabulation;
 
 pub use bounds::JacobianBounds;
-pub use cell::{Cell, Side};
+pub use cell::{Cell, Side, same_place};
 pub use definition::{FormatEntry, Formats, schema};
 pub use formula::coordinate_names;
 pub(crate) use formula::{Formula, dot};
@@ -353,9 +353,7 @@ fn reflection(positions: &[f64], dimension: usize) -> Option<Vec<usize>> {
         image[0] = -image[0];
         image
     };
-    let find = |image: Vec<f64>| {
-        nodes.iter().position(|other| other.iter().zip(&image).all(|(a, b)| (a - b).abs() < cell::SAME))
-    };
+    let find = |image: Vec<f64>| nodes.iter().position(|other| same_place(other, &image));
     let first: Option<Vec<usize>> = nodes.iter().map(|at| find(swapped(at))).collect();
     let turns = |order: &Vec<usize>| order.iter().enumerate().any(|(a, b)| a != *b);
     first.filter(turns).or_else(|| nodes.iter().map(|at| find(mirrored(at))).collect())

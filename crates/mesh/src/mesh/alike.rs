@@ -1,6 +1,7 @@
 //! Finds cells and sides that have the same points.
 
 use super::mesh::{CellIndex, Mesh, SideIndex};
+use crate::random::mix;
 use rayon::prelude::*;
 
 impl Mesh {
@@ -66,7 +67,7 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
     let key = |item: usize| {
         set.clear();
         points(item, &mut set);
-        let hash = set.iter().fold(0u64, |sum, &p| sum.wrapping_add(scattered(p as u64)));
+        let hash = set.iter().fold(0u64, |sum, &p| sum.wrapping_add(mix(p as u64)));
         let lowest = set.iter().copied().min().unwrap_or(0) as u64;
         (lowest << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item as u64
     };
@@ -113,12 +114,4 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
             visit(&same);
         }
     }
-}
-
-/// A hash without patterns among neighbouring numbers (the finalizer of SplitMix64; Steele, Lea and Flood 2014).
-fn scattered(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }

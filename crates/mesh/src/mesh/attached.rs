@@ -2,7 +2,7 @@
 
 use super::mesh::{CellBlock, CellIndex, Mesh, SideIndex};
 use super::selection::ListedSides;
-use crate::element::{Cell, Element, SHIPPED, Side};
+use crate::element::{Cell, Element, SHIPPED, Side, same_place};
 use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -75,8 +75,7 @@ fn on_side(element: &Element, side: &Side, body: &Element) -> Option<Vec<usize>>
     let node = |s: &[f64]| {
         let at: Vec<f64> =
             (0..d).map(|k| origin[k] + s.iter().zip(&tangents).map(|(s, t)| s * t[k]).sum::<f64>()).collect();
-        // Reference cells are of size one, and nodes are far apart beside the rounding of an embedding.
-        body.positions.chunks_exact(d).position(|x| x.iter().zip(&at).all(|(x, a)| (x - a).abs() < 1e-9))
+        body.positions.chunks_exact(d).position(|x| same_place(x, &at))
     };
     element.positions.chunks_exact(d - 1).map(node).collect()
 }

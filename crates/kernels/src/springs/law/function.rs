@@ -59,7 +59,7 @@ const STEP: f64 = 1e-3;
 /// Inner parameters below this count as of this size, so that their steps do not vanish.
 const SMALLEST: f64 = 1e-2;
 /// The strains, and the sizes of the parameters, at which a function is tried for being linear in some of them.
-const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
+pub(super) const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
 const SIZES: [f64; 3] = [0.7, 1.9, 1e4];
 /// The rounding of sums of three forces, relative to the largest.
 const ROUNDING: f64 = 1e-12;

@@ -15,13 +15,11 @@ use super::Springs;
 use crate::error::{Error, ErrorKind, Result};
 use crate::symbolic::{Expr, Scope, variables_of};
 use formula::Formula;
-use function::Function;
+use function::{Function, STRAINS};
 use std::sync::Arc;
 
 /// The variables of a law besides its parameters: the strain `s = (c − c₀)/c₀`, `c` and `c₀`.
 const VARIABLES: [&str; 3] = ["s", "c", "c0"];
-/// Strains at which a law is tested for being linear in its parameters.
-const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
 /// What rounding may leave between a function and the sum over its parameters, relative to the force.
 const LINEAR: f64 = 1e-9;
 

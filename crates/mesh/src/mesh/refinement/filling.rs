@@ -1,7 +1,7 @@
 //! Elements that take the place of others: the tetrahedra that fill the gaps between the pyramids of a divided pyramid, and elements
 //! with quadratic functions.
 
-use crate::element::{Cell, Element, SHIPPED};
+use crate::element::{Cell, Element, SHIPPED, same_place};
 use crate::error::{Error, ErrorKind, Result};
 use std::sync::Arc;
 
@@ -38,9 +38,7 @@ pub fn quadratic(element: &Element) -> Result<Arc<Element>> {
     let edges: Vec<[usize; 2]> = if cell.dimension() == 1 { vec![[0, 1]] } else { cell.edges() };
     let middles: Vec<Vec<f64>> = edges.into_iter().map(middle).collect();
     let wanted = |at: &[f64]| {
-        // Reference cells are of size one, and nodes are far apart beside rounding.
-        let is_at = |place: &[f64]| place.iter().zip(at).all(|(a, b)| (a - b).abs() < 1e-9);
-        corners.iter().any(|place| is_at(place)) || middles.iter().any(|place| is_at(place))
+        corners.iter().any(|place| same_place(place, at)) || middles.iter().any(|place| same_place(place, at))
     };
     let fits = |other: &Element| {
         let mut places = other.positions.chunks_exact(other.dimension());

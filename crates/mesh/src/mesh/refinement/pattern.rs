@@ -1,7 +1,7 @@
 //! The division of one element into smaller ones.
 
 use super::children::Child;
-use crate::element::{Cell, Element};
+use crate::element::{Cell, Element, same_place};
 use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 
@@ -55,9 +55,7 @@ impl Pattern {
 
 /// The index of the position among the known ones, to which it is added if it is new.
 fn point_at(places: &mut Vec<Vec<f64>>, at: Vec<f64>) -> usize {
-    // Points of a division are thirds or halves, far apart beside rounding.
-    let near = |known: &Vec<f64>| known.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
-    places.iter().position(near).unwrap_or_else(|| {
+    places.iter().position(|known| same_place(known, &at)).unwrap_or_else(|| {
         places.push(at);
         places.len() - 1
     })
