@@ -132,6 +132,9 @@ fn the_page_of_meshes_has_the_units_that_are_read() {
         ("pressure", Quantity::Pressure),
         ("density", Quantity::Density),
         ("time", Quantity::Time),
+        ("force", Quantity::Force),
+        ("moment", Quantity::Moment),
+        ("acceleration", Quantity::Acceleration),
     ];
     for (name, quantity) in quantities {
         let row = text.lines().find(|line| line.starts_with(&format!("| {name} |"))).unwrap();

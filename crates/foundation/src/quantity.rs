@@ -17,6 +17,12 @@ pub enum Quantity {
     Density,
     /// A time, in s.
     Time,
+    /// A force, in N.
+    Force,
+    /// A moment of forces, in N·m.
+    Moment,
+    /// An acceleration, in m/s².
+    Acceleration,
     /// The length of one unit of a mesh, in m. A unit alone stands for one of it: `mm` is 0.001 m.
     MeshUnit,
 }
@@ -104,6 +110,34 @@ const DENSITIES: [Unit; 13] = [
 /// Units of time.
 const TIMES: [Unit; 6] =
     [("s", 1.0, 0), ("ms", 1.0, -3), ("us", 1.0, -6), ("ns", 1.0, -9), ("min", 6.0, 1), ("h", 36.0, 2)];
+/// Units of force.
+const FORCES: [Unit; 11] = [
+    ("N", 1.0, 0),
+    ("kN", 1.0, 3),
+    ("MN", 1.0, 6),
+    ("mN", 1.0, -3),
+    ("uN", 1.0, -6),
+    ("nN", 1.0, -9),
+    ("pN", 1.0, -12),
+    ("dyn", 1.0, -5),
+    // Weights of a kilogram, a gram and a pound under standard gravity (NIST SP 811).
+    ("kgf", 9.80665, 0),
+    ("gf", 9.80665, -3),
+    ("lbf", 4.4482216152605, 0),
+];
+/// Units of moment.
+const MOMENTS: [Unit; 8] = [
+    ("N m", 1.0, 0),
+    ("Nm", 1.0, 0),
+    ("kN m", 1.0, 3),
+    ("kNm", 1.0, 3),
+    ("N mm", 1.0, -3),
+    ("Nmm", 1.0, -3),
+    ("mN m", 1.0, -3),
+    ("uN m", 1.0, -6),
+];
+/// Units of acceleration.
+const ACCELERATIONS: [Unit; 4] = [("m/s^2", 1.0, 0), ("cm/s^2", 1.0, -2), ("mm/s^2", 1.0, -3), ("km/s^2", 1.0, 3)];
 
 /// The ways to write a unit: `mm^2`, `mm²`, `mm2`, and `um`, `µm` with either letter that Unicode has for micro.
 fn spellings(unit: &str) -> Vec<String> {
@@ -151,6 +185,9 @@ impl Quantity {
             Quantity::Pressure => &PRESSURES,
             Quantity::Density => &DENSITIES,
             Quantity::Time => &TIMES,
+            Quantity::Force => &FORCES,
+            Quantity::Moment => &MOMENTS,
+            Quantity::Acceleration => &ACCELERATIONS,
         }
     }
 
@@ -163,6 +200,9 @@ impl Quantity {
             Quantity::Pressure => "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\"",
             Quantity::Density => "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\"",
             Quantity::Time => "a time such as 0.005, \"5 ms\" or \"1/60 s\"",
+            Quantity::Force => "a force such as 0.5, \"0.5 N\" or \"500 mN\"",
+            Quantity::Moment => "a moment such as 0.5, \"0.5 N m\" or \"500 N mm\"",
+            Quantity::Acceleration => "an acceleration such as -9.81 or \"-9.81 m/s^2\"",
             Quantity::MeshUnit => "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\"",
         }
     }

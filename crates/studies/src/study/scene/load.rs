@@ -136,10 +136,14 @@ pub struct LoadEntry {
     #[schemars(schema_with = "value::volume_schema")]
     pub volume: Option<f64>,
     /// A force in N acts on the part in all. It is shared over sides, cells or points of the part.
+    #[serde(default, deserialize_with = "value::force_vector")]
+    #[schemars(schema_with = "value::force_vector_schema")]
     pub force: Option<Vec<f64>>,
     /// A body force in N/m³ acts on the cells: for each direction a number or an expression of x, y, z in m.
     pub body: Option<Vec<Varying>>,
     /// A body force of this acceleration in m/s², times the density of the material, acts on the cells.
+    #[serde(default, deserialize_with = "value::acceleration_vector")]
+    #[schemars(schema_with = "value::acceleration_vector_schema")]
     pub gravity: Option<Vec<f64>>,
     /// The part has this displacement in m: for each direction a number, an expression of x, y, z in m, such as `"-0.1*y"`, or `"free"`. At
     /// least one direction is moved.
@@ -150,6 +154,8 @@ pub struct LoadEntry {
     pub clamp: bool,
     /// A moment in N·m acts on the part in all, a vector: on the joints of rods in equal shares, or on the edges of a sheet whose ends are in the part, in shares by
     /// their lengths. The material has `bending` and no law.
+    #[serde(default, deserialize_with = "value::moment_vector")]
+    #[schemars(schema_with = "value::moment_vector_schema")]
     pub moment: Option<Vec<f64>>,
     /// The load consists of these other loads at the same time: names of two or more loads of forces.
     pub sum: Option<Vec<String>>,
@@ -180,7 +186,8 @@ impl ReactionEntry {
         let component = |given: PrescribedComponent| match given.0 {
             None => Ok(None),
             Some(Varying::Number(value)) if value.is_finite() => Ok(Some(value)),
-            Some(_) => Err(Error::expected("force", "numbers of N, or \"free\"", "another")),
+            Some(Varying::Text(text)) => Quantity::Force.parse(&text).map(Some).map_err(|e| e.under("force")),
+            Some(Varying::Number(_)) => Err(Error::expected("force", "numbers of N, or \"free\"", "another")),
         };
         let force: Vec<Option<f64>> = self.force.into_iter().map(component).collect::<Result<_>>()?;
         if force.iter().all(Option::is_none) {

@@ -68,6 +68,8 @@ pub struct MotionEntry {
     #[schemars(extend("enum" = Lumping::NAMES, "default" = Lumping::default().name()))]
     mass: Option<String>,
     /// This acceleration acts on all points, in m/s².
+    #[serde(default, deserialize_with = "value::acceleration_vector")]
+    #[schemars(schema_with = "value::acceleration_vector_schema")]
     gravity: Option<Vec<f64>>,
     /// `damping` says how motions die away; without it they do not.
     damping: Option<DampingEntry>,
@@ -198,7 +200,9 @@ impl MotionEntry {
         let mut forces = Vec::new();
         for (i, force) in self.force.into_iter().enumerate() {
             let part = part(force.group, force.condition, format!("force[{i}]"))?;
-            let component = |(k, value)| expression(value, &["t"], None).map_err(|e| e.under(format!("force[{k}]")));
+            let component = |(k, value)| {
+                expression(value, &["t"], Some(Quantity::Force)).map_err(|e| e.under(format!("force[{k}]")))
+            };
             let components: Result<Vec<_>> = force.force.into_iter().enumerate().map(component).collect();
             let components = components.map_err(|e| e.under(format!("force[{i}]")))?;
             forces.push(AppliedForce { part, force: components, each: force.each });

@@ -147,6 +147,9 @@ pub fn name_and_unit(quantity: Quantity) -> (&'static str, &'static str) {
         Quantity::Pressure => ("pressure", "Pa"),
         Quantity::Density => ("density", "kg/m³"),
         Quantity::Time => ("time", "s"),
+        Quantity::Force => ("force", "N"),
+        Quantity::Moment => ("moment", "N·m"),
+        Quantity::Acceleration => ("acceleration", "m/s²"),
     }
 }
 
@@ -232,4 +235,34 @@ quantities! {
     time, optional_time, time_schema: Time,
     stress, optional_stress, stress_schema: Pressure,
     mesh_unit, optional_mesh_unit, mesh_unit_schema: MeshUnit,
+}
+
+/// Functions for `deserialize_with` and `schema_with` of keys that hold a vector of a quantity, in the SI unit.
+macro_rules! vectors {
+    ($($vector:ident, $schema:ident: $quantity:ident),+ $(,)?) => {$(
+        pub fn $schema(_: &mut SchemaGenerator) -> Schema {
+            let (name, unit) = name_and_unit(Quantity::$quantity);
+            let items = json_schema!({ "type": ["number", "string"] });
+            json_schema!({ "type": "array", "items": items, "x-type": format!("vector of {name}"), "x-unit": unit })
+        }
+
+        pub fn $vector<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<f64>>, D::Error> {
+            struct Component(f64);
+
+            impl<'de> Deserialize<'de> for Component {
+                fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Component, D::Error> {
+                    read(Quantity::$quantity, deserializer).map(Component)
+                }
+            }
+
+            let components = Vec::<Component>::deserialize(deserializer)?;
+            Ok(Some(components.into_iter().map(|Component(value)| value).collect()))
+        }
+    )+};
+}
+
+vectors! {
+    force_vector, force_vector_schema: Force,
+    moment_vector, moment_vector_schema: Moment,
+    acceleration_vector, acceleration_vector_schema: Acceleration,
 }
