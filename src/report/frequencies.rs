@@ -4,7 +4,7 @@ use super::note::{Note, Weight};
 use super::table::Digits::{Signed, Significant};
 use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
-use crate::study::{BODY, FrequencyOutcome, Outcome, QUADRATIC, Standard, locks_at};
+use crate::study::{BODY, FrequencyOutcome, Outcome, QUADRATIC, Standard};
 
 /// The words for both kinds of masses.
 const CONSISTENT: &str = "consistent";
@@ -72,7 +72,7 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<Note> {
         outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.standard == Standard::FinerBody));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
     let compared = (has_finer && !has_quadratic && outcome.frequencies.len() > 1).then(|| words.to_string());
-    let locking = (is_compared && !has_quadratic).then(|| locks_at(&outcome.mesh, &outcome.material)).flatten().map(|poisson| {
+    let locking = (is_compared && !has_quadratic).then(|| outcome.locks_at()).flatten().map(|poisson| {
         format!(
             "at nu = {poisson} linear cells lock: natural frequencies are compared with those of elements that are too stiff, whose \
              frequencies are too high"

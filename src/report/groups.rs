@@ -4,7 +4,6 @@ use super::quality::mesh_notes;
 use super::summary::size;
 use super::table::{Column, Table};
 use crate::mesh::{ListedSides, Mesh};
-use crate::study::extent;
 use serde::Serialize;
 
 /// A mesh in the JSON of `groups`.
@@ -79,7 +78,7 @@ impl MeshRecord {
             mesh: name,
             points: mesh.point_count(),
             elements: mesh.blocks.iter().map(cells).collect(),
-            extent: extent(mesh),
+            extent: mesh.extent(),
             groups: mesh.groups.iter().map(group).collect(),
             notes: mesh_notes(mesh),
         }

@@ -10,7 +10,7 @@ use super::region_record::RegionRecord;
 use super::verdict::finite_elements_verdict;
 use crate::mesh::Mesh;
 use crate::number::finite;
-use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, ModelTimes, Outcome, Reading, extent};
+use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, ModelTimes, Outcome, Reading};
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -145,7 +145,7 @@ impl Report {
             version: VERSION,
             scene: outcome.scene.clone(),
             settings: outcome.settings.clone(),
-            extent: extent(mesh),
+            extent: mesh.extent(),
             assumed: outcome.assumed.clone(),
             nodes: mesh.node_count(),
             elements: mesh.cell_count(),

@@ -3,7 +3,7 @@
 use super::note::{Note, Weight};
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome, bends, extent, is_one_cell_across};
+use crate::study::{BodyLoad, ModelMotion, Outcome, TooStiff, bends};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ fn moved(outcome: &Outcome) -> Option<&ModelMotion> {
 
 /// That no figure under a load is to be trusted: linear finite elements move by more than the body's own size.
 pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
-    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let size = outcome.mesh.longest_side();
     let linear = outcome.loads.iter().filter(|load| load.deformation.is_some());
     let beyond: Vec<String> = linear
         .map(|load| (load, load.largest_displacement(&outcome.mesh)))
@@ -67,18 +67,13 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// Whether a body of one cell across bends under some load, which linear cells resist too much.
-pub(super) fn bends_too_little(outcome: &Outcome) -> bool {
-    outcome.loads.iter().any(|load| load.deformation.is_some_and(bends)) && is_one_cell_across(&outcome.mesh)
-}
-
 /// That a body of one cell across bends, which linear cells resist too much, and that errors are relative to these cells.
 pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
     let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
     let bends = |load: &&BodyLoad| load.deformation.is_some_and(bends);
     let loads: Vec<&str> =
         outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
-    (!loads.is_empty() && is_one_cell_across(&outcome.mesh)).then(|| {
+    (!loads.is_empty() && outcome.too_stiff == Some(TooStiff::Bends)).then(|| {
         let words = format!(
             "the body is about one cell across and bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
              from = \"quadratic\" compares with quadratic elements",

@@ -1,7 +1,7 @@
 //! What the networks are as materials, in words.
 
 use super::note::{Note, Weight};
-use crate::study::{FitOutcome, Outcome, locks_at};
+use crate::study::{FitOutcome, Outcome};
 
 /// The share by which a tensor or Young's modulus may be off before a network is warned of.
 const FAR: f64 = 0.1;
@@ -54,7 +54,7 @@ pub(super) fn material_note(outcome: &Outcome, fit: &FitOutcome) -> Option<Note>
     };
     // Exact networks are those of isotropic materials, and are not recommended in place of themselves.
     let has_remedy = outcome.material.materials().is_ok() && fit.kind.exact().is_none();
-    let remedy = match (has_remedy, locks_at(&outcome.mesh, &outcome.material)) {
+    let remedy = match (has_remedy, outcome.locks_at()) {
         (false, _) => "",
         (true, None) => ". The objective \"exact\" has no such error",
         (true, Some(_)) => {

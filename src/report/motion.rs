@@ -9,7 +9,7 @@ use super::table::Priority::First;
 use super::table::{Cell, Column, Table, csv};
 use crate::dynamics::Integrator;
 use crate::scalar::norm;
-use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record, extent, motion_title};
+use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outcome, Record, motion_title};
 
 /// One row per model.
 pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRecord]) -> Table {
@@ -85,7 +85,7 @@ const LOST_LINEAR: f64 = 1.0;
 /// its place.
 pub(super) fn motion_distrust(outcome: &Outcome) -> Option<String> {
     let motion = outcome.motion.as_ref()?;
-    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let size = outcome.mesh.longest_side();
     let points = 0..outcome.mesh.point_count() * outcome.mesh.dimension;
     let is_held = motion.pulls.is_empty() && points.into_iter().any(|place| motion.support.is_fixed(place));
     let why = |model: &ModelMotion| -> Option<String> {

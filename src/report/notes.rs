@@ -11,7 +11,7 @@ use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::Lumping;
 use crate::solve::{Ending, Standing};
-use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, extent, spurious_modes};
+use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 
 /// What a reader must know before trusting a row, one sentence for each model or load, the dearest first.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
@@ -162,7 +162,7 @@ fn of_fit(outcome: &Outcome, fit: &FitOutcome) -> Vec<Note> {
     let own = fit.kind.notes(outcome.mesh.cell_count(), &outcome.material);
     notes.extend(own.into_iter().map(|words| note(Weight::Fit, words)));
     if let Some(engine) = &fit.engine {
-        let of_engine = engine.notes(extent(&outcome.mesh).into_iter().fold(0.0, f64::max));
+        let of_engine = engine.notes(outcome.mesh.longest_side());
         notes.extend(of_engine.into_iter().map(|words| note(Weight::Fit, words)));
         if outcome.motion.is_some() {
             let words = "the motion is that of equations which are solved to the end, not that in the engine";

@@ -1,7 +1,6 @@
 //! The materials of a body, region by region.
 
-use crate::material::{Material, State};
-use crate::mesh::Mesh;
+use crate::material::{CellMap, State};
 use crate::number::finite;
 use crate::study::Outcome;
 use schemars::JsonSchema;
@@ -27,30 +26,24 @@ pub struct RegionRecord {
 impl RegionRecord {
     /// Makes a record of each region of a body.
     pub(super) fn all(outcome: &Outcome) -> Vec<RegionRecord> {
-        let (mesh, material) = (&outcome.mesh, &outcome.material);
-        let (names, thicknesses) = (material.regions(), material.thicknesses());
-        let cells = cells_of_regions(mesh, outcome);
-        let record = |(name, cells): (&String, &Vec<(usize, usize)>)| {
-            let range = |value: &dyn Fn(usize, usize) -> f64| {
-                let values = cells.iter().map(|&(block, cell)| value(block, cell));
-                let ends = values
-                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
-                ends.map(finite)
-            };
-            let of = |value: fn(&Material) -> f64| {
-                range(&|block, cell| material.isotropic(block, cell).map_or(f64::NAN, |material| value(&material)))
-            };
-            RegionRecord {
-                region: (!name.is_empty()).then(|| name.clone()),
-                cells: cells.len(),
-                young: of(Material::young),
-                poisson: of(Material::poisson),
-                thickness: (material.state() != State::Solid)
-                    .then(|| range(&|block, cell| *thicknesses.at(block, cell))),
-                density: material.density().map(|density| range(&|block, cell| *density.at(block, cell))),
-            }
+        let material = &outcome.material;
+        // Over a million cells, so in a package that is optimised.
+        let ranges = |values: &CellMap<f64>| -> Vec<[Option<f64>; 2]> {
+            material.ranges_by_region(values).into_iter().map(|range| range.map(finite)).collect()
         };
-        names.iter().zip(&cells).map(record).collect()
+        let cells = material.cells_by_region(outcome.mesh.cell_count());
+        let (young, poisson) = (ranges(&material.young()), ranges(&material.poisson()));
+        let thickness = (material.state() != State::Solid).then(|| ranges(&material.thicknesses()));
+        let density = material.density().map(ranges);
+        let record = |(region, name): (usize, &String)| RegionRecord {
+            region: (!name.is_empty()).then(|| name.clone()),
+            cells: cells[region],
+            young: young[region],
+            poisson: poisson[region],
+            thickness: thickness.as_ref().map(|ranges| ranges[region]),
+            density: density.as_ref().map(|ranges| ranges[region]),
+        };
+        material.regions().iter().enumerate().map(record).collect()
     }
 
     /// The material in words, such as `E = 1000 to 5000 Pa, nu = 0.3`.
@@ -81,14 +74,4 @@ fn short(value: f64) -> String {
         }
         _ => format!("{value:.3e}"),
     }
-}
-
-/// Block and index of the cells of each region.
-fn cells_of_regions(mesh: &Mesh, outcome: &Outcome) -> Vec<Vec<(usize, usize)>> {
-    let material = &outcome.material;
-    let mut cells = vec![Vec::new(); material.regions().len()];
-    for (index, block) in mesh.blocks.iter().enumerate() {
-        (0..block.cells().len()).for_each(|cell| cells[*material.region().at(index, cell)].push((index, cell)));
-    }
-    cells
 }

@@ -2,7 +2,7 @@
 
 use super::note::{Note, Weight};
 use crate::model::hinge_flexure;
-use crate::study::{FitOutcome, Outcome, extent};
+use crate::study::{FitOutcome, Outcome};
 use nalgebra::Matrix3;
 
 /// The thickness, relative to the extent of a body, beyond which shear across it counts.
@@ -22,7 +22,7 @@ fn thick(outcome: &Outcome) -> Option<Note> {
         1 => ("rod", 4.0 * gyration.sqrt()),
         _ => ("sheet", (12.0 * gyration).sqrt()),
     };
-    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let size = outcome.mesh.longest_side();
     (thickness > THICK * size).then(|| {
         let words = format!(
             "the {body} is {thickness:.3e} m thick and extends over {size:.3e} m: the theory of thin plates and slender rods leaves out shear across the thickness, which \

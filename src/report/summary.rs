@@ -6,7 +6,7 @@ use super::motion::motion_distrust;
 use super::quality::{changes, counted, quality_lines};
 use super::region_record::RegionRecord;
 use super::table::{Table, run_text};
-use crate::study::{BodyLoad, Followed, Outcome, Reading, Standard, extent};
+use crate::study::{BodyLoad, Followed, Outcome, Reading, Standard};
 use crate::text::printable;
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub(super) fn summary_line(outcome: &Outcome) -> String {
         "{} points, {}, {}; {}{}",
         mesh.node_count(),
         cells.join(", "),
-        size(&extent(mesh)),
+        size(&mesh.extent()),
         material_words(outcome),
         outcome.law.as_ref().map_or(String::new(), |law| format!(", {law}"))
     )
@@ -115,7 +115,7 @@ fn pressures(outcome: &Outcome) -> Vec<String> {
 
 /// How far the finite elements move under the loads that they reach, and what errors are relative to, which percentages hide.
 fn largest(outcome: &Outcome) -> Option<String> {
-    let size = extent(&outcome.mesh).into_iter().fold(0.0, f64::max);
+    let size = outcome.mesh.longest_side();
     let moved = |load: &BodyLoad| {
         let most = load.largest_displacement(&outcome.mesh);
         let known = load.measured.and_then(|measured| Some((measured.standard, measured.largest?)));

@@ -1,8 +1,8 @@
 //! What a reader must know first of a network, in a few words.
 
-use super::linear_theory::{bends_too_little, distrust};
+use super::linear_theory::distrust;
 use super::materials::{difference, is_material};
-use crate::study::{FitOutcome, Outcome, locks_at};
+use crate::study::{FitOutcome, Outcome, TooStiff};
 
 /// A network or the finite elements whose cells lock.
 pub(super) const LOCKS: &str = "locks";
@@ -38,11 +38,9 @@ pub(super) fn finite_elements_verdict(outcome: &Outcome) -> String {
     if distrust(outcome).is_some() {
         return "not trusted".into();
     }
-    if locks_at(&outcome.mesh, &outcome.material).is_some() {
-        LOCKS.into()
-    } else if bends_too_little(outcome) {
-        TOO_STIFF.into()
-    } else {
-        String::new()
+    match outcome.too_stiff {
+        Some(TooStiff::Locks(_)) => LOCKS.into(),
+        Some(TooStiff::Bends) => TOO_STIFF.into(),
+        None => String::new(),
     }
 }

@@ -15,3 +15,15 @@ use nalgebra::{DMatrix, DVector};
 pub fn eigenvalues(a: DMatrix<f64>) -> DVector<f64> {
     a.symmetric_eigenvalues()
 }
+
+/// The x of least norm that minimises ‖A x − b‖, by the singular values σ of A; those of at most `epsilon` count as zero. `None` if they do not
+/// converge. It is done in n³ operations.
+///
+/// ```
+/// use nalgebra::{dmatrix, dvector};
+/// let x = springfit_numerics::dense::least_squares(dmatrix![1.0, 1.0; 1.0, 1.0], &dvector![1.0, 3.0], 1e-12).unwrap();
+/// assert!((x - dvector![1.0, 1.0]).norm() < 1e-14);
+/// ```
+pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>, epsilon: f64) -> Option<DVector<f64>> {
+    a.svd(true, true).solve(b, epsilon).ok()
+}

@@ -33,11 +33,8 @@ impl Camera {
         if d < 3 {
             return Camera::straight();
         }
-        let extent = |k: usize| {
-            let values = || mesh.points.iter().skip(k).step_by(d);
-            values().copied().fold(f64::NEG_INFINITY, f64::max) - values().copied().fold(f64::INFINITY, f64::min)
-        };
-        let turn = if extent(1) > 1.5 * extent(0) { 90.0 - TURN } else { TURN };
+        let size = mesh.extent();
+        let turn = if size[1] > 1.5 * size[0] { 90.0 - TURN } else { TURN };
         Camera::turned(turn, ELEVATION)
     }
 

@@ -170,6 +170,17 @@ impl CellMap<f64> {
         let least = |[least, largest]: [f64; 2], value: &f64| [least.min(*value), largest.max(*value)];
         self.values().fold([f64::INFINITY, f64::NEG_INFINITY], least)
     }
+
+    /// The least and the largest value of the cells of one block.
+    pub fn range_of(&self, block: usize) -> [f64; 2] {
+        match self {
+            CellMap::Uniform(value) => [*value; 2],
+            CellMap::Each(blocks) => {
+                let least = |[least, largest]: [f64; 2], value: &f64| [least.min(*value), largest.max(*value)];
+                blocks[block].iter().fold([f64::INFINITY, f64::NEG_INFINITY], least)
+            }
+        }
+    }
 }
 
 impl<'a, T> BlockValues<'a, T> {

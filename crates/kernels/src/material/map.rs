@@ -198,6 +198,24 @@ impl MaterialMap {
         }
     }
 
+    /// Young's modulus of each cell, Pa; it is not a number where a cell is anisotropic.
+    pub fn young(&self) -> CellMap<f64> {
+        self.of_each(Material::young)
+    }
+
+    /// Poisson's ratio of each cell; it is not a number where a cell is anisotropic.
+    pub fn poisson(&self) -> CellMap<f64> {
+        self.of_each(Material::poisson)
+    }
+
+    fn of_each(&self, value: fn(&Material) -> f64) -> CellMap<f64> {
+        match (&self.materials, &self.linear) {
+            (Some(materials), _) => materials.map(value),
+            (None, Some(linear)) => linear.map(|material| material.isotropic().map_or(f64::NAN, |own| value(&own))),
+            (None, None) => CellMap::Uniform(f64::NAN),
+        }
+    }
+
     /// The body with another material in each cell, in the same state.
     ///
     /// # Errors
@@ -236,6 +254,34 @@ impl MaterialMap {
     /// The region of each cell, as an index into [`MaterialMap::regions`].
     pub fn region(&self) -> &CellMap<usize> {
         &self.region
+    }
+
+    /// The number of cells of each region, of a body with so many.
+    pub fn cells_by_region(&self, cells: usize) -> Vec<usize> {
+        let mut counts = vec![0; self.regions.len()];
+        match &self.region {
+            CellMap::Uniform(region) => counts[*region] = cells,
+            CellMap::Each(blocks) => blocks.iter().flatten().for_each(|region| counts[*region] += 1),
+        }
+        counts
+    }
+
+    /// The least and the largest of some values over the cells of each region. What is not a number is left out.
+    pub fn ranges_by_region(&self, values: &CellMap<f64>) -> Vec<[f64; 2]> {
+        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.regions.len()];
+        match &self.region {
+            CellMap::Uniform(region) => ranges[*region] = values.range(),
+            CellMap::Each(blocks) => {
+                for (block, regions) in blocks.iter().enumerate() {
+                    for (cell, region) in regions.iter().enumerate() {
+                        let value = *values.at(block, cell);
+                        let [least, largest] = &mut ranges[*region];
+                        (*least, *largest) = (least.min(value), largest.max(value));
+                    }
+                }
+            }
+        }
+        ranges
     }
 
     /// The materials of some of the cells, which are given by block.

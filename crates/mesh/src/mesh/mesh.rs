@@ -5,7 +5,7 @@ use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
 use crate::symbolic::Predicate;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Points, cells of known elements, and groups. Every point is a node of a cell or a director, and every cell has a positive volume.
@@ -226,6 +226,46 @@ impl Mesh {
         let element = self.blocks[index.block].element.clone();
         let block = CellBlock { element, connectivity: (0..nodes.len()).collect() };
         Mesh { blocks: vec![block], ..Mesh::of_points(self.dimension, points) }
+    }
+
+    /// The first cells of each block, at most so many, without their groups. Their points are in the order in which the cells have them.
+    pub fn of_first_cells(&self, count: usize) -> Mesh {
+        let mut places = HashMap::new();
+        let mut points = Vec::new();
+        let mut place = |point: usize| {
+            *places.entry(point).or_insert_with(|| {
+                points.extend_from_slice(self.point(point));
+                points.len() / self.dimension - 1
+            })
+        };
+        let mut first = |block: &CellBlock| {
+            let kept = count.min(block.cells().len()) * block.element.nodes();
+            let connectivity = block.connectivity[..kept].iter().map(|&point| place(point)).collect();
+            CellBlock { element: block.element.clone(), connectivity }
+        };
+        let blocks = self.blocks.iter().map(&mut first).collect();
+        Mesh { quality: self.quality.clone(), ..Mesh::of_cells(self.dimension, points, blocks) }
+    }
+
+    /// The least and the largest coordinate of the nodes along each axis, m.
+    pub fn ranges(&self) -> Vec<[f64; 2]> {
+        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.dimension];
+        for x in self.points.chunks_exact(self.dimension).take(self.node_count()) {
+            for ([least, largest], x) in ranges.iter_mut().zip(x) {
+                (*least, *largest) = (least.min(*x), largest.max(*x));
+            }
+        }
+        ranges
+    }
+
+    /// The size of the box around the nodes along each axis, m.
+    pub fn extent(&self) -> Vec<f64> {
+        self.ranges().into_iter().map(|[least, largest]| largest - least).collect()
+    }
+
+    /// The longest side of the box around the nodes, m.
+    pub fn longest_side(&self) -> f64 {
+        self.extent().into_iter().fold(0.0, f64::max)
     }
 
     /// The names of the groups to which each cell belongs, by block and cell.

@@ -3,24 +3,12 @@
 use crate::mesh::Mesh;
 use crate::text::rounded;
 
-/// The size of the box around the body along each axis, m.
-pub fn extent(mesh: &Mesh) -> Vec<f64> {
-    let along = |k: usize| {
-        let range = mesh.points.iter().skip(k).step_by(mesh.dimension).take(mesh.node_count());
-        let (least, largest) = range.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-        largest - least
-    };
-    (0..mesh.dimension).map(along).collect()
-}
-
 /// `from 0 to 0.1 m along x, …`: where the body is.
 pub(in crate::study) fn extends(mesh: &Mesh) -> String {
-    let along = |k: usize| {
-        let range = mesh.points.iter().skip(k).step_by(mesh.dimension).take(mesh.node_count());
-        let (least, most) = range.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
-        format!("from {} to {} m along {}", rounded(least, 4), rounded(most, 4), ["x", "y", "z"][k])
+    let along = |([least, most], axis): ([f64; 2], &str)| {
+        format!("from {} to {} m along {axis}", rounded(least, 4), rounded(most, 4))
     };
-    (0..mesh.dimension).map(along).collect::<Vec<_>>().join(", ")
+    mesh.ranges().into_iter().zip(["x", "y", "z"]).map(along).collect::<Vec<_>>().join(", ")
 }
 
 /// A longer body of a file is rarely meant, m.
@@ -31,7 +19,7 @@ const SHORTEST: f64 = 1e-4;
 /// Says that a body of a file is so long or so short that its unit may not be the metre, which it is where no unit is stated. `key` is where one
 /// is stated: `scale = "mm"`, or the option `--scale mm`.
 pub fn unit_note(mesh: &Mesh, key: &str) -> Option<String> {
-    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let longest = mesh.longest_side();
     let taken = format!("the coordinates of the mesh are taken in metres: the body is {} m long", rounded(longest, 2));
     if longest > LONGEST {
         return Some(format!("{taken}; {key} if they are in millimetres, and \"m\" in its place if this is right"));

@@ -18,7 +18,7 @@ use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Work that takes longer is announced, s.
 const LONG: f64 = 10.0;
@@ -247,7 +247,7 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
     let reference = Reference { large, ..Reference::default() };
     let mut count = 8;
     loop {
-        let some = first_cells(mesh, count);
+        let some = mesh.of_first_cells(count);
         let first = |block: &CellBlock| (0..block.cells().len()).collect();
         let own = material.of_some(&some.blocks.iter().map(first).collect::<Vec<_>>());
         // What is wrong is reported where the fit is made.
@@ -272,25 +272,6 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
         }
         count *= 4;
     }
-}
-
-/// The mesh of the first cells of each block, with their points.
-fn first_cells(mesh: &Mesh, count: usize) -> Mesh {
-    let mut places = HashMap::new();
-    let mut points = Vec::new();
-    let mut place = |point: usize| {
-        *places.entry(point).or_insert_with(|| {
-            points.extend_from_slice(mesh.point(point));
-            points.len() / mesh.dimension - 1
-        })
-    };
-    let mut first = |block: &CellBlock| {
-        let kept = count.min(block.cells().len()) * block.element.nodes();
-        let connectivity = block.connectivity[..kept].iter().map(|&point| place(point)).collect();
-        CellBlock { element: block.element.clone(), connectivity }
-    };
-    let blocks = mesh.blocks.iter().map(&mut first).collect();
-    Mesh { quality: mesh.quality.clone(), ..Mesh::of_cells(mesh.dimension, points, blocks) }
 }
 
 /// The seconds of the loads with the finite elements and with each network.

@@ -1,4 +1,4 @@
-//! Whether the cells of a body lock: whether linear functions cannot keep a volume that the material keeps.
+//! Whether the linear cells of a body resist it too much: they cannot keep a volume that the material keeps, or bend one cell across.
 
 use crate::element::Element;
 use crate::material::{MaterialMap, State};
@@ -18,12 +18,18 @@ pub struct Locking {
 }
 
 impl Locking {
+    /// Finds the linear cells of a body that lock.
+    pub fn of_body(mesh: &Mesh, material: &MaterialMap) -> Option<Locking> {
+        Locking::of(mesh, material, &|_| true)
+    }
+
     /// Finds the cells of these elements that lock: those from Poisson's ratio 0.4 on whose nodes are their corners and that integrate changes
     /// of volume like all others. Plane stress does not lock.
     pub fn of(mesh: &Mesh, material: &MaterialMap, is_asked: &dyn Fn(&Element) -> bool) -> Option<Locking> {
         if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
             return None;
         }
+        let poisson = material.poisson();
         let of_block = |(index, block): (usize, &CellBlock)| {
             let element = &block.element;
             let is_linear =
@@ -31,17 +37,37 @@ impl Locking {
             if !is_linear {
                 return None;
             }
-            let ratios = (0..block.cells().len()).filter_map(|cell| Some(material.isotropic(index, cell)?.poisson()));
-            let poisson = ratios.fold(0.0, f64::max);
+            let [_, poisson] = poisson.range_of(index);
             (poisson >= LOCKS).then_some(Locking { poisson, of_simplices: element.cell.is_simplex() })
         };
         mesh.body_blocks().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
     }
 }
 
-/// The largest Poisson's ratio of the cells of a body that lock: linear cells from Poisson's ratio 0.4 on; `None` where none do.
-pub fn locks_at(mesh: &Mesh, material: &MaterialMap) -> Option<f64> {
-    Locking::of(mesh, material, &|_| true).map(|locking| locking.poisson)
+/// Why the linear cells of a body resist it too much.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TooStiff {
+    /// They lock.
+    Locks(Locking),
+    /// The body bends under some load and is about one cell across.
+    Bends,
+}
+
+impl TooStiff {
+    /// Finds why the cells resist too much in these deformations, one for each load; `None` at large deformation, where bending is not judged.
+    pub fn of(mesh: &Mesh, material: &MaterialMap, deformations: &[Option<Deformation>]) -> Option<TooStiff> {
+        let locks = Locking::of_body(mesh, material).map(TooStiff::Locks);
+        let has_bent = || deformations.iter().flatten().any(|deformation| bends(*deformation));
+        locks.or_else(|| (has_bent() && is_one_cell_across(mesh)).then_some(TooStiff::Bends))
+    }
+
+    /// The largest Poisson's ratio of the cells that lock.
+    pub fn locks_at(&self) -> Option<f64> {
+        match self {
+            TooStiff::Locks(locking) => Some(locking.poisson),
+            TooStiff::Bends => None,
+        }
+    }
 }
 
 /// The largest mesh whose boundary is looked at: the search takes a tenth of a second.
@@ -49,7 +75,7 @@ const MOST_CELLS: usize = 100_000;
 
 /// Whether linear cells of a body would be too stiff in bending: at least half of them have no point inside the body, so that there is about one
 /// across. `false` of surfaces and curves in space, which do not bend, and of meshes of more than 100 000 cells, where it is not looked at.
-pub fn is_one_cell_across(mesh: &Mesh) -> bool {
+fn is_one_cell_across(mesh: &Mesh) -> bool {
     let is_linear = |block: &CellBlock| block.element.has_corners_alone();
     let count: usize = mesh.body_blocks().map(|(_, block)| block.cells().len()).sum();
     if mesh.cell_dimension() != mesh.dimension

@@ -64,7 +64,7 @@ pub use convergence::{
 };
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
-pub use extent::{extent, unit_note};
+pub use extent::unit_note;
 pub use fits::{
     CellMethod, EngineEntry, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe,
     ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad,
@@ -77,7 +77,7 @@ pub use fits::{
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
 pub use learning::{LearningPoint, learning_curve};
-pub use locking::{bends, is_one_cell_across, locks_at};
+pub use locking::{Locking, TooStiff, bends};
 pub use masses::{PointMasses, point_masses};
 pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use outcome::{

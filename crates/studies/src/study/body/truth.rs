@@ -5,12 +5,11 @@ use super::cases::applied_cases;
 use super::finer::{FinerAnswer, answers};
 use crate::analysis::metrics::displacement_error;
 use crate::error::Result;
-use crate::material::MaterialMap;
 use crate::mesh::{Carrier, Field, Mesh};
 use crate::model::{Action, Deformation};
 use crate::solve::{KnownEquations, factor_cost};
 use crate::study::cost::{COMPARISONS, REFINEMENTS, entries};
-use crate::study::locking::{Locking, bends, is_one_cell_across};
+use crate::study::locking::{TooStiff, bends};
 use crate::study::outcome::Standard;
 use crate::study::progress::Progress;
 use crate::study::scene::{LoadCase, LoadKind, Scene};
@@ -38,24 +37,28 @@ struct Level {
 
 /// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock or a body of one cell across bends under it: on
 /// these cells halved, with the difference from those on the cells themselves as an estimate of their error, as far as that takes at most three
-/// times what the finite elements and the networks take. Their displacements are `body`, by load. Returns what must be known of it, one sentence each.
-pub fn judge_by_truth<'a>(
+/// times what the finite elements and the networks take. They deform so, by load. Returns what must be known of it, one sentence each.
+pub fn judge_by_truth(
     scene: &Scene,
     mesh: &Mesh,
-    material: &MaterialMap,
     cases: &mut [Case],
-    body: impl Iterator<Item = &'a Vec<f64>>,
+    (too_stiff, deformations): (TooStiff, &[Option<Deformation>]),
     progress: &mut Progress,
 ) -> Vec<String> {
-    let Some(Stiff { words: locks, loads: is_stiff, is_told }) = Stiff::of(mesh, material, body) else {
-        return Vec::new();
+    // Notes of the report say that errors are relative to cells that bend too little.
+    let (locks, is_told) = match too_stiff {
+        TooStiff::Locks(locking) => (format!("at nu = {} linear cells lock", locking.poisson), false),
+        TooStiff::Bends => {
+            ("the body is about one cell across and bends, where linear cells are too stiff".to_string(), true)
+        }
     };
+    let is_stiff = deformations.iter().map(|deformation| !is_told || deformation.is_some_and(bends));
     let is_of_points = |load: &LoadCase| is_of_points(load, scene.loads(), mesh);
     let is_judged: Vec<bool> = scene
         .loads()
         .iter()
-        .zip(&is_stiff)
-        .map(|(load, stiff)| *stiff && load.measured.is_none() && !is_of_points(load))
+        .zip(is_stiff)
+        .map(|(load, stiff)| stiff && load.measured.is_none() && !is_of_points(load))
         .collect();
     let mut notes = Vec::new();
     for load in scene.loads().iter().filter(|load| !is_told && is_of_points(load)) {
@@ -129,28 +132,6 @@ pub fn judge_by_truth<'a>(
         case.finer = Some(FinerSolution { standard: best.standard, work: best.answers[load].work, uncertainty });
     }
     notes
-}
-
-/// Why cells are too stiff.
-struct Stiff {
-    words: String,
-    /// Under which loads, `[loads]`.
-    loads: Vec<bool>,
-    /// Whether notes of the report say that errors are relative to cells that are too stiff.
-    is_told: bool,
-}
-
-impl Stiff {
-    /// All loads where linear cells cannot keep a volume, and those under which a body of one cell across bends. `None` where the cells are right.
-    fn of<'a>(mesh: &Mesh, material: &MaterialMap, body: impl Iterator<Item = &'a Vec<f64>>) -> Option<Stiff> {
-        if let Some(Locking { poisson, .. }) = Locking::of(mesh, material, &|_| true) {
-            let words = format!("at nu = {poisson} linear cells lock");
-            return Some(Stiff { words, loads: body.map(|_| true).collect(), is_told: false });
-        }
-        let loads: Vec<bool> = body.map(|u| bends(Deformation::largest(mesh, u))).collect();
-        let words = "the body is about one cell across and bends, where linear cells are too stiff".to_string();
-        (loads.contains(&true) && is_one_cell_across(mesh)).then_some(Stiff { words, loads, is_told: true })
-    }
 }
 
 /// Makes the errors of a load unknown.

@@ -7,7 +7,6 @@ use crate::mesh::Mesh;
 use crate::model::{Support, masses};
 use crate::springs::norm;
 use crate::study::body::applied_cases;
-use crate::study::extent::extent;
 use crate::study::scene::Scene;
 
 /// Contents that differ by less than this share are equal up to rounding. Coordinates in files have six digits or more.
@@ -31,7 +30,7 @@ impl<'a> Placed<'a> {
 
     /// The sizes of the box around the body, and its content.
     fn sizes(&self) -> Vec<(String, f64)> {
-        let lengths = extent(&self.mesh).into_iter().zip(["x", "y", "z"]);
+        let lengths = self.mesh.extent().into_iter().zip(["x", "y", "z"]);
         let content = masses(&self.mesh, 1.0, 1.0).iter().sum();
         let what = ["", "length", "area", "volume"][self.mesh.cell_dimension()];
         lengths.map(|(x, axis)| (format!("extent along {axis}, m"), x)).chain([(what.into(), content)]).collect()
@@ -103,7 +102,7 @@ fn same_conditions(
         (0..d).filter(is_held).map(|k| ["x", "y", "z"][k]).collect()
     };
     let differs = |a: f64, b: f64, scale: f64| (a - b).abs() > tolerance * scale;
-    let size = extent(&own.mesh).into_iter().fold(0.0, f64::max);
+    let size = own.mesh.longest_side();
     if axes(&held) != axes(&other_held) {
         let words = |support: &Support| format!("points held along {}", axes(support).join(", "));
         fault("fix", words(&held), words(&other_held))?;

@@ -9,7 +9,6 @@ use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, is_flat, masses};
 use crate::study::checkpoint::Controls;
-use crate::study::extent::extent as extent_of;
 use crate::study::outcome::{FitOutcome, Outcome};
 use crate::study::own_name::BODY;
 use crate::study::progress::{Event, Progress};
@@ -115,7 +114,7 @@ fn of_levels(
         progress(Event::Note(&format!("{number}: {counted}, {unknowns} unknowns, {seconds:.1} s")));
         let mut notes = Vec::new();
         if level == 0 {
-            convergence.extent = extent_of(mesh);
+            convergence.extent = mesh.extent();
             notes.extend(outcome.assumed.iter().chain(&outcome.of_loads).cloned());
             let input = scene.mesh();
             if input.disc.is_some() || input.fill.is_some() {

@@ -1,6 +1,5 @@
 //! The supports and loads of a first scene.
 
-use super::super::extent::extent;
 use crate::mesh::{Group, ListedSides, Mesh};
 use crate::text::{not_a_line, rounded, toml as quoted};
 
@@ -107,7 +106,7 @@ fn others(mesh: &Mesh, pieces: &[Vec<usize>]) -> Vec<String> {
     if others.len() > MOST_PIECES {
         return Vec::new();
     }
-    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let longest = mesh.longest_side();
     // The condition holds what is at the end of the piece, whose coordinates a file may have rounded.
     let margin = 1e-6 * longest;
     let condition = |piece: &Vec<usize>| {
@@ -156,7 +155,7 @@ fn is_rigid(mesh: &Mesh, points: &[usize]) -> bool {
 
 /// The points that lie lowest along the longest axis, as few layers as hold the body, and the condition that selects them.
 fn lowest(mesh: &Mesh, pieces: &[Vec<usize>]) -> Option<(Vec<usize>, String)> {
-    let sizes = extent(mesh);
+    let sizes = mesh.extent();
     let axis = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
     let mut along: Vec<f64> = (0..mesh.point_count()).map(|point| mesh.point(point)[axis]).collect();
     let places = along.clone();

@@ -1,6 +1,5 @@
 //! The material of a first scene: what is given, what a deck states, or a default.
 
-use super::super::extent::extent;
 use crate::mesh::{Mesh, Section};
 use crate::quantity::Quantity;
 use crate::text::{not_a_line, rounded, toml as quoted};
@@ -170,7 +169,7 @@ fn constants(mesh: &Mesh, given: &DraftMaterial, section: Option<&Section>, scal
     line("young", young, &format!("{words}{}", from(of_stated)));
     let poisson = given.poisson.or(stated.and_then(|stated| stated.poisson));
     line("poisson", rounded(poisson.unwrap_or(POISSON), 6), "Poisson's ratio, below 0.5");
-    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let longest = mesh.longest_side();
     match mesh.cell_dimension() {
         2 => {
             let thickness = of_deck(section.and_then(|section| section.thickness), scale);

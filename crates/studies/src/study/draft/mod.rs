@@ -1,6 +1,6 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
-use super::extent::{extends, extent};
+use super::extent::extends;
 use super::locking::LOCKS;
 use super::scene::{FillEntry, MeshLength};
 use crate::fit::check_flat;
@@ -56,7 +56,7 @@ pub fn draft(
     let mut text = String::new();
     let mut line = |words: &str| writeln!(text, "{words}").expect("a String grows");
     let cells: Vec<_> = mesh.blocks.iter().map(|b| format!("{} {}", b.cells().len(), b.element.name)).collect();
-    let sizes: Vec<String> = extent(mesh).iter().map(|x| rounded(*x, 3)).collect();
+    let sizes: Vec<String> = mesh.extent().iter().map(|x| rounded(*x, 3)).collect();
     let size = format!("{} points, {}; {} m", mesh.point_count(), cells.join(", "), sizes.join(" x "));
     line(&comment("# ", &size));
     line(&format!("# The body extends {}.", extends(mesh)));
@@ -149,7 +149,7 @@ pub fn draft(
             quoted(objective)
         ));
     }
-    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let longest = mesh.longest_side();
     conditions(mesh, longest, young(mesh, material, scale)).iter().for_each(|written| line(written));
     line("\n[output]");
     line("# vtu = true              # springs and displacements for ParaView");

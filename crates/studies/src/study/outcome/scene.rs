@@ -7,6 +7,7 @@ use super::motion::MotionOutcome;
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
+use crate::study::locking::TooStiff;
 use crate::study::masses::PointMasses;
 use crate::study::timing::ModelTimes;
 use std::path::PathBuf;
@@ -44,6 +45,8 @@ pub struct Outcome {
     pub fibres: Option<f64>,
     /// The loads of the scene, with the response of the finite elements.
     pub loads: Vec<BodyLoad>,
+    /// Why the linear cells of the mesh resist the body too much; `None` where they do not.
+    pub too_stiff: Option<TooStiff>,
     /// The fits, in the order of the scene.
     pub fits: Vec<FitOutcome>,
     /// The costs of the finite elements of the mesh, if the scene asks for them.
@@ -68,6 +71,7 @@ impl Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
         let (inputs, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
+        let too_stiff = TooStiff::of(&mesh, &material, &[]);
         Outcome {
             source: name.clone(),
             scene: name,
@@ -84,12 +88,18 @@ impl Outcome {
             law,
             fibres,
             loads,
+            too_stiff,
             fits: vec![fit],
             model_times: None,
             motion,
             frequencies,
             left_out,
         }
+    }
+
+    /// The largest Poisson's ratio of the cells that lock.
+    pub fn locks_at(&self) -> Option<f64> {
+        self.too_stiff.and_then(|cells| cells.locks_at())
     }
 
     /// The index of the load with this name.

@@ -7,6 +7,7 @@ use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Deformation;
 use crate::study::body::{Case, LargeBody, LinearBody, load_notes};
+use crate::study::locking::TooStiff;
 use crate::study::masses::PointMasses;
 use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
 use crate::study::progress::{Event, Progress};
@@ -21,6 +22,10 @@ pub(super) struct Answers {
     followed: Vec<Option<Followed>>,
     /// The works of the loads along the displacements, J; `None` at large deformation.
     works: Vec<Option<f64>>,
+    /// How far the finite elements deform under each load; `None` at large deformation.
+    deformations: Vec<Option<Deformation>>,
+    /// Why the cells of the mesh resist these deformations too much.
+    too_stiff: Option<TooStiff>,
     /// The energies of the laws, at large deformation.
     laws: Option<EnergyMap>,
     masses: Option<PointMasses>,
@@ -33,31 +38,41 @@ impl Answers {
     /// The equations do not fit into memory, or iterations that were asked for stall.
     pub fn of(posed: &mut Posed, solved: Solved, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<Answers> {
         let Solved { large, linear, masses, .. } = solved;
-        let (displacements, works, followed, laws) = match large {
+        let count = posed.cases.len();
+        let (displacements, works, followed, laws, deformations, too_stiff) = match large {
             Some(large) => {
-                posed.tell_of_locking();
+                let deformations = vec![None; count];
+                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, &deformations);
+                if let Some(TooStiff::Locks(locking)) = too_stiff {
+                    posed.tell_of_locking(locking);
+                }
                 at_large(posed, &large, fits, progress)?;
-                let works = vec![None; posed.cases.len()];
-                (large.displacements, works, large.followed.into_iter().map(Some).collect(), Some(large.laws))
+                let followed = large.followed.into_iter().map(Some).collect();
+                (large.displacements, vec![None; count], followed, Some(large.laws), deformations, too_stiff)
             }
             None => {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
+                let deformed = |u: &Vec<f64>| Some(Deformation::largest(&posed.mesh, u));
+                let deformations: Vec<_> = body.displacements().map(deformed).collect();
+                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, &deformations);
                 // After the fits, which are to the finite elements of the mesh.
-                posed.judge_by_truth(&body, progress);
+                if let Some(too_stiff) = too_stiff {
+                    posed.judge_by_truth(too_stiff, &deformations, progress);
+                }
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;
                 let (displacements, works) = body.into_answers();
-                (displacements, works, vec![None; posed.cases.len()], None)
+                (displacements, works, vec![None; count], None, deformations, too_stiff)
             }
         };
         if let Some(gauged) = &posed.gauged {
             fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
         }
-        Ok(Answers { displacements, works, followed, laws, masses })
+        Ok(Answers { displacements, works, deformations, too_stiff, followed, laws, masses })
     }
 
     /// All that was found, without what happens over time; with the plan of that, and the laws that it needs.
     pub fn outcome(self, posed: Posed, fits: Vec<FitOutcome>) -> (Outcome, TimePlan, Option<EnergyMap>) {
-        let Answers { displacements, works, followed, laws, masses } = self;
+        let Answers { displacements, works, deformations, too_stiff, followed, laws, masses } = self;
         let Posed { scene, mesh, material, support, cases, gauged, plan, of_reference, .. } = posed;
         let answers = cases.iter().zip(displacements.into_iter().zip(works)).zip(followed).enumerate();
         let loads = answers.map(|(i, ((case, (fem, work)), followed))| BodyLoad {
@@ -68,7 +83,7 @@ impl Answers {
             is_gravity: scene.loads()[i].key() == "gravity",
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
             measured: case.measured(&mesh, &fem, work),
-            deformation: laws.is_none().then(|| Deformation::largest(&mesh, &fem)),
+            deformation: deformations[i],
             followed,
             fem,
         });
@@ -90,6 +105,7 @@ impl Answers {
             law: laws.as_ref().map(EnergyMap::title),
             fibres: laws.as_ref().and_then(EnergyMap::distance_at_rest),
             loads,
+            too_stiff,
             fits,
             model_times: None,
             motion: None,

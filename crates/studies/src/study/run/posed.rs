@@ -4,11 +4,11 @@ use crate::analysis::moduli::moduli_of_body;
 use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
-use crate::model::Support;
-use crate::study::body::{Case, Gauged, LinearBody, judge_by_truth, load_cases};
+use crate::model::{Deformation, Support};
+use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
-use crate::study::locking::Locking;
+use crate::study::locking::{Locking, TooStiff};
 use crate::study::outcome::{FitOutcome, Standard};
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::Scene;
@@ -65,21 +65,29 @@ impl<'a> Posed<'a> {
         held_points(&self.mesh, &self.support, &self.cases)
     }
 
-    /// Makes errors relative to quadratic elements where the cells of the mesh are too stiff and the scene does not say what they are relative to.
-    pub fn judge_by_truth(&mut self, body: &LinearBody, progress: &mut Progress) {
+    /// Makes errors relative to quadratic elements where the cells of the mesh are too stiff in these deformations, one for each load, and the scene
+    /// does not say what errors are relative to.
+    pub fn judge_by_truth(
+        &mut self,
+        too_stiff: TooStiff,
+        deformations: &[Option<Deformation>],
+        progress: &mut Progress,
+    ) {
         if self.scene.reference().is_none() {
-            let known = body.displacements();
-            let notes = judge_by_truth(self.scene, &self.mesh, &self.material, &mut self.cases, known, progress);
+            let cells = (too_stiff, deformations);
+            let notes = judge_by_truth(self.scene, &self.mesh, &mut self.cases, cells, progress);
             self.of_reference.extend(notes);
         }
-        self.tell_of_finer_locking();
+        if let TooStiff::Locks(locking) = too_stiff {
+            self.tell_of_finer_locking(locking);
+        }
     }
 
     /// Says that a finer body of the same cells locks as they do.
-    fn tell_of_finer_locking(&mut self) {
+    fn tell_of_finer_locking(&mut self, Locking { poisson, .. }: Locking) {
         let Some(entry) = self.scene.reference() else { return };
         let is_finer = entry.standard() == Standard::FinerBody && !entry.is_of_cells() && entry.mesh.is_none();
-        if is_finer && let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
+        if is_finer {
             self.of_reference.push(format!(
                 "at nu = {poisson} linear cells lock, and those of the finer body with them: errors are relative to what is still too stiff; from = \
                  \"quadratic\" in [reference] does not lock"
@@ -88,16 +96,15 @@ impl<'a> Posed<'a> {
     }
 
     /// Says that the finite elements which errors at large deformation are relative to lock.
-    pub fn tell_of_locking(&mut self) {
+    pub fn tell_of_locking(&mut self, locking: Locking) {
         if self.scene.reference().is_some_and(|entry| !entry.is_of_cells()) {
-            self.tell_of_finer_locking();
+            self.tell_of_finer_locking(locking);
             return;
         }
-        if let Some(Locking { poisson, .. }) = Locking::of(&self.mesh, &self.material, &|_| true) {
-            self.of_reference.push(format!(
-                "at nu = {poisson} linear cells lock: errors at large deformation are relative to the finite elements of the mesh, which are too stiff"
-            ));
-        }
+        self.of_reference.push(format!(
+            "at nu = {} linear cells lock: errors at large deformation are relative to the finite elements of the mesh, which are too stiff",
+            locking.poisson
+        ));
     }
 
     /// The moduli of each network as a whole, if the scene asks for them.

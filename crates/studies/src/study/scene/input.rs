@@ -8,7 +8,7 @@ use crate::bound;
 use crate::error::{Error, Result};
 use crate::mesh::{BoxMesh, DiscMesh, Embedding, Gate, Mesh, MeshSource};
 use crate::range;
-use crate::study::extent::{extent, unit_note};
+use crate::study::extent::unit_note;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -222,7 +222,7 @@ impl MeshInput {
 /// It is; the key is `scale`.
 pub fn check_unit(mesh: &Mesh, scale: f64) -> Result<()> {
     let edge = mesh.quality.filled.as_ref().map_or(0.0, |filled| filled.edge);
-    let longest = extent(mesh).into_iter().fold(0.0, f64::max);
+    let longest = mesh.longest_side();
     if scale == 1.0 && longest - edge > TOO_LONG {
         let expected =
             format!("the length of a mesh unit, such as mm, for a body longer than {:.0} km", TOO_LONG / 1e3);

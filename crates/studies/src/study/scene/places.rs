@@ -8,7 +8,6 @@ use crate::material::Anisotropy;
 use crate::mesh::{CellIndex, Holder, Interpolation, Mesh, SampleReading, Samples};
 use crate::model::cell_means;
 use crate::quantity::Quantity;
-use crate::study::extent::extent;
 use crate::symbolic::{Program, Scope};
 use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
@@ -59,7 +58,7 @@ pub(super) struct Places<'a> {
 impl<'a> Places<'a> {
     /// The places of a mesh; files are relative to the folder, unless their names are of what is in memory.
     pub(super) fn new(mesh: &'a Mesh, (folder, memory): (&'a Path, &'a InMemory)) -> Places<'a> {
-        let extent = extent(mesh).into_iter().fold(0.0, f64::max);
+        let extent = mesh.longest_side();
         let (own, remarks) = Default::default();
         Places { mesh, folder, memory, own, remarks, centroids: OnceCell::new(), extent }
     }

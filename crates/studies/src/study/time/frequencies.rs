@@ -106,7 +106,7 @@ const MOST_POINTS: usize = 40_000;
 /// the cells, and where this takes long or is not solved.
 fn of_quadratic(scene: &Scene, mesh: &Mesh, material: &MaterialMap, count: usize) -> Option<FrequencyOutcome> {
     let is_asked = scene.reference().is_none_or(|entry| !entry.is_of_cells());
-    Locking::of(mesh, material, &|_| true).filter(|_| is_asked)?;
+    Locking::of_body(mesh, material).filter(|_| is_asked)?;
     let finer = mesh.elevated().ok().filter(|finer| finer.point_count() <= MOST_POINTS)?;
     factor_cost(&finer).ok().filter(|cost| cost.operations <= AFFORDABLE)?;
     let material = scene.material_of(&finer).ok()?;
