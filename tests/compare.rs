@@ -1,5 +1,6 @@
 //! `[compare]` and `springfit compare`: which cases and fits there are, what files say of them, and what is refused.
 
+use crate::kit::{prints, said, springfit};
 use serde_json::{Value, json};
 use springfit::element::Element;
 use springfit::fit::{Fit, Objective, Weight, element_errors, fit_cells};
@@ -8,7 +9,6 @@ use springfit::springs::Springs;
 use springfit::study::{CaseRecord, Comparing, random_shapes};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 const NORMS: &str = r#"title = "Norms"
@@ -26,16 +26,6 @@ nonnegative = [true]
 
 fn comparing(text: &str) -> springfit::error::Result<Comparing> {
     Comparing::parse(text, Path::new("c.toml"))
-}
-
-fn springfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = springfit(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
 }
 
 fn folder_with(text: &str) -> TempDir {
@@ -124,7 +114,7 @@ fn families_of_shapes_are_what_they_say() {
 #[test]
 fn a_file_has_its_files_and_goes_on() {
     let folder = folder_with(NORMS);
-    let printed = done(folder.path(), &["compare", "c.toml"]);
+    let printed = prints(folder.path(), &["compare", "c.toml"]);
     assert!(printed.starts_with("Norms\n") && printed.contains("Mean ranks over all cases"), "{printed}");
     let out = folder.path().join("out/compare-c");
     let records = cases(&out);
@@ -165,20 +155,20 @@ fn a_file_has_its_files_and_goes_on() {
     // A comparison goes on with what is there, and with more cases; and not with that of another file.
     let more = NORMS.replace("[0.0, 0.4]", "[0.0, 0.3, 0.4]");
     fs::write(folder.path().join("c.toml"), &more).unwrap();
-    done(folder.path(), &["compare", "c.toml", "--resume"]);
+    prints(folder.path(), &["compare", "c.toml", "--resume"]);
     let now = cases(&out);
     assert_eq!(now.len(), 12);
     assert!(records.iter().all(|record| now.contains(record)));
     // With fewer cases the others stay in the file, and no figure has them.
     fs::write(folder.path().join("c.toml"), more.replace("elements = [\"tri3\", \"quad4\"]", "elements = [\"tri3\"]"))
         .unwrap();
-    done(folder.path(), &["compare", "c.toml", "--resume"]);
+    prints(folder.path(), &["compare", "c.toml", "--resume"]);
     assert_eq!(cases(&out).len(), 12);
     let output = springfit(folder.path(), &["plot", "out/compare-c", "--figure", "ecdf", "--of", "quad4"]);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("--of: expected an element or a scene of the comparison: tri3, found"), "{said}");
+    let refusal = said(&output);
+    assert!(refusal.contains("--of: expected an element or a scene of the comparison: tri3, found"), "{refusal}");
     fs::write(folder.path().join("c.toml"), &more).unwrap();
-    done(folder.path(), &["compare", "c.toml", "--resume"]);
+    prints(folder.path(), &["compare", "c.toml", "--resume"]);
     fs::write(folder.path().join("c.toml"), more.replace("nonnegative = [true]", "tied = [true]")).unwrap();
     for (arguments, words) in [
         (
@@ -188,7 +178,7 @@ fn a_file_has_its_files_and_goes_on() {
         (&["compare", "c.toml"], "expected a file without studies, found 12: --resume goes on from them"),
     ] {
         let output = springfit(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let said = said(&output);
         assert!(output.status.code() == Some(2) && said.contains(words), "{said}");
     }
     assert_eq!(cases(&out), now);
@@ -196,7 +186,7 @@ fn a_file_has_its_files_and_goes_on() {
     {
         let of: Vec<&str> = of.map_or(Vec::new(), |of| vec!["--of", of]);
         let arguments = [&["plot", "out/compare-c", "--figure", figure][..], &of].concat();
-        assert!(done(folder.path(), &arguments).starts_with("<svg"), "{figure}");
+        assert!(prints(folder.path(), &arguments).starts_with("<svg"), "{figure}");
     }
 }
 
@@ -204,8 +194,8 @@ fn a_file_has_its_files_and_goes_on() {
 #[test]
 fn jobs_have_the_same_values() {
     let folder = folder_with(NORMS);
-    done(folder.path(), &["compare", "c.toml", "--jobs", "3", "--out", "many"]);
-    done(folder.path(), &["compare", "c.toml", "--out", "one"]);
+    prints(folder.path(), &["compare", "c.toml", "--jobs", "3", "--out", "many"]);
+    prints(folder.path(), &["compare", "c.toml", "--out", "one"]);
     let values = |name: &str| {
         let mut records = cases(&folder.path().join(name));
         records.sort_by_key(|record| serde_json::to_string(&record.settings).unwrap());
@@ -236,8 +226,8 @@ fn options_are_keys() {
         "--out",
         "flags",
     ];
-    done(folder.path(), &[&arguments[..], &["--fit", fits[0], "--fit", fits[1]]].concat());
-    done(folder.path(), &["compare", "c.toml", "--out", "file"]);
+    prints(folder.path(), &[&arguments[..], &["--fit", fits[0], "--fit", fits[1]]].concat());
+    prints(folder.path(), &["compare", "c.toml", "--out", "file"]);
     let found = ["flags", "file"].map(|name| {
         let records = cases(&folder.path().join(name));
         let values = |record: CaseRecord| {
@@ -247,10 +237,10 @@ fn options_are_keys() {
     });
     assert_eq!(found[0], found[1]);
     // Again without --resume: a comparison by options is made anew.
-    done(folder.path(), &["compare", "tri3", "--shapes", "2", "--fit", "objective = 'offdiag'"]);
-    done(folder.path(), &["compare", "tri3", "--shapes", "3", "--fit", "objective = 'offdiag'"]);
+    prints(folder.path(), &["compare", "tri3", "--shapes", "2", "--fit", "objective = 'offdiag'"]);
+    prints(folder.path(), &["compare", "tri3", "--shapes", "3", "--fit", "objective = 'offdiag'"]);
     assert_eq!(cases(&folder.path().join("out/compare-tri3"))[0].methods[0].items.len(), 3);
-    let planned = done(folder.path(), &["compare", "c.toml", "--explain"]);
+    let planned = prints(folder.path(), &["compare", "c.toml", "--explain"]);
     assert!(planned.contains("8 cases") && planned.contains("spectral all + volume"), "{planned}");
 }
 
@@ -267,7 +257,7 @@ fn scenes_and_laws_are_cases() {
          [[fix]]\ngroup = \"ymin\"\n[[load]]\nname = \"pull\"\ngroup = \"ymax\"\ntraction = [0, 100]\n[[fit]]\nobjective = \"exact\"\n",
     )
     .unwrap();
-    done(folder.path(), &["compare", "c.toml"]);
+    prints(folder.path(), &["compare", "c.toml"]);
     let found = cases(&folder.path().join("out/compare-c"));
     assert_eq!(found.len(), 2);
     assert!(found.iter().all(|case| case.error.is_none()), "{found:?}");
@@ -281,7 +271,7 @@ fn scenes_and_laws_are_cases() {
     let kinds: Vec<&str> = scene.methods[0].times.keys().map(String::as_str).collect();
     assert_eq!(kinds, ["assembly", "explicit-step", "fit", "implicit-step", "solve"]);
     assert!(scene.methods[2].times.contains_key("solve"));
-    let svg = done(folder.path(), &["plot", "out/compare-c", "--figure", "work-precision", "--cost", "solve"]);
+    let svg = prints(folder.path(), &["plot", "out/compare-c", "--figure", "work-precision", "--cost", "solve"]);
     assert!(svg.starts_with("<svg"));
 }
 
@@ -296,7 +286,7 @@ fn settings_few_pairs_and_single_values_are_told() {
     let errors = |poisson: &str| {
         let set = format!("material.poisson={poisson}");
         let out = format!("o{poisson}");
-        done(folder.path(), &[&["compare", "s.toml", "--set", &set, "--out", &out][..], &fits].concat());
+        prints(folder.path(), &[&["compare", "s.toml", "--set", &set, "--out", &out][..], &fits].concat());
         cases(&folder.path().join(out))[0].methods[0].values["e_rms"].clone()
     };
     assert_ne!(errors("0.1"), errors("0.4"));
@@ -308,7 +298,7 @@ fn settings_few_pairs_and_single_values_are_told() {
         ("samples", "has no fits with several numbers of shapes"),
     ] {
         let output = springfit(folder.path(), &["plot", "o0.1", "--figure", figure]);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let said = said(&output);
         assert!(output.status.code() == Some(2) && said.contains(words), "{said}");
     }
 }
@@ -413,7 +403,7 @@ fn wrong_comparisons_are_refused() {
         (&["plot", "out/compare-x", "--figure", "ecdf"], "cases.jsonl"),
     ] {
         let output = springfit(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let said = said(&output);
         assert!(output.status.code() == Some(2) && said.contains(words), "{arguments:?}: {said}");
     }
 }

@@ -1,5 +1,6 @@
 //! Meshes are refined without loss, and limits are those of sequences that have one.
 
+use crate::kit::springfit;
 use crate::messages::reads;
 use crate::shapes::{Random, elements};
 use nalgebra::DMatrix;
@@ -12,7 +13,6 @@ use springfit::study::{Convergence, LimitKind, Scene, converge, converge_to, lim
 use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -436,15 +436,11 @@ fn limits_are_those_of_the_sequence() {
     assert_eq!(rates(&[Some(4.0), Some(-1.0), None, Some(0.0), Some(0.0)])[1..], [Some(2.0), None, None, None]);
 }
 
-fn program(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
-
 #[test]
 fn the_program_writes_its_table_and_plot() {
     let folder = TempDir::new().unwrap();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/specimen_tri.toml");
-    let output = program(folder.path(), &["converge", path.to_str().unwrap(), "--levels", "3"]);
+    let output = springfit(folder.path(), &["converge", path.to_str().unwrap(), "--levels", "3"]);
     assert!(output.status.success(), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("tension: the truth is ") && text.contains("limit"), "{text}");
@@ -512,7 +508,7 @@ fn what_cannot_converge_is_refused() {
     write("large.toml", body(8) + load);
     write("huge.toml", body(100) + load);
     let refused = |arguments: &[&str], pattern: &str| {
-        let output = program(folder.path(), &[&["converge"], arguments].concat());
+        let output = springfit(folder.path(), &[&["converge"], arguments].concat());
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let error = String::from_utf8(output.stderr).unwrap();
         let line = error.lines().next().unwrap_or_default();

@@ -1,5 +1,6 @@
 //! Curved cells that fold between their quadrature points: against dense sampling, on all shipped elements.
 
+use nalgebra::DMatrix;
 use springfit::element::{Cell, Element, JacobianBounds, Quadrature, SHIPPED, Tabulation};
 use springfit::mesh::{Below, Gate, MeshArrays};
 use springfit::report;
@@ -44,20 +45,24 @@ fn grid(element: &Element, along: usize) -> Tabulation {
     Tabulation::new(&element.functions, &Quadrature { dimension: d, points, weights }, None)
 }
 
-/// The least and the largest det J at the points of a table.
-fn determinants(table: &Tabulation, x: &[f64]) -> [f64; 2] {
+/// The gradients of the functions at all points of a table, `[nodes × points · dimension]`: one product with the nodes gives J at each point.
+fn gradients(table: &Tabulation) -> DMatrix<f64> {
     let d = table.dimension;
-    let at = |gradients: &[f64]| {
-        let mut j = [[0.0; 3]; 3];
-        (d..3).for_each(|k| j[k][k] = 1.0);
-        for a in 0..table.nodes {
-            for k in 0..d {
-                (0..d).for_each(|l| j[k][l] += x[a * d + k] * gradients[a * d + l]);
-            }
-        }
-        nalgebra::Matrix3::from_fn(|k, l| j[k][l]).determinant()
+    let points = table.gradients.len() / (table.nodes * d);
+    DMatrix::from_fn(table.nodes, points * d, |a, column| {
+        table.gradients[(column / d * table.nodes + a) * d + column % d]
+    })
+}
+
+/// The least and the largest det J at the points of some gradients.
+fn determinants(gradients: &DMatrix<f64>, d: usize, x: &[f64]) -> [f64; 2] {
+    let j = DMatrix::from_column_slice(d, gradients.nrows(), x) * gradients;
+    let at = |j: &[f64]| match *j {
+        [a, b, c, e] => a * e - b * c,
+        [a, b, c, e, f, g, h, k, l] => a * (f * l - g * k) - b * (e * l - g * h) + c * (e * k - f * h),
+        _ => panic!("J is 2 × 2 or 3 × 3"),
     };
-    let all = table.gradients.chunks_exact(table.nodes * d).map(at);
+    let all = j.as_slice().chunks_exact(d * d).map(at);
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, largest], det| [least.min(det), largest.max(det)])
 }
 
@@ -69,7 +74,8 @@ fn a_node_that_is_moved_past_its_limit_folds_the_cell() {
     for element in curved() {
         let d = element.dimension();
         let bounds = JacobianBounds::of(&element).unwrap_or_else(|| panic!("{} has no bounds", element.name));
-        let fine = grid(&element, if d == 2 { 60 } else { 10 });
+        let fine = gradients(&grid(&element, if d == 2 { 60 } else { 10 }));
+        let own = gradients(&element.tabulation);
         let (mut unseen, mut found) = (0, 0);
         for node in 0..element.nodes() {
             for _ in 0..if d == 2 { 4 } else { 1 } {
@@ -79,7 +85,7 @@ fn a_node_that_is_moved_past_its_limit_folds_the_cell() {
                     (0..d).for_each(|k| x[node * d + k] += length * direction[k]);
                     x
                 };
-                let least = |length: f64| determinants(&fine, &moved(length))[0];
+                let least = |length: f64| determinants(&fine, d, &moved(length))[0];
                 let (mut low, mut high) = (0.0, 4.0);
                 if least(high) > 0.0 {
                     continue;
@@ -98,7 +104,7 @@ fn a_node_that_is_moved_past_its_limit_folds_the_cell() {
                     .collect();
                 assert!(bounds.folds(&turned), "{}", element.name);
                 found += 1;
-                unseen += usize::from(determinants(&element.tabulation, &beyond)[0] > 0.0);
+                unseen += usize::from(determinants(&own, d, &beyond)[0] > 0.0);
             }
         }
         assert!(2 * found > element.nodes(), "{}: {found}", element.name);
@@ -114,12 +120,12 @@ fn random_cells_fold_where_dense_sampling_finds_it() {
     for element in curved() {
         let d = element.dimension();
         let bounds = JacobianBounds::of(&element).unwrap();
-        let fine = grid(&element, if d == 2 { 40 } else { 10 });
+        let fine = gradients(&grid(&element, if d == 2 { 40 } else { 10 }));
         let (mut sound, mut folded) = (0, 0);
         for case in 0..100 {
             let noise = 0.6 * (case % 10 + 1) as f64 / 10.0 / if element.cell.is_box() { 1.0 } else { 2.0 };
             let x: Vec<f64> = element.positions.iter().map(|x| x + noise * next()).collect();
-            let [least, largest] = determinants(&fine, &x);
+            let [least, largest] = determinants(&fine, d, &x);
             let found = bounds.folds(&x);
             if least < 0.0 {
                 assert!(found, "{}: {least:e} of {largest:e}", element.name);

@@ -1,12 +1,11 @@
 //! Surfaces that cross themselves, and parts inside others or inside out: what is refused, and what a union fills.
 
 use crate::fills::brick;
+use crate::kit::{said, springfit};
 use crate::smooth_fills::ball;
 use springfit::element::{Element, SHIPPED};
 use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -198,10 +197,6 @@ fn parts_inside_others_and_parts_inside_out_are_refused_unless_a_union_is_asked_
     }
 }
 
-fn springfit(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(words).current_dir(folder).output().unwrap()
-}
-
 #[test]
 fn the_program_refuses_with_one_line_and_takes_the_option_into_the_scene() {
     let folder = TempDir::new().unwrap();
@@ -218,7 +213,7 @@ fn the_program_refuses_with_one_line_and_takes_the_option_into_the_scene() {
     let scene = fs::read_to_string(folder.path().join("two.toml")).unwrap();
     assert!(scene.contains("layers = \"union\""), "{scene}");
     let run = springfit(folder.path(), &["run", "two.toml"]);
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    assert!(run.status.success(), "{}", said(&run));
     for (words, key) in [
         (&["run", "two.toml", "--set", "mesh.fill.layers=uinon"][..], "mesh.fill.layers"),
         (&["new", "two.obj", "--fill", "1", "--fill-layers", "uinon"], "--fill-layers"),

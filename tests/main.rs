@@ -49,6 +49,7 @@ mod golden_files;
 mod gradients;
 mod hostile_cases;
 mod integrals;
+mod kit;
 mod large;
 mod law_fields;
 mod laws;

@@ -1,6 +1,7 @@
 //! Networks of anyone as materials: lattices against published closed forms, exact networks against their material, files of other programs
 //! against what was written, matrices against elements.
 
+use crate::kit::{self, prints};
 use crate::shapes::elements;
 use nalgebra::DMatrix;
 use springfit::element::Element;
@@ -10,21 +11,13 @@ use springfit::report::{SpecimenOptions, read_matrix, read_specimen};
 use springfit::springs::Springs;
 use springfit::study::{MeasureOptions, MeasuredNetwork, NamedLattice, measure};
 use std::fs;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-fn program(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
 fn refused(folder: &Path, arguments: &[&str], words: &str) {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
-    let found = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {found}");
+    let found = kit::refused(folder, arguments);
     assert!(found.contains(words), "{arguments:?}: {found}");
 }
 
@@ -120,7 +113,7 @@ fn exact_networks_are_the_material_they_came_from() {
             "-o",
             &name,
         ];
-        program(folder.path(), &arguments);
+        prints(folder.path(), &arguments);
         let measured =
             of_file(&folder.path().join(&name), &MeasureOptions { frequencies: 3, ..MeasureOptions::default() });
         let poisson: f64 = poisson.parse().unwrap();
@@ -150,7 +143,7 @@ fn files_of_other_programs_hold_the_same_network() {
                  material = { young = 1e7, poisson = 0.25, density = 1000 }\n\
                  fit = [{ name = \"springs\", objective = \"offdiag\", nonnegative = true }]\nfix = [{ group = \"zmin\" }]\n";
     fs::write(at.join("s.toml"), scene).unwrap();
-    program(at, &["run", "s.toml", "--out", "out"]);
+    prints(at, &["run", "s.toml", "--out", "out"]);
     let network = fs::read_dir(at.join("out"))
         .unwrap()
         .map(|e| e.unwrap().path())
@@ -160,7 +153,7 @@ fn files_of_other_programs_hold_the_same_network() {
     let volume = Some(truth.volume);
     let gravity = ["--gravity", "0 0 -9.8"];
     for (target, file) in [("phystwin", "phystwin.npz"), ("lammps", "network.data"), ("npz", "network.npz")] {
-        program(at, &[&["export", json.to_str().unwrap(), "--to", target, "--out", target][..], &gravity].concat());
+        prints(at, &[&["export", json.to_str().unwrap(), "--to", target, "--out", target][..], &gravity].concat());
         let path: PathBuf = at.join(target).join(file);
         let found = of_file(&path, &MeasureOptions { volume, ..MeasureOptions::default() });
         let apart = (found.affine.matrix() - truth.affine.matrix()).amax() / truth.affine.matrix().amax();
@@ -169,6 +162,30 @@ fn files_of_other_programs_hold_the_same_network() {
         assert!(
             (found.mass.unwrap() - truth.mass.unwrap()).abs() < 1e-12 && found.springs == truth.springs,
             "{target}"
+        );
+    }
+    // Contradictory numbers of points are no such file: an archive with another number is as long as it was.
+    let bytes = fs::read(at.join("phystwin/phystwin.npz")).unwrap();
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+    for wrong in [-1i32, 1000] {
+        let mut other = zip::ZipWriter::new(fs::File::create(at.join("wrong.npz")).unwrap());
+        for index in 0..archive.len() {
+            let mut file = archive.by_index(index).unwrap();
+            let name = file.name().unwrap().into_owned();
+            let mut content = Vec::new();
+            file.read_to_end(&mut content).unwrap();
+            if name == "num_object_points.npy" {
+                let number = content.len() - 4;
+                content[number..].copy_from_slice(&wrong.to_le_bytes());
+            }
+            other.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+            other.write_all(&content).unwrap();
+        }
+        other.finish().unwrap();
+        refused(
+            at,
+            &["measure", "wrong.npz"],
+            &format!("num_object_points: expected a number of points from 0 to 45, found {wrong}"),
         );
     }
     refused(at, &["measure", "lammps/network.data"], "volume");
@@ -252,7 +269,7 @@ fn springs_that_pull_at_rest_are_told_first() {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
     fs::write(folder.path().join("s.csv"), "i,j,k,rest\n0,1,5,0.9\n0,2,5,1\n0,3,5,1\n1,2,5,1.4142135623730951\n1,3,5,1.4142135623730951\n2,3,5,1.4142135623730951\n").unwrap();
-    let text = program(folder.path(), &["measure", "s.csv", "--points", "p.csv", "--hull"]);
+    let text = prints(folder.path(), &["measure", "s.csv", "--points", "p.csv", "--hull"]);
     let second = text.lines().nth(1).unwrap();
     assert!(second.contains("not at rest in this shape"), "{text}");
     assert!(text.contains("volume 0.166667"), "{text}");
@@ -266,7 +283,7 @@ fn springs_that_pull_at_rest_are_told_first() {
 #[test]
 fn the_limit_of_an_engine_is_measured() {
     let folder = TempDir::new().unwrap();
-    program(
+    prints(
         folder.path(),
         &[
             "measure",

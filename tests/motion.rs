@@ -1,5 +1,6 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
+use crate::kit::{said, springfit};
 use crate::messages::reads;
 use springfit::mesh::MeshSource;
 use springfit::report;
@@ -7,7 +8,6 @@ use springfit::study::{Event, ModelMotion, MotionEnding, Outcome, Scene, run, st
 use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// A block of 2 cm that hangs by nothing or by its lower side; motion to be filled in.
@@ -53,10 +53,6 @@ fn written(text: &str) -> (TempDir, PathBuf) {
 fn outcome(text: &str) -> Outcome {
     let (_folder, path) = written(text);
     run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap()
-}
-
-fn program(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
 }
 
 fn assert_near(found: f64, expected: f64, tolerance: f64) {
@@ -193,8 +189,8 @@ fn a_motion_is_written_for_paraview_and_over_time() {
     // The reader of meshes knows no cells that are sets of points, as springs on a volume are.
     let text = edited(&text, ", \"bulk\"]", "]");
     let (folder, _) = written(&text);
-    let seen = program(folder.path(), &["run", "scene.toml"]);
-    assert!(seen.status.success(), "{}", String::from_utf8_lossy(&seen.stderr));
+    let seen = springfit(folder.path(), &["run", "scene.toml"]);
+    assert!(seen.status.success(), "{}", said(&seen));
     let out = folder.path().join("out/scene");
     let printed = String::from_utf8(seen.stdout).unwrap();
     for stem in ["motion-finite-elements", "motion-springs"] {
@@ -237,7 +233,7 @@ fn a_series_that_cannot_be_written_has_no_collection() {
     let out = folder.path().join("out/scene");
     fs::create_dir_all(&out).unwrap();
     fs::write(out.join("motion-springs"), "in the way").unwrap();
-    let seen = program(folder.path(), &["run", "scene.toml"]);
+    let seen = springfit(folder.path(), &["run", "scene.toml"]);
     assert_eq!(seen.status.code(), Some(2));
     assert!(String::from_utf8(seen.stderr).unwrap().starts_with("error: out/scene/motion-springs: the folder cannot"));
     assert_eq!(fs::read_dir(&out).unwrap().count(), 1);
@@ -473,8 +469,8 @@ fn wrong_keys_are_told() {
     let mut wrong = Vec::new();
     let mut expect = |text: &str, message: &str| {
         let (folder, _) = written(text);
-        let seen = program(folder.path(), &["run", "scene.toml"]);
-        let line = String::from_utf8_lossy(&seen.stderr).into_owned();
+        let seen = springfit(folder.path(), &["run", "scene.toml"]);
+        let line = said(&seen);
         let expected = format!("error: scene.toml{}{message}…\n", if message.starts_with(':') { "" } else { ":…: " });
         let clean = fs::read_dir(folder.path()).unwrap().count() == 1 && seen.stdout.is_empty();
         if reads(&line, &expected).is_err() || seen.status.code() != Some(2) || !clean {
@@ -499,7 +495,7 @@ fn wrong_keys_are_told() {
 fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
     let text = edited(BLOCK, "integrator = \"newmark\"\nlinear = true", "integrator = \"symplectic-euler\"");
     let (folder, _) = written(&edited(&text, "step = 0.001", "step = 0.01"));
-    let seen = program(folder.path(), &["run", "scene.toml"]);
+    let seen = springfit(folder.path(), &["run", "scene.toml"]);
     let line = String::from_utf8(seen.stderr).unwrap();
     assert_eq!(seen.status.code(), Some(2));
     assert!(

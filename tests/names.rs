@@ -1,13 +1,8 @@
 //! Names from outside: what was probably meant by a wrong one, and that none reaches a terminal as a command.
 
+use crate::kit::{said, springfit};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
-
-fn springfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
 
 const SQUARE: &str = "title = \"square\"\n[mesh]\nbox = { element = \"quad4\", size = [1, 1], cells = [2, 2] }\n[material]\n\
                       young = 1000\npoisson = 0.3\nthickness = 0.01\n[[fit]]\nobjective = \"modal\"\nsprings = [\"edge\", \"bulk\"]\n\
@@ -32,14 +27,14 @@ fn a_wrong_name_is_answered_with_the_nearest() {
     ] {
         fs::write(folder.path().join("s.toml"), SQUARE.replace(from, to)).unwrap();
         let output = springfit(folder.path(), &["run", "s.toml"]);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = said(&output);
         assert!(text.starts_with(&format!("error: s.toml:{line}: {key}: ")), "{text}");
         assert!(text.ends_with(&format!("; did you mean \"{meant}\"?\n")), "{text}");
         assert_eq!(output.status.code(), Some(2));
     }
     fs::write(folder.path().join("s.toml"), SQUARE.replace("\"modal\"", "\"xyz\"")).unwrap();
     let output = springfit(folder.path(), &["run", "s.toml"]);
-    assert!(!String::from_utf8_lossy(&output.stderr).contains("did you mean"));
+    assert!(!said(&output).contains("did you mean"));
 }
 
 /// A fault of an option is named by the option as it is typed.
@@ -61,7 +56,7 @@ fn options_are_named_as_they_are_typed() {
         (&["--density", "5 mm"], "--density"),
     ] {
         let output = springfit(folder.path(), &[&common[..], more].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = said(&output);
         assert!(text.starts_with(&format!("error: {key}: ")), "{more:?}: {text}");
     }
     for (arguments, key) in [
@@ -77,7 +72,7 @@ fn options_are_named_as_they_are_typed() {
         (&["generate", "hex8", "--objective", "lloyd"], "--objective"),
     ] {
         let output = springfit(folder.path(), arguments);
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = said(&output);
         assert!(text.starts_with(&format!("error: {key}: ")), "{arguments:?}: {text}");
     }
 }
@@ -142,7 +137,7 @@ fn names_that_make_equal_names_are_found_before_the_work() {
         let text = SQUARE.replace(from, to);
         fs::write(folder.path().join("s.toml"), &text).unwrap();
         let output = springfit(folder.path(), &["run", "s.toml"]);
-        let found = String::from_utf8_lossy(&output.stderr).into_owned();
+        let found = said(&output);
         crate::messages::reads(found.trim_end(), &format!("error: s.toml{message}")).unwrap();
         assert_eq!((output.status.code(), folder.path().join("out").exists()), (Some(2), false));
     }

@@ -1,16 +1,10 @@
 //! Commands of scenes say of another file what it is, and which command takes it.
 
+use crate::kit::{prints, refused};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
 
 #[test]
 fn the_command_for_another_file_is_named() {
@@ -21,9 +15,7 @@ fn the_command_for_another_file_is_named() {
         "square.toml",
         "[mesh]\nbox = { element = \"tri3\", size = [1, 1], cells = [1, 1] }\n[material]\nyoung = 1\npoisson = 0.3\n[[fit]]\nname = \"k\"\nobjective = \"exact\"\n",
     );
-    let run =
-        Command::new(env!("CARGO_BIN_EXE_springfit")).args(["run", "square.toml"]).current_dir(folder.path()).output();
-    assert!(run.unwrap().status.success());
+    prints(folder.path(), &["run", "square.toml"]);
     write("body.stl", "solid body\nendsolid body\n");
     write("norms.toml", "[compare]\nelements = [\"tet4\"]\n");
     write("own.toml", &shipped("elements/tet4.toml"));

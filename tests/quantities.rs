@@ -1,19 +1,10 @@
 //! Quantities with units, and what is assumed of a body that an input does not describe.
 
+use crate::kit::{said, springfit};
 use springfit::quantity::Quantity;
 use springfit::symbolic::Scope;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
-
-fn springfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 /// A roof of two triangles in space, sides of 100.
 const ROOF: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 100 0 0\n3 100 100 0\n4 0 100 50\n$EndNodes\n\
@@ -64,7 +55,7 @@ fn options_and_keys_take_the_same_units() {
         let options = ["fit", "roof.msh", "--young", young, "--poisson", "0.3", "--scale", scale];
         let more = ["--thickness", thickness, "--density", density, "--objective", "offdiag", "-o", name];
         let output = springfit(folder.path(), &[&options[..], &more].concat());
-        assert!(output.status.success(), "{}", errors(&output));
+        assert!(output.status.success(), "{}", said(&output));
         let mut network = springfit::report::read_network(&folder.path().join(name)).unwrap();
         // They differ in the command alone.
         assert!(network.provenance.command.take().is_some_and(|command| command.contains(young)));
@@ -76,7 +67,7 @@ fn options_and_keys_take_the_same_units() {
                  density = \"1060 kg/m^3\"\n[[fit]]\nobjective = \"offdiag\"\n";
     fs::write(folder.path().join("roof.toml"), scene).unwrap();
     let output = springfit(folder.path(), &["run", "roof.toml"]);
-    assert!(output.status.success(), "{}", errors(&output));
+    assert!(output.status.success(), "{}", said(&output));
     let head = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(head.contains("4 points, 2 tri3, 0.100 x 0.100 x 0.050 m; E = 5000 Pa"), "{head}");
 }
@@ -93,24 +84,57 @@ fn a_thickness_is_not_assumed_in_silence() {
     };
     let refused = fit("roof.msh", &[]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(errors(&refused).starts_with("error: --thickness: "), "{}", errors(&refused));
+    assert!(said(&refused).starts_with("error: --thickness: "), "{}", said(&refused));
     assert!(!folder.path().join("k.csv").exists());
     let thick = fit("flat.msh", &[]);
-    assert!(thick.status.success() && errors(&thick).contains("assumed to be 1 m"), "{}", errors(&thick));
+    assert!(thick.status.success() && said(&thick).contains("assumed to be 1 m"), "{}", said(&thick));
     for mesh in ["roof.msh", "flat.msh"] {
         let given = fit(mesh, &["--thickness", "1 mm"]);
-        assert!(given.status.success() && !errors(&given).contains("assumed"), "{}", errors(&given));
+        assert!(given.status.success() && !said(&given).contains("assumed"), "{}", said(&given));
     }
     let scene = "[mesh]\nfile = \"roof.msh\"\n[material]\nyoung = 1\npoisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n";
     fs::write(folder.path().join("roof.toml"), scene).unwrap();
     let refused = springfit(folder.path(), &["run", "roof.toml"]);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(errors(&refused).starts_with("error: roof.toml:3: material.thickness: "), "{}", errors(&refused));
+    assert!(said(&refused).starts_with("error: roof.toml:3: material.thickness: "), "{}", said(&refused));
     fs::write(folder.path().join("flat.toml"), scene.replace("roof", "flat")).unwrap();
     let noted = springfit(folder.path(), &["run", "flat.toml"]);
-    assert!(noted.status.success() && errors(&noted).contains("assumed to be 1 m"), "{}", errors(&noted));
+    assert!(noted.status.success() && said(&noted).contains("assumed to be 1 m"), "{}", said(&noted));
     let report = fs::read_to_string(folder.path().join("out/flat/report.json")).unwrap();
     assert!(report.contains("\"assumed\": \"the thickness"), "{report}");
+}
+
+/// Loads in other units are those of the same numbers in N, N·m and m/s², those over time too; another quantity is refused with its place.
+#[test]
+fn loads_have_units() {
+    let folder = TempDir::new().unwrap();
+    let scene = |force: &str, gravity: &str, later: &str| {
+        format!(
+            "[mesh]\nbox = {{ element = \"hex8\", size = [0.1, 0.1, 0.1], cells = [2, 2, 2] }}\n\
+             [material]\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\n[[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"zmin\"\n\
+             [[load]]\nname = \"pull\"\ngroup = \"zmax\"\nforce = [0, 0, {force}]\n[[load]]\nname = \"own\"\ngravity = [0, 0, {gravity}]\n\
+             [motion]\nduration = 0.01\nstep = 1e-3\ngravity = [0, 0, {gravity}]\n[[motion.force]]\ngroup = \"zmax\"\nforce = [{later}, 0, 0]\n"
+        )
+    };
+    let run = |text: String| {
+        fs::write(folder.path().join("load.toml"), text).unwrap();
+        springfit(folder.path(), &["run", "load.toml"])
+    };
+    let report = |text: String| {
+        let output = run(text);
+        assert!(output.status.success(), "{}", said(&output));
+        let report = fs::read_to_string(folder.path().join("out/load/report.json")).unwrap();
+        let mut report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let work: Vec<_> = report["loads"].as_array_mut().unwrap().iter_mut().map(|load| load["work"].take()).collect();
+        (work, report["motion"]["models"][0]["displacement"].take())
+    };
+    let plain = report(scene("-0.05", "-9.81", "\"0.02*t\""));
+    assert!(!plain.0[0].is_null());
+    assert_eq!(report(scene("\"-50 mN\"", "\"-981 cm/s^2\"", "\"(20 mN)*t\"")), plain);
+    let refused = run(scene("\"5 Pa\"", "0", "0"));
+    assert_eq!(refused.status.code(), Some(2));
+    let told = said(&refused);
+    assert!(told.starts_with("error: load.toml:13: load[0].force") && told.contains("units: N, kN"), "{told}");
 }
 
 /// Powers as `^3`, `³` and `3`, micro in either letter, and units that are no powers of ten, by their definitions (NIST SP 811, appendix B).
@@ -134,6 +158,14 @@ fn units_are_read_as_people_write_them() {
         (Quantity::Volume, "30 cm3", 30e-6),
         (Quantity::Volume, "2 µl", 2e-9),
         (Quantity::Time, "2 min", 120.0),
+        (Quantity::Force, "-3 mN", -0.003),
+        (Quantity::Force, "2 µN", 2e-6),
+        (Quantity::Force, "1 kgf", 9.80665),
+        (Quantity::Force, "1 lbf", 4.4482216152605),
+        (Quantity::Force, "1e5 dyn", 1.0),
+        (Quantity::Moment, "5 N mm", 0.005),
+        (Quantity::Moment, "2 mN m", 0.002),
+        (Quantity::Acceleration, "981 cm/s²", 9.81),
         (Quantity::MeshUnit, "in", 0.0254),
     ] {
         let found = quantity.parse(text).unwrap();
@@ -194,7 +226,7 @@ fn a_fill_takes_a_length_with_a_unit() {
     let network = |fill: &str, name: &str| {
         let options = ["fit", "cube.obj", "--scale", "mm", "--fill", fill, "--young", "1 kPa", "--poisson", "0.3"];
         let output = springfit(folder.path(), &[&options[..], &["-o", name]].concat());
-        assert!(output.status.success(), "{}", errors(&output));
+        assert!(output.status.success(), "{}", said(&output));
         fs::read_to_string(folder.path().join(name)).unwrap()
     };
     let plain = network("4", "plain.csv");
@@ -206,11 +238,11 @@ fn a_fill_takes_a_length_with_a_unit() {
     assert!(scene.contains("cell = \"4 mm\""), "{scene}");
     fs::write(folder.path().join("cube.toml"), scene).unwrap();
     let output = springfit(folder.path(), &["groups", "cube.toml"]);
-    assert!(String::from_utf8_lossy(&output.stdout).contains("216 points"), "{}", errors(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("216 points"), "{}", said(&output));
     let options = ["fit", "cube.obj", "--fill", "4 kPa", "--young", "1 kPa", "--poisson", "0.3", "-o", "k.csv"];
     let refused = springfit(folder.path(), &options);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(errors(&refused).starts_with("error: --fill: expected a length"), "{}", errors(&refused));
+    assert!(said(&refused).starts_with("error: --fill: expected a length"), "{}", said(&refused));
 }
 
 /// A body of a hundred metres, or of a hundredth of a millimetre, whose unit nobody has stated has a note wherever a mesh is read.
@@ -222,8 +254,8 @@ fn a_forgotten_unit_is_told() {
     let said = |first: &[&str], scale: Option<&str>| {
         let scale = scale.map_or(Vec::new(), |scale| vec!["--scale", scale]);
         let output = springfit(folder.path(), &[first, &scale].concat());
-        assert!(output.status.success(), "{first:?}: {}", errors(&output));
-        errors(&output)
+        assert!(output.status.success(), "{first:?}: {}", said(&output));
+        said(&output)
     };
     for command in [
         vec!["groups", "roof.msh"],

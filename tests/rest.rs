@@ -15,6 +15,7 @@ use springfit::model::{Elastic, Network, RestTension};
 use springfit::report::Report;
 use springfit::springs::{Force, Springs};
 use springfit::study::{NamedFit, Scene, run};
+use springfit_numerics::dense::least_squares;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -326,7 +327,7 @@ fn optima_are_those_of_the_saddle_point_equations() {
             let b = subject.rhs(weight);
             let mut rhs = DVector::zeros(n + m);
             rhs.rows_mut(0, n).copy_from(&a.tr_mul(&b));
-            let solution = saddle.svd(true, true).solve(&rhs, 1e-12).unwrap();
+            let solution = least_squares(saddle, &rhs, 1e-12).unwrap();
             let reference = (&b - a * solution.rows(0, n)).norm();
             let (error, size) = subject.error(weight, &k, &t);
             assert!((error - reference).abs() <= 1e-7 * size, "{} {rest:?}: {error} {reference}", subject.case.name);
@@ -342,7 +343,7 @@ fn nonnegative_least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounded: &[bool
         let set: Vec<usize> = (0..n).filter(|&j| inside[j]).collect();
         let mut u = DVector::zeros(n);
         if !set.is_empty() {
-            let found = a.select_columns(&set).svd(true, true).solve(b, 1e-12).unwrap();
+            let found = least_squares(a.select_columns(&set), b, 1e-12).unwrap();
             set.iter().zip(found.iter()).for_each(|(&j, value)| u[j] = *value);
         }
         u

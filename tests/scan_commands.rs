@@ -1,20 +1,15 @@
 //! Scans on the command line and in scenes: what is refused, what is told, and the number of points.
 
 use crate::fills::brick;
+use crate::kit::{said, springfit};
 use crate::scans::{Triangle, blob, box_with_dent, ring, source, sphere, unwelded};
 use crate::shapes::Random;
 use springfit::element::{Element, SHIPPED};
 use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing};
 use std::f64::consts::PI;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::Arc;
 use tempfile::TempDir;
-
-fn springfit(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(words).current_dir(folder).output().unwrap()
-}
 
 fn off(triangles: &[Triangle]) -> String {
     let mut text = format!("OFF\n{} {} 0\n", 3 * triangles.len(), triangles.len());
@@ -171,8 +166,8 @@ fn a_surface_that_is_not_welded_is_told() {
     write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     let said = |words: &[&str]| {
         let output = springfit(folder.path(), words);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned() + &said(&output)
     };
     let fit =
         |name: &str| said(&["fit", name, "--young", "1", "--poisson", "0.3", "--thickness", "1mm", "-o", "x.json"]);

@@ -1,12 +1,12 @@
 //! `--set`: values of a scene's keys that are given on the command line.
 
+use crate::kit::{said, springfit};
 use springfit::error::{Error, Result};
 use springfit::mesh::Mesh;
 use springfit::model::Network;
 use springfit::report::network_csv;
 use springfit::study::{Scene, Setting, run};
 use std::path::Path;
-use std::process::{Command, Output};
 use tempfile::TempDir;
 
 const SCENE: &str = r#"[mesh]
@@ -134,10 +134,6 @@ fn a_fault_beside_a_setting_keeps_its_line() {
     assert!(motion.problem().ends_with("(with --set motion={ duration = 1, step = 0.1 })"), "{motion}");
 }
 
-fn springfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
-
 /// Each command that reads a scene takes the option; elements have no keys to set.
 #[test]
 fn every_command_that_reads_a_scene_takes_settings() {
@@ -151,7 +147,7 @@ fn every_command_that_reads_a_scene_takes_settings() {
         &["stability", "s.toml"],
     ] {
         let output = springfit(folder.path(), &[command, &["--set", "material.poisson=0.6"]].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = said(&output);
         assert!(text.starts_with("error: --set material.poisson: "), "{command:?}: {text}");
         assert_eq!(output.status.code(), Some(2));
     }
@@ -159,7 +155,7 @@ fn every_command_that_reads_a_scene_takes_settings() {
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("s with material.poisson=0.2\n"), "{output:?}");
     for command in [&["compare", "tri3", "--shapes=1"][..], &["stability", "tri3"]] {
         let output = springfit(folder.path(), &[command, &["--set", "material.poisson=0.2"]].concat());
-        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        let text = said(&output);
         assert!(text.starts_with("error: --set: belongs to a scene"), "{command:?}: {text}");
     }
 }

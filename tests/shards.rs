@@ -1,14 +1,10 @@
 //! Cells that are fitted in ranges: the merged network is that of one fit, byte by byte, and wrong sets of shards are refused.
 
+use crate::kit::{said, springfit};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
-
-/// The program in `folder`, where `scenes` is not.
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
 
 fn mesh(name: &str) -> String {
     format!("{}/scenes/meshes/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -20,12 +16,12 @@ const MATERIAL: [&str; 6] = ["--scale", "0.01", "--young", "10kPa", "--poisson",
 fn fit(folder: &Path, mesh: &str, options: &[&str], (number, count): (usize, usize), name: &str) -> Output {
     let shard = format!("{number}/{count}");
     let own: Vec<&str> = ["fit", mesh].into_iter().chain(MATERIAL).chain(options.iter().copied()).collect();
-    run(folder, &[&own[..], &["--shard", &shard, "-o", name]].concat())
+    springfit(folder, &[&own[..], &["--shard", &shard, "-o", name]].concat())
 }
 
 fn error(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    said(&output)
 }
 
 #[test]
@@ -43,18 +39,18 @@ fn merged_shards_are_the_network_of_one_fit() {
     for (name, options) in cases {
         let mesh = mesh(name);
         let whole: Vec<&str> = ["fit", &mesh].into_iter().chain(MATERIAL).chain(options.iter().copied()).collect();
-        let whole = run(folder.path(), &[&whole[..], &["-o", "whole.csv"]].concat());
-        assert!(whole.status.success(), "{}", String::from_utf8_lossy(&whole.stderr));
+        let whole = springfit(folder.path(), &[&whole[..], &["-o", "whole.csv"]].concat());
+        assert!(whole.status.success(), "{}", said(&whole));
         for count in [1, 2, 7] {
             let names: Vec<String> = (1..=count).map(|number| format!("{number}.shard")).collect();
             for (i, name) in names.iter().enumerate() {
                 let made = fit(folder.path(), &mesh, options, (i + 1, count), name);
-                assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+                assert!(made.status.success(), "{}", said(&made));
             }
             // In any order.
             let given: Vec<&str> = names.iter().rev().map(String::as_str).collect();
-            let merged = run(folder.path(), &[&["merge"], &given[..], &["-o", "merged.csv"]].concat());
-            assert!(merged.status.success(), "{}", String::from_utf8_lossy(&merged.stderr));
+            let merged = springfit(folder.path(), &[&["merge"], &given[..], &["-o", "merged.csv"]].concat());
+            assert!(merged.status.success(), "{}", said(&merged));
             let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
             assert!(read("merged.csv") == read("whole.csv"), "{options:?} in {count} shards");
         }
@@ -85,7 +81,7 @@ fn wrong_sets_of_shards_are_refused() {
     let mut damaged = bytes.clone();
     damaged[line + 1 + 7] = 0xff;
     write("damaged.shard", &damaged);
-    let merge = |names: &[&str]| run(folder.path(), &[&["merge"], names, &["-o", "out.csv"]].concat());
+    let merge = |names: &[&str]| springfit(folder.path(), &[&["merge"], names, &["-o", "out.csv"]].concat());
     for place in (0..bytes.len()).step_by(bytes.len() / 40) {
         let mut flipped = bytes.clone();
         flipped[place] ^= 1 << (place % 8);
@@ -127,6 +123,6 @@ fn wrong_options_of_shards_are_refused() {
         assert!(found.contains(words), "{options:?} {name}: {found}");
         assert!(!folder.path().join(name).exists());
     }
-    let merged = run(folder.path(), &["merge", "a.shard", "-o", "out.json"]);
+    let merged = springfit(folder.path(), &["merge", "a.shard", "-o", "out.json"]);
     assert!(error(&merged).contains("a file ending in .csv"));
 }

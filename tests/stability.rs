@@ -1,5 +1,6 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
+use crate::kit::{said, springfit};
 use crate::messages::reads;
 use crate::shapes::{elements, with_angles};
 use springfit::element::Element;
@@ -7,15 +8,11 @@ use springfit::report;
 use springfit::study::{Family, Scene, StabilityRow, Verdict, stability, stability_of_scene};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 fn swept(name: &str) -> Vec<StabilityRow> {
     stability(Some(Element::load(name).unwrap()), &mut |_| {}).unwrap().rows
-}
-
-fn program(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
 }
 
 /// Nothing is lost, every case has a verdict with its figure or its reason, and what must be refused is.
@@ -104,7 +101,7 @@ fn trouble_names_its_way_out_and_what_is_stable_is_no_trouble() {
 #[test]
 fn the_program_writes_its_table_and_maps() {
     let folder = TempDir::new().unwrap();
-    let output = program(folder.path(), &["stability", "tri3"]);
+    let output = springfit(folder.path(), &["stability", "tri3"]);
     assert!(output.status.success(), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("Poisson's ratio") && text.contains(", 0 lost"), "{text}");
@@ -113,7 +110,7 @@ fn the_program_writes_its_table_and_maps() {
     assert!(table.starts_with("of,family,case,method,status,words,error,allowed"), "{table}");
     assert!(table.lines().count() > 200);
     assert!(fs::read_to_string(out.join("tri3.svg")).unwrap().contains("<title>"));
-    let output = program(folder.path(), &["stability", "tri33"]);
+    let output = springfit(folder.path(), &["stability", "tri33"]);
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(error.starts_with("error: element: expected one of bar2, "), "{error}");
@@ -155,7 +152,7 @@ fn mesh(flat: &[f64]) -> String {
 
 fn fitted(folder: &Path, arguments: &[&str]) -> Output {
     let plain = ["fit", "m.msh", "--young", "10kPa", "--poisson", "0.3", "-o", "k.csv"];
-    program(folder, &[&plain, arguments].concat())
+    springfit(folder, &[&plain, arguments].concat())
 }
 
 #[test]
@@ -187,14 +184,12 @@ fn poor_cells_are_told_refused_or_skipped() {
     for (arguments, error) in errors {
         let output = fitted(place, &arguments);
         assert_eq!(output.status.code(), Some(2));
-        reads(&String::from_utf8_lossy(&output.stderr), error).unwrap();
+        reads(&said(&output), error).unwrap();
     }
     // A flat cell is an error, unless it may be skipped.
     fs::write(place.join("m.msh"), mesh(&[0.0, 0.5])).unwrap();
     let output = fitted(place, &[]);
-    assert!(
-        String::from_utf8_lossy(&output.stderr).contains("tet4 cell 3 at [0.0, 0.0, 0.0] m: the element has no volume")
-    );
+    assert!(said(&output).contains("tet4 cell 3 at [0.0, 0.0, 0.0] m: the element has no volume"));
     let output = fitted(place, &["--below", "skip"]);
     assert!(
         output.status.success() && String::from_utf8_lossy(&output.stdout).contains("6 points, 3 tet4"),
@@ -210,7 +205,7 @@ fn a_node_that_is_there_twice_is_told() {
                 $Elements\n2\n1 3 2 1 1 1 2 3 3\n2 3 2 1 1 2 4 5 3\n$EndElements\n";
     fs::write(folder.path().join("m.msh"), text).unwrap();
     let output = fitted(folder.path(), &["--objective", "frobenius"]);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    let error = said(&output);
     assert_eq!(output.status.code(), Some(2));
     assert!(error.contains("quad4 cell 1 at [0.0, 0.0] m: one of its nodes is there twice"), "{error}");
     assert!(!folder.path().join("k.csv").exists());
@@ -262,7 +257,7 @@ fn a_scene_names_its_gate() {
             "[mesh]\nfile = \"m.msh\"\n{quality}\n[material]\nyoung = 10e3\npoisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n"
         );
         fs::write(folder.path().join("s.toml"), text).unwrap();
-        program(folder.path(), &["run", "s.toml"])
+        springfit(folder.path(), &["run", "s.toml"])
     };
     let output = scene("quality = { below = \"skip\", least = 1e-3 }");
     assert!(String::from_utf8_lossy(&output.stdout).contains("was left out"), "{output:?}");
@@ -274,6 +269,6 @@ fn a_scene_names_its_gate() {
     ] {
         let output = scene(quality);
         assert_eq!(output.status.code(), Some(2));
-        reads(&String::from_utf8_lossy(&output.stderr), &format!("error: s.toml:3: {error}\n")).unwrap();
+        reads(&said(&output), &format!("error: s.toml:3: {error}\n")).unwrap();
     }
 }

@@ -1,11 +1,7 @@
 //! Tables that commands typeset, in the languages of papers and of pages.
 
+use crate::kit::{said, springfit};
 use std::path::Path;
-use std::process::{Command, Output};
-
-fn springfit(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
-}
 
 fn root(path: &str) -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path).display().to_string()
@@ -48,7 +44,7 @@ fn every_command_that_prints_tables_typesets_them() {
             };
             let _ = std::fs::remove_dir_all(folder.path().join(&out));
             let output = springfit(folder.path(), &[arguments, &["--table", language][..], more].concat());
-            let (text, words) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+            let (text, words) = (String::from_utf8_lossy(&output.stdout), said(&output));
             assert!(output.status.success(), "{arguments:?}: {words}");
             // Names of files are not between the tables.
             assert!(!text.contains("written:"), "{arguments:?}");
@@ -94,7 +90,7 @@ fn a_table_of_what_is_not_there_yet_or_twice_is_refused() {
         (vec!["elements", "--table", "html"], "possible values: latex, markdown"),
     ] {
         let output = springfit(folder.path(), &arguments);
-        let words = String::from_utf8_lossy(&output.stderr).into_owned();
+        let words = said(&output);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(words.contains(expected), "{words}");
     }

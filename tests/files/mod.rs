@@ -5,10 +5,11 @@ mod faults;
 mod foreign;
 mod together;
 
+use crate::kit::said;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
 /// A plane body with tables, networks, pictures and a motion. A page would be a thousand times larger than all of them.
 const SCENE: &str = r#"
@@ -55,10 +56,6 @@ fn springfit(folder: &Path, arguments: &str) -> Command {
     // Operations on files are in one order on one thread.
     command.env("RAYON_NUM_THREADS", "1");
     command
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// All files below a folder, by their paths.

@@ -2,18 +2,10 @@
 
 use super::hostile::printable_lines;
 use super::readers::parsed_by_python;
+use crate::kit::prints;
 use springfit::text::toml;
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 use tempfile::TempDir;
-
-fn springfit(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
-    let words = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{arguments:?}: {words}");
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// Every file parses, and has the names: tables of CSV as cells that no spreadsheet evaluates, JSON and XML as texts, the page as one
 /// script more than without.
@@ -94,14 +86,14 @@ fn every_file_of_a_run_has_each_name_once_as_a_text() {
     fs::write(folder.path().join("s.toml"), scene).unwrap();
     fs::write(folder.path().join("names.json"), serde_json::to_string(&names).unwrap()).unwrap();
     fs::write(folder.path().join("title.json"), serde_json::to_string(&title).unwrap()).unwrap();
-    springfit(folder.path(), &["run", "s.toml", "--out", "o"]);
-    springfit(folder.path(), &["converge", "s.toml", "--levels", "2", "--out", "c"]);
+    prints(folder.path(), &["run", "s.toml", "--out", "o"]);
+    prints(folder.path(), &["converge", "s.toml", "--levels", "2", "--out", "c"]);
     for figure in ["work-precision", "constants", "deformation", "moduli"] {
         let file = format!("{figure}.svg");
-        springfit(folder.path(), &["plot", "o", "--figure", figure, "-o", &file]);
+        prints(folder.path(), &["plot", "o", "--figure", figure, "-o", &file]);
     }
     // Names are found again in the table.
-    springfit(
+    prints(
         folder.path(),
         &["plot", "c", "--figure", "convergence", "--of", "=cmd|' /C calc'!A0", "-o", "convergence.svg"],
     );

@@ -1,0 +1,30 @@
+//! The program as users start it, and what it says.
+
+use std::ffi::OsStr;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs `springfit ARGUMENTS…` in a folder.
+pub fn springfit<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// What it said on standard error.
+pub fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// What it prints where it succeeds.
+pub fn prints(folder: &Path, arguments: &[&str]) -> String {
+    let output = springfit(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", said(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What it says where it refuses its input.
+pub fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = springfit(folder, arguments);
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+    said
+}
