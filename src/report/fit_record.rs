@@ -143,7 +143,7 @@ impl FitRecord {
             effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness?)),
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
-            loads: outcome.loads.iter().map(LoadRecord::from).collect(),
+            loads: outcome.loads.iter().map(|load| LoadRecord::of(load, &run.mesh)).collect(),
             engine: outcome.engine.clone(),
             unmet: outcome.kind.published().map(|published| published.unmet),
             whole: outcome.kind.whole().cloned(),

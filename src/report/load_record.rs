@@ -1,5 +1,6 @@
 //! Loads and their answers in `report.json`.
 
+use crate::mesh::Mesh;
 use crate::number::finite;
 use crate::solve::Solved;
 use crate::study::{BodyLoad, Followed, LoadOutcome, Reading, Standard};
@@ -49,6 +50,9 @@ pub struct LoadRecord {
     pub e_max: Option<f64>,
     /// The error at the point that moves most in the finite elements is in percent of the largest displacement.
     pub e_tip: Option<f64>,
+    /// The network moves by at most this, m; it is null where it has no equilibrium.
+    #[serde(default)]
+    pub largest_displacement: Option<f64>,
     /// The network is softer than the finite elements by this error of the compliance, percent. With the work w of the load it is `w/w_FEM
     /// − 1`; where displacements are prescribed, with the work of the forces that hold them, `w_FEM/w − 1`.
     pub e_energy: Option<f64>,
@@ -85,13 +89,15 @@ impl MeasuredRecord {
     }
 }
 
-impl From<&LoadOutcome> for LoadRecord {
-    fn from(load: &LoadOutcome) -> LoadRecord {
+impl LoadRecord {
+    /// Makes the record of an answer on a mesh.
+    pub(super) fn of(load: &LoadOutcome, mesh: &Mesh) -> LoadRecord {
         LoadRecord {
             name: load.name.clone(),
             e_rms: load.error.and_then(|e| finite(e.rms)),
             e_max: load.error.and_then(|e| finite(e.max)),
             e_tip: load.error.and_then(|e| finite(e.tip)),
+            largest_displacement: load.displacement.as_ref().and_then(|u| finite(mesh.largest_motion(u))),
             e_energy: load.work_error.and_then(finite),
             seconds_fem: load.seconds_fem,
             seconds_lem: load.seconds_lem,

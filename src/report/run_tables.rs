@@ -82,17 +82,18 @@ fn errors(report: &Report) -> Table {
         let standard = standard(report, &load.name);
         let column = |title| Column::numbers(title).unit("%").group(format!("{}{standard}", load.name));
         columns.extend(["e_rms", "e_max", "e_tip", "e_energy"].map(column));
+        columns.push(Column::numbers("moves").unit("m").group(format!("{}{standard}", load.name)).priority(Third));
         if is_read(i) {
             let gauge = |title| Column::numbers(title).group(format!("{}, gauge", load.name));
             columns.extend([gauge("E").unit("Pa"), gauge("ν")]);
         }
     }
-    let errors = |[rms, max, tip, energy]: [Option<f64>; 4]| -> Vec<Cell> {
+    let errors = |[rms, max, tip, energy]: [Option<f64>; 4], moves: Option<f64>| -> Vec<Cell> {
         let error = |error| Cell::number(error, Fixed(2));
-        vec![error(rms), error(max), error(tip), Cell::number(energy, Signed(2))]
+        vec![error(rms), error(max), error(tip), Cell::number(energy, Signed(2)), Cell::number(moves, Significant(4))]
     };
     let cells = |(i, load): (usize, &LoadRecord)| {
-        let mut cells = errors([load.e_rms, load.e_max, load.e_tip, load.e_energy]);
+        let mut cells = errors([load.e_rms, load.e_max, load.e_tip, load.e_energy], load.largest_displacement);
         if is_read(i) {
             let reading = |of: fn(Reading) -> f64| load.gauge.map(of);
             cells.push(Cell::number(reading(|reading| reading.young), Significant(5)));
@@ -108,8 +109,8 @@ fn errors(report: &Report) -> Table {
         let of_body = |(i, load): (usize, &LoadRecord)| {
             let known = measured(report, &load.name);
             let mut cells = known.map_or_else(
-                || errors([Some(0.0); 4]),
-                |known| errors([known.fem_e_rms, known.fem_e_max, known.fem_e_tip, known.fem_e_energy]),
+                || errors([Some(0.0); 4], None),
+                |known| errors([known.fem_e_rms, known.fem_e_max, known.fem_e_tip, known.fem_e_energy], None),
             );
             if let Some(reading) = report.gauge.get(i).copied().flatten() {
                 cells.push(Cell::number(Some(reading.young), Significant(5)));

@@ -4,6 +4,7 @@ use super::annotations::Annotations;
 use super::numbering::Numbering;
 use super::quality::Quality;
 use crate::element::Element;
+use crate::springs::norm;
 use crate::symbolic::Predicate;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -266,6 +267,11 @@ impl Mesh {
     /// The longest side of the box around the nodes, m.
     pub fn longest_side(&self) -> f64 {
         self.extent().into_iter().fold(0.0, f64::max)
+    }
+
+    /// The largest size of the vectors of its nodes, `[points × dimension]`, such as displacements in m; those of directors are left out.
+    pub fn largest_motion(&self, of_points: &[f64]) -> f64 {
+        of_points.chunks_exact(self.dimension).take(self.node_count()).map(norm).fold(0.0, f64::max)
     }
 
     /// The names of the groups to which each cell belongs, by block and cell.

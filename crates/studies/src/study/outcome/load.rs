@@ -6,7 +6,6 @@ use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
 use crate::number::or_nan;
 use crate::solve::{Ending, Solved};
-use crate::springs::norm;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -159,7 +158,7 @@ pub struct Followed {
 impl BodyLoad {
     /// The largest displacement of a node of the finite elements, m.
     pub fn largest_displacement(&self, mesh: &Mesh) -> f64 {
-        self.fem.chunks_exact(mesh.dimension).take(mesh.node_count()).map(norm).fold(0.0, f64::max)
+        mesh.largest_motion(&self.fem)
     }
 
     /// Whether the finite elements are in equilibrium under the whole load; `fem` is otherwise that of a part of it.
