@@ -1,5 +1,6 @@
 //! The results of a whole scene.
 
+use super::dynamic_moduli::DynamicModuliOutcome;
 use super::fit::FitOutcome;
 use super::frequencies::FrequencyOutcome;
 use super::load::BodyLoad;
@@ -8,6 +9,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
 use crate::study::masses::PointMasses;
+use crate::study::scene::MeasuredDamping;
 use crate::study::timing::ModelTimes;
 use std::path::PathBuf;
 
@@ -52,6 +54,10 @@ pub struct Outcome {
     pub motion: Option<MotionOutcome>,
     /// The natural frequencies of the finite elements and of each network, if the scene requests them.
     pub frequencies: Vec<FrequencyOutcome>,
+    /// Storage and loss moduli over frequency, if the scene requests them.
+    pub dynamic_moduli: Option<DynamicModuliOutcome>,
+    /// Damping that was measured, of materials and of the motion.
+    pub damping: Vec<MeasuredDamping>,
     /// The stages that the scene does not request.
     pub left_out: Vec<String>,
 }
@@ -66,6 +72,7 @@ impl Outcome {
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
+        let (dynamic_moduli, damping) = Default::default();
         let (inputs, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
         Outcome {
@@ -88,6 +95,8 @@ impl Outcome {
             model_times: None,
             motion,
             frequencies,
+            dynamic_moduli,
+            damping,
             left_out,
         }
     }
