@@ -87,6 +87,7 @@ mod prepared;
 mod pressure;
 mod programs;
 mod prony;
+mod prony_damping;
 mod published;
 mod quadrature;
 mod quantities;

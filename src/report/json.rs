@@ -10,7 +10,10 @@ use super::region_record::RegionRecord;
 use super::verdict::finite_elements_verdict;
 use crate::mesh::Mesh;
 use crate::number::finite;
-use crate::study::{BodyLoad, Followed, FrequencyOutcome, GaugeResult, ModelTimes, Outcome, Reading};
+use crate::study::{
+    BodyLoad, DynamicModuliOutcome, Followed, FrequencyOutcome, GaugeResult, MeasuredDamping, ModelTimes, Outcome,
+    Reading,
+};
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +76,12 @@ pub struct Report {
     pub starts: Vec<Agreement>,
     /// Each entry has the lowest natural frequencies of a model.
     pub frequencies: Vec<FrequencyOutcome>,
+    /// Each entry is damping that was measured, with what was fitted to it and the error that it leaves; the key is left out where none was.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damping: Vec<MeasuredDamping>,
+    /// `dynamic_moduli` has storage and loss moduli over frequency; the key is left out without `dynamic_moduli` in `[output]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dynamic_moduli: Option<DynamicModuliOutcome>,
     /// `model_times` has what the finite elements of the mesh cost on one thread, repeated; it is null without `time = true` in `[output]`.
     #[serde(default)]
     pub model_times: Option<ModelTimes>,
@@ -166,6 +175,8 @@ impl Report {
             gauge: outcome.loads.iter().filter_map(gauge).collect(),
             starts: agreements(outcome),
             frequencies: outcome.frequencies.clone(),
+            damping: outcome.damping.clone(),
+            dynamic_moduli: outcome.dynamic_moduli.clone(),
             model_times: outcome.model_times.clone(),
             motion_options: outcome.motion.as_ref().map(MotionOptionsRecord::from),
             motion: models.map(MotionRecord::from).collect(),

@@ -8,6 +8,7 @@ mod compare;
 mod comparison;
 mod compliances;
 mod convergence;
+mod damping;
 mod deformed;
 mod derivation;
 mod element_page;

@@ -10,7 +10,7 @@ use crate::file::files_in;
 use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
 use crate::report::table::Table;
-use crate::study::BODY;
+use crate::study::{BODY, DynamicModuli};
 use clap::ValueEnum;
 
 /// What a figure shows.
@@ -26,6 +26,8 @@ pub enum Figure {
     Deformation,
     /// Young's modulus of each network by direction.
     Moduli,
+    /// Storage and loss moduli of each model over frequency; from a run with `dynamic_moduli` in `[output]`.
+    DynamicModuli,
     /// Errors against the size of the cells, from the folder of springfit converge.
     Convergence,
     /// The distribution of the errors, from the folder of springfit compare.
@@ -80,6 +82,9 @@ impl Figure {
             Figure::Motion => Picture::Chart(motion(&run.report()?).map_err(|e| e.in_file(&run.file("report.json")))?),
             Figure::Deformation => Picture::Deformation(Box::new(Deformation::of(run, of, load)?)),
             Figure::Moduli => Picture::Moduli(Moduli::of(run, of)?),
+            Figure::DynamicModuli => {
+                Picture::Chart(dynamic_moduli(&run.report()?).map_err(|e| e.in_file(&run.file("report.json")))?)
+            }
             Figure::Convergence => Picture::Chart(convergence_chart(&run.file(CONVERGENCE_TABLE), of)?),
             Figure::Ecdf => Picture::Chart(compared(run, Drawn::Ecdf, of)?),
             Figure::Poisson => Picture::Chart(compared(run, Drawn::Over("poisson"), of)?),
@@ -231,6 +236,29 @@ fn motion(report: &Report) -> Result<Chart> {
         x: Axis::linear("time, s"),
         y: Axis::linear("e_rms, % of the largest |u|"),
         series,
+    })
+}
+
+fn dynamic_moduli(report: &Report) -> Result<Chart> {
+    let missing = || Error::new("has no moduli over frequency: dynamic_moduli in [output] of the scene computes them");
+    let outcome = report.dynamic_moduli.as_ref().ok_or_else(missing)?;
+    let curves = |(place, name, moduli): (usize, &str, &DynamicModuli)| {
+        let curve = |words: &str, values: &[f64]| {
+            // A logarithm has nothing at zero.
+            let points =
+                outcome.frequency.iter().copied().zip(values.iter().copied()).filter(|(_, value)| *value > 0.0);
+            Series::new(format!("{name}, {words}"), points.collect(), Shape::Line).styled(place)
+        };
+        [curve("storage", &moduli.young.storage), curve("loss", &moduli.young.loss)]
+    };
+    let models =
+        outcome.models.iter().enumerate().filter_map(|(i, model)| Some((i, &*model.name, model.moduli.as_ref()?)));
+    let material = outcome.material.iter().map(|moduli| (outcome.models.len(), "material", moduli));
+    Ok(Chart {
+        title: format!("{}: storage and loss modulus of a tension over frequency", report.scene),
+        x: Axis::log("frequency, Hz"),
+        y: Axis::log("modulus, Pa"),
+        series: models.chain(material).flat_map(curves).filter(|series| !series.points.is_empty()).collect(),
     })
 }
 

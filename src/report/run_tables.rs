@@ -1,5 +1,6 @@
 //! The tables of a run, from its report.
 
+use super::damping::{damping, dynamic_moduli};
 use super::fit_record::FitRecord;
 use super::frequencies::frequencies;
 use super::held_out::held_out;
@@ -25,6 +26,8 @@ impl Table {
             whole(report),
             held_out(report),
             frequencies(&report.frequencies),
+            damping(&report.damping),
+            dynamic_moduli(report.dynamic_moduli.as_ref()),
             motions(report.motion_options.as_ref(), &report.motion),
         ];
         all.into_iter().filter(|table| !table.rows.is_empty()).collect()

@@ -535,6 +535,94 @@ measured = { frequency = [0.1, 1.0, 10.0], storage = [1.0, 2.0, 3.0], loss = [0.
 objective = "exact"
 "#;
 
+/// Cubes whose damping was measured, of the material by loss factors, with moduli over frequency; and of the motion by decays.
+pub const DECAYED: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000.0
+[material.relaxation]
+measured = { frequency = [0.1, 1.0, 10.0], loss_factor = [0.1, 0.2, 0.1], band = [0.2, 5.0] }
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.2
+step = 0.1
+linear = true
+damping = { measured = { time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] } }
+[output]
+dynamic_moduli = { band = [0.5, 2.0], count = 2 }
+"#;
+
+/// And by ratios; of the material by decrements.
+pub const DWINDLED: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000.0
+[material.relaxation]
+measured = { decrement = 0.3, band = [1.0, 10.0] }
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.2
+step = 0.1
+linear = true
+damping = { measured = { ratio = [0.05, 0.04], frequency = [1.0, 10.0] } }
+[output]
+dynamic_moduli = { frequency = [0.5, 2.0] }
+"#;
+
+/// Cubes that rang, with amplitudes.
+pub const RUNG: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000.0
+[material.relaxation]
+measured = { time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] }
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.2
+step = 0.1
+linear = true
+damping = { measured = { loss_factor = [0.05, 0.04], frequency = [1.0, 10.0], band = [2.0, 5.0] } }
+"#;
+
+/// And a motion with decrements; of the material by ratios.
+pub const DAMPENED: &str = r#"
+[mesh]
+box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
+[material]
+young = 10e3
+poisson = 0.3
+density = 1000.0
+[material.relaxation]
+measured = { ratio = [0.1, 0.2], frequency = [1.0, 5.0] }
+[[fit]]
+objective = "exact"
+[[fix]]
+group = "zmin"
+[motion]
+duration = 0.2
+step = 0.1
+linear = true
+damping = { measured = { decrement = 0.2, frequency = 2.0, band = [1.0, 4.0] } }
+"#;
+
 /// Cubes that flow beyond a yield stress.
 pub const YIELDING: &str = r#"
 [mesh]
@@ -617,7 +705,7 @@ group = "body"
 body = [0, 0, 1.0]
 "#;
 
-pub const ALL: [(&str, &str); 23] = [
+pub const ALL: [(&str, &str); 27] = [
     ("anisotropic", ANISOTROPIC),
     ("linear", LINEAR),
     ("plane", PLANE),
@@ -641,6 +729,10 @@ pub const ALL: [(&str, &str); 23] = [
     ("relaxed", RELAXED),
     ("yielding", YIELDING),
     ("dynamic", DYNAMIC),
+    ("decayed", DECAYED),
+    ("dwindled", DWINDLED),
+    ("rung", RUNG),
+    ("dampened", DAMPENED),
 ];
 
 /// Files that the scenes name.

@@ -3,9 +3,10 @@
 //! Theory: page *Dynamics* of the book.
 
 use crate::error::{Error, Result};
-use crate::model::{Network, Support};
+use crate::model::{Entries, Network, Support};
 use crate::springs::Measure;
 use crate::stiffness::gather;
+use faer::sparse::Triplet;
 
 /// The damping matrix `C = α M + β K₀ + Σ_s c_s ∇c_s ∇c_sᵀ`, with K₀ the tangent at rest.
 #[derive(Debug, Clone, Default)]
@@ -130,6 +131,14 @@ impl Dampers {
             of(&s.points, &s.measure, &x, s.pull(s.measure.value(&x, d))[2])
         });
         lengths.chain(others).collect()
+    }
+
+    /// `Σ c_s ∇c_s ∇c_sᵀ` with the points at x, `[points × dimension]`, m, in kg/s.
+    pub fn matrix(&self, x: &[f64]) -> Entries {
+        let (mut gradients, mut values) = (Vec::new(), Vec::new());
+        self.gradients(x, &mut gradients);
+        self.entries(&gradients, &mut values);
+        self.places().zip(values).map(|((row, column), value)| Triplet::new(row, column, value)).collect()
     }
 
     /// The positions of the entries of `Σ c_s ∇c_s ∇c_sᵀ` in its lower triangle.

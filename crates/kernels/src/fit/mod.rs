@@ -15,6 +15,7 @@ mod closed;
 mod closed_form;
 mod congruence;
 mod constrained;
+mod damping;
 mod delicate;
 mod dense;
 mod descent;
@@ -68,6 +69,7 @@ pub mod solvers {
 
 pub use cells::{CellFits, fit_cells, fit_element};
 pub use closed_form::{ClosedFit, ClosedForm, ExactForm, SymmetryClass};
+pub use damping::{DampedSeries, DampingError, DampingKind, DampingTest, FittedDecay, FittedRayleigh, ratio_of_decay};
 pub use exact::{
     DomainSprings, ExactDomains, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, check_flat,
     exact_constants_of_kind, exact_double_double_constants, fit_exact,

@@ -101,6 +101,21 @@ impl Relaxation {
         })
     }
 
+    /// The shares of the moduli μ and K under small harmonic strains `e^(iωt)`, ω in rad/s, each with its real part, of storage, and its imaginary part,
+    /// of loss: `1 − Σ g_i/(1 + iωτ_i)`. A term with a yield stress is elastic there.
+    pub fn harmonic(&self, w: f64) -> [[f64; 2]; 2] {
+        let flowing = || self.terms.iter().filter(|term| term.yield_stress.is_none());
+        let of = |share: fn(&RelaxationTerm) -> f64| {
+            let left = 1.0 - flowing().map(share).sum::<f64>();
+            flowing().fold([left, 0.0], |[real, imaginary], term| {
+                let x = w * term.time;
+                let part = share(term) * x / (1.0 + x * x);
+                [real + part * x, imaginary + part]
+            })
+        };
+        [of(|term| term.shear), of(|term| term.bulk)]
+    }
+
     /// Checks that a body can relax so at large deformation.
     ///
     /// # Errors

@@ -53,6 +53,7 @@ fn check(scene: &Scene) -> Result<()> {
         ("gauge", scene.gauge().is_some()),
         ("motion", scene.motion().is_some()),
         ("output.frequencies", scene.output().frequencies > 0),
+        ("output.dynamic_moduli", scene.output().dynamic_moduli.is_some()),
         ("output.moduli", scene.output().moduli),
     ];
     if let Some((key, _)) = others.iter().find(|(_, asked)| *asked) {

@@ -110,6 +110,7 @@ impl Forecast {
             (scene.motion().is_some(), "motion"),
             (scene.output().frequencies > 0, "natural frequencies"),
             (scene.output().moduli, "moduli of the networks"),
+            (scene.output().dynamic_moduli.is_some(), "storage and loss moduli"),
         ];
         if let Some(entry) = finer {
             // What is wrong with the finer mesh is reported where it is solved.

@@ -81,8 +81,9 @@ pub use locking::{Locking, TooStiff, bends};
 pub use masses::{PointMasses, point_masses};
 pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use outcome::{
-    BodyLoad, FitOutcome, Followed, FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion,
-    MotionEnding, MotionOutcome, Outcome, Reading, Record, Standard, TimedForce, TimedPull, standing_word,
+    BodyLoad, ComplexModulus, DynamicModuli, DynamicModuliOfModel, DynamicModuliOutcome, FitOutcome, Followed,
+    FrequencyOutcome, GaugeResult, LoadOutcome, MatrixErrors, Measured, ModelMotion, MotionEnding, MotionOutcome,
+    Outcome, Reading, Record, Standard, TimedForce, TimedPull, standing_word,
 };
 pub use own_name::{BODY, QUADRATIC};
 pub use paper::{
@@ -93,8 +94,8 @@ pub use progress::{Event, Progress};
 pub use run::{engine_limits, run, run_with};
 pub use scene::{
     AppliedForce, BoxEntry, CalibrationRecipe, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold,
-    InMemory, LoadCase, LoadKind, Materials, MeshInput, MeshLength, MotionRecipe, Output, Part, PrescribedMotion,
-    Reaction, ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
+    InMemory, LoadCase, LoadKind, Materials, MeasuredDamping, MeshInput, MeshLength, MotionRecipe, Output, Part,
+    PrescribedMotion, Reaction, ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
 };
 pub use stability::{Family, StabilityOutcome, StabilityRow, Verdict, stability, stability_of_scene};
 pub use stages::stages;

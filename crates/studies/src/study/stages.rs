@@ -44,6 +44,9 @@ pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {
         0 => stages.push(skip("natural frequencies", "not requested in [output]")),
         count => stages.push(run(format!("{count} natural frequencies of each model"))),
     }
+    if scene.output().dynamic_moduli.is_some() {
+        stages.push(run("storage and loss moduli of each model".into()));
+    }
     for (asked, what) in [
         (scene.output().time, "costs of each fit and of each model"),
         (scene.output().moduli, "moduli of each whole network"),

@@ -1,5 +1,6 @@
 //! The results of a scene.
 
+mod dynamic_moduli;
 mod fit;
 mod frequencies;
 mod gauge;
@@ -7,6 +8,7 @@ mod load;
 mod motion;
 mod scene;
 
+pub use dynamic_moduli::{ComplexModulus, DynamicModuli, DynamicModuliOfModel, DynamicModuliOutcome};
 pub use fit::{FitOutcome, MatrixErrors, standing_word};
 pub use frequencies::FrequencyOutcome;
 pub use gauge::{GaugeResult, Reading};

@@ -1,5 +1,6 @@
 //! The results of a whole scene.
 
+use super::dynamic_moduli::DynamicModuliOutcome;
 use super::fit::FitOutcome;
 use super::frequencies::FrequencyOutcome;
 use super::load::BodyLoad;
@@ -9,6 +10,7 @@ use crate::mesh::Mesh;
 use crate::model::{Lumping, Support};
 use crate::study::locking::TooStiff;
 use crate::study::masses::PointMasses;
+use crate::study::scene::MeasuredDamping;
 use crate::study::timing::ModelTimes;
 use std::path::PathBuf;
 
@@ -55,6 +57,10 @@ pub struct Outcome {
     pub motion: Option<MotionOutcome>,
     /// The natural frequencies of the finite elements and of each network, if the scene requests them.
     pub frequencies: Vec<FrequencyOutcome>,
+    /// Storage and loss moduli over frequency, if the scene requests them.
+    pub dynamic_moduli: Option<DynamicModuliOutcome>,
+    /// Damping that was measured, of materials and of the motion.
+    pub damping: Vec<MeasuredDamping>,
     /// The stages that the scene does not request.
     pub left_out: Vec<String>,
 }
@@ -69,6 +75,7 @@ impl Outcome {
         fit: FitOutcome,
     ) -> Outcome {
         let (settings, command, law, loads, motion, frequencies, left_out) = Default::default();
+        let (dynamic_moduli, damping) = Default::default();
         let (inputs, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
         let too_stiff = TooStiff::of(&mesh, &material, &[]);
@@ -93,6 +100,8 @@ impl Outcome {
             model_times: None,
             motion,
             frequencies,
+            dynamic_moduli,
+            damping,
             left_out,
         }
     }

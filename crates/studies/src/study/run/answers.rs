@@ -110,6 +110,8 @@ impl Answers {
             model_times: None,
             motion: None,
             frequencies: Vec::new(),
+            dynamic_moduli: None,
+            damping: scene.measured_damping(),
         };
         (outcome, plan, laws)
     }

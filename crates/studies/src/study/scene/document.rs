@@ -141,6 +141,15 @@ impl Scene {
         if entry.output.frequencies > 0 && !entry.material.has_density() {
             return Err(Error::expected("output.frequencies", "a density in [material]", "none"));
         }
+        if let Some(moduli) = &entry.output.dynamic_moduli {
+            let key = "output.dynamic_moduli";
+            moduli.frequencies().map_err(|e| e.under(key))?;
+            let is_damped = motion.as_ref().is_some_and(|motion| motion.damping.is_there());
+            if !is_damped && entry.material.all.iter().all(|entry| entry.relaxation.is_none()) {
+                let expected = "a material with \"relaxation\", or [motion] with \"damping\"";
+                return Err(Error::expected(key, expected, "nothing that loses energy"));
+            }
+        }
         check_count("output.frequencies", entry.output.frequencies as u64, 0, bound::MODES)?;
         check_fits(&fits, &entry.material, &loads)?;
         if let Some(i) = loads.iter().position(|load| RESERVED.contains(&load.name.as_str())) {

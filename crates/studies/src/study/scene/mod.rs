@@ -5,6 +5,7 @@ mod bending;
 mod calibrate;
 mod conditions;
 mod constants;
+mod damping;
 mod distribution;
 mod document;
 mod elements;
@@ -36,6 +37,7 @@ pub(in crate::study) mod value;
 mod variants;
 
 pub use calibrate::CalibrationRecipe;
+pub use damping::MeasuredDamping;
 pub use document::Scene;
 pub(in crate::study) use elements::load_element;
 pub use elements::load_elements;

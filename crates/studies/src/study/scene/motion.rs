@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::damping::{DampingMeasurement, MeasuredDamping};
 use super::motion_recipe::{AppliedForce, DampingRecipe, ForcePrecision, MotionRecipe, PrescribedMotion, SLACK};
 use super::part::Part;
 use super::value::{self, Varying};
@@ -94,7 +95,9 @@ pub struct MotionEntry {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct DampingEntry {
-    /// The damping is `C = α M + β K₀`; the pair has α in 1/s and β in s, both 0 or more. One of `rayleigh` and `ratio` is required.
+    /// The α and β of `rayleigh` are found for this damping; a table has the error that they leave.
+    measured: Option<DampingMeasurement>,
+    /// The damping is `C = α M + β K₀`; the pair has α in 1/s and β in s, both 0 or more. One of `rayleigh`, `measured` and `ratio` is required.
     rayleigh: Option<[f64; 2]>,
     /// Each spring has a damper beside it with this damping ratio, 0 or more. It needs `finite_elements = false`, because finite elements
     /// have no springs.
@@ -251,7 +254,8 @@ impl MotionEntry {
             every,
             lumping: choice("mass", self.mass.as_deref(), Lumping::default(), Lumping::named)?,
             gravity,
-            damping: damping.unwrap_or(DampingRecipe::Rayleigh([0.0; 2])),
+            damping: damping.as_ref().map_or(DampingRecipe::Rayleigh([0.0; 2]), |(recipe, _)| *recipe),
+            measured_damping: damping.and_then(|(_, measured)| measured),
             watch,
             finite_elements,
             pulls,
@@ -312,26 +316,34 @@ impl StepEntry<'_> {
 }
 
 impl DampingEntry {
-    fn check(self, finite_elements: bool) -> Result<DampingRecipe> {
-        match (self.rayleigh, self.ratio) {
-            (Some(pair), None) => {
+    /// The damping, and what was measured of it.
+    fn check(self, finite_elements: bool) -> Result<(DampingRecipe, Option<MeasuredDamping>)> {
+        match (self.rayleigh, self.ratio, self.measured) {
+            (None, None, Some(measured)) => {
+                let measured = measured.rayleigh().map_err(|e| e.under("measured"))?.at("motion.damping.measured");
+                Ok((DampingRecipe::Rayleigh(measured.rayleigh.unwrap_or_default()), Some(measured)))
+            }
+            (Some(pair), None, None) => {
                 for (value, unit) in pair.into_iter().zip(["1/s", "s"]) {
                     range::not_negative("rayleigh", value, unit)?;
                 }
-                Ok(DampingRecipe::Rayleigh(pair))
+                Ok((DampingRecipe::Rayleigh(pair), None))
             }
-            (None, Some(ratio)) => {
+            (None, Some(ratio), None) => {
                 range::not_negative("ratio", ratio, "as a damping ratio")?;
                 if finite_elements {
                     let problem = "is that of springs, which finite elements have not: expected \"rayleigh\", or \
                                    finite_elements = false";
                     return Err(Error::at("ratio", problem));
                 }
-                Ok(DampingRecipe::Ratio(ratio))
+                Ok((DampingRecipe::Ratio(ratio), None))
             }
-            (both, _) => {
-                let found = if both.is_some() { "both" } else { "neither" };
-                Err(Error::new(format!("expected either \"rayleigh\" or \"ratio\", found {found}")))
+            (rayleigh, ratio, measured) => {
+                let given =
+                    [("rayleigh", rayleigh.is_some()), ("ratio", ratio.is_some()), ("measured", measured.is_some())];
+                let given: Vec<&str> = given.iter().filter_map(|(name, given)| given.then_some(*name)).collect();
+                let found = if given.is_empty() { "neither".into() } else { given.join(" and ") };
+                Err(Error::new(format!("expected one of \"rayleigh\", \"measured\" and \"ratio\", found {found}")))
             }
         }
     }

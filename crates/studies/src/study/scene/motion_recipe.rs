@@ -2,6 +2,7 @@
 //!
 //! Theory: page *Dynamics* of the book.
 
+use super::damping::MeasuredDamping;
 use super::material::MaterialEntries;
 use super::part::Part;
 use crate::dynamics::Options;
@@ -31,6 +32,8 @@ pub struct MotionRecipe {
     pub gravity: Vec<f64>,
     /// The damping.
     pub damping: DampingRecipe,
+    /// What was measured of the damping, if Rayleigh's numbers were fitted to it.
+    pub measured_damping: Option<MeasuredDamping>,
     /// The points whose mean displacement is written.
     pub watch: Option<Part>,
     /// Whether the finite elements move as well.
@@ -69,6 +72,16 @@ pub enum DampingRecipe {
     Rayleigh([f64; 2]),
     /// The damping ratio of a damper parallel to each spring.
     Ratio(f64),
+}
+
+impl DampingRecipe {
+    /// Whether something is damped.
+    pub fn is_there(self) -> bool {
+        match self {
+            DampingRecipe::Rayleigh(numbers) => numbers.iter().any(|number| *number > 0.0),
+            DampingRecipe::Ratio(ratio) => ratio > 0.0,
+        }
+    }
 }
 
 /// A part with a prescribed displacement over time, m.

@@ -1,5 +1,8 @@
 //! What a scene writes and computes besides its table.
 
+use crate::bound::check_count;
+use crate::error::{Error, Result};
+use crate::range;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -21,6 +24,8 @@ pub struct Output {
     pub time: bool,
     /// Young's modulus, Poisson's ratio and Zener's ratio of each whole network are measured.
     pub moduli: bool,
+    /// The storage and loss moduli of each model are measured over frequency, without inertia. The material relaxes, or `[motion]` has damping.
+    pub dynamic_moduli: Option<DynamicModuliEntry>,
     /// This number of natural frequencies of each model is computed, without those of rigid motions; they need a density.
     pub frequencies: usize,
     /// The file report.json and the page report.html are written (`true`), or neither (`false`).
@@ -42,5 +47,64 @@ impl Output {
     /// Whether the states of a motion are kept for pictures.
     pub fn has_pictures(&self) -> bool {
         self.vtu || self.has_page()
+    }
+}
+
+/// The frequencies of `dynamic_moduli`.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DynamicModuliEntry {
+    /// The stress changes with frequencies from the first to the second of these, Hz, above 0. One of `band` and `frequency` is required.
+    band: Option<[f64; 2]>,
+    /// The band has this number of frequencies, with both ends, at equal ratios: from 2 to 10000.
+    #[schemars(extend("x-default" = "five in a decade, and one"))]
+    count: Option<usize>,
+    /// The stress changes with these frequencies in Hz, above 0 and rising.
+    frequency: Option<Vec<f64>>,
+}
+
+/// Frequencies in a decade where no number is given.
+const PER_DECADE: f64 = 5.0;
+/// Frequencies at most.
+const MOST: u64 = 10_000;
+
+impl DynamicModuliEntry {
+    /// The frequencies, Hz.
+    ///
+    /// # Errors
+    /// A frequency is not above zero, they do not rise, or both ways to give them are taken, or none.
+    pub fn frequencies(&self) -> Result<Vec<f64>> {
+        let rising = |key: &str, list: &[f64]| match list.windows(2).find(|pair| pair[1] <= pair[0]) {
+            Some(pair) => Err(Error::expected(key, "numbers that rise", format!("{} after {}", pair[1], pair[0]))),
+            None => list.iter().try_for_each(|f| range::positive(key, *f, "Hz").map(|_| ())),
+        };
+        match (self.band, &self.frequency) {
+            (Some(band), None) => {
+                rising("band", &band)?;
+                let [from, to] = band;
+                let count = self.count.unwrap_or(((to / from).log10() * PER_DECADE).ceil() as usize + 1);
+                check_count("count", count as u64, 2, MOST)?;
+                let at = |i: usize| match i {
+                    i if i + 1 == count => to,
+                    i => from * (to / from).powf(i as f64 / (count - 1) as f64),
+                };
+                Ok((0..count).map(at).collect())
+            }
+            (None, Some(list)) => {
+                if self.count.is_some() {
+                    return Err(Error::at("count", "belongs to \"band\", found beside \"frequency\""));
+                }
+                if list.is_empty() {
+                    return Err(Error::expected("frequency", "one number or more", "none"));
+                }
+                rising("frequency", list)?;
+                check_count("frequency", list.len() as u64, 1, MOST)?;
+                Ok(list.clone())
+            }
+            (band, _) => {
+                let found = if band.is_some() { "both" } else { "neither" };
+                Err(Error::new(format!("expected \"band\" or \"frequency\", found {found}")))
+            }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Whether the material of a scene relaxes.
 
+use super::damping::MeasuredDamping;
 use super::document::Scene;
 use crate::material::Relaxation;
 
@@ -19,6 +20,16 @@ impl Scene {
         Some((format!("{}.relaxation", self.material.key(first)), series))
     }
 
+    /// The damping that was measured: of materials, then of the motion.
+    pub fn measured_damping(&self) -> Vec<MeasuredDamping> {
+        let of_material = self.material.all.iter().enumerate().filter_map(|(region, entry)| {
+            let damping = entry.relaxation.as_ref()?.damping()?;
+            Some(damping.at(format!("{}.measured", self.relaxation_key(region))))
+        });
+        let of_motion = self.motion.as_ref().and_then(|motion| motion.measured_damping.clone());
+        of_material.chain(of_motion).collect()
+    }
+
     /// What must be known of the relaxation, if there is one.
     pub fn relaxation_note(&self) -> Option<String> {
         let entry = self.material.all.iter().find_map(|entry| entry.relaxation.as_ref())?;
@@ -31,8 +42,9 @@ impl Scene {
                 series.modulus
             )
         });
+        let also = if self.output().dynamic_moduli.is_some() { " and dynamic_moduli" } else { "" };
         Some(format!(
-            "the material relaxes in [motion] alone: loads, frequencies and networks that are written have the moduli against a sudden strain{fitted}"
+            "the material relaxes in [motion]{also} alone: loads, frequencies and networks that are written have the moduli against a sudden strain{fitted}"
         ))
     }
 }

@@ -3,7 +3,8 @@
 use crate::quantity::Quantity;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::{self, Deserializer, Visitor};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use std::borrow::Cow;
 use std::fmt;
 
@@ -57,6 +58,51 @@ impl MeshLength {
             MeshLength::Units(number) => number.to_string(),
             MeshLength::Stated(text, _) => crate::text::toml(text).to_string(),
         }
+    }
+}
+
+/// One number, or a list of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Numbers(pub Vec<f64>);
+
+impl<'de> Deserialize<'de> for Numbers {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Numbers, D::Error> {
+        struct NumberOrList;
+        impl<'de> Visitor<'de> for NumberOrList {
+            type Value = Numbers;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number or a list of numbers")
+            }
+
+            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Numbers, E> {
+                self.visit_f64(v as f64)
+            }
+
+            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Numbers, E> {
+                Ok(Numbers(vec![v]))
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Numbers, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(Numbers)
+            }
+        }
+        deserializer.deserialize_any(NumberOrList)
+    }
+}
+
+impl JsonSchema for Numbers {
+    fn schema_name() -> Cow<'static, str> {
+        "Numbers".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": ["number", "array"],
+            "items": { "type": "number" },
+            "x-type": "number or list of numbers",
+            "description": "A number, or a list of numbers.",
+        })
     }
 }
 

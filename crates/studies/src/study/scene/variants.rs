@@ -32,7 +32,7 @@ impl Scene {
             let problem = "expected at least one [[load]] to compare under, found none";
             return Err(self.placed(Error::at("load", problem)));
         }
-        let output = Output { frequencies: 0, time: true, ..self.output.clone() };
+        let output = Output { frequencies: 0, dynamic_moduli: None, time: true, ..self.output.clone() };
         Ok(self.with_output(output).without_motion())
     }
 

@@ -1,8 +1,9 @@
-//! The behaviour of a scene in time: motions and natural frequencies.
+//! The behaviour of a scene in time: motions, natural frequencies, and moduli over frequency.
 //!
 //! Theory: page *Dynamics* of the book.
 
 mod frequencies;
+mod harmonic;
 mod motion;
 mod plan;
 mod raised;

@@ -180,7 +180,7 @@ impl Planned {
     }
 
     /// The damping of a network, or of the finite elements.
-    fn damping(&self, network: Option<(&Network, &[f64])>, mesh: &Mesh) -> Result<Damping> {
+    pub(super) fn damping(&self, network: Option<(&Network, &[f64])>, mesh: &Mesh) -> Result<Damping> {
         Ok(match (self.recipe.damping, network) {
             (DampingRecipe::Ratio(ratio), Some((network, masses))) => {
                 let dampers = Dampers::of_ratio(network, &mesh.points, masses, &self.support, ratio)?;

@@ -1,6 +1,7 @@
 //! The motion and the vibrations of a scene, checked on its mesh before any work is done.
 
 use super::frequencies::natural_frequencies;
+use super::harmonic::dynamic_moduli;
 use super::motion::{Planned, move_models};
 use super::relaxing::Relaxing;
 use crate::dynamics::{Curve, Drive};
@@ -24,6 +25,8 @@ pub struct TimePlan {
     /// The `[[fix]]` support.
     support: Support,
     motion: Option<Planned>,
+    /// What becomes of stress, if moduli are wanted over frequency and it relaxes.
+    relaxing: Option<Relaxing>,
 }
 
 impl TimePlan {
@@ -42,18 +45,24 @@ impl TimePlan {
         let at = |e: Error| e.placed(|e| scene.at("motion", e));
         let plan = |recipe: &MotionRecipe| planned(scene, recipe, mesh, material, support).map_err(at);
         let mut motion = scene.motion().map(plan).transpose()?;
-        if let (Some(motion), Some((key, relaxation))) = (&mut motion, scene.relaxation()) {
+        let has_moduli = scene.output().dynamic_moduli.is_some();
+        let mut relaxes = None;
+        if let (true, Some((key, relaxation))) = (motion.is_some() || has_moduli, scene.relaxation()) {
             for (region, series) in relaxation.iter().enumerate().filter(|_| laws.is_some()) {
                 let at = |e: Error| scene.at(&scene.relaxation_key(region), e);
                 series.iter().try_for_each(Relaxation::check_large).map_err(at)?;
             }
             let relaxing = Relaxing::new(relaxation, material, laws, scene.fits(), held);
-            motion.relaxing = Some(relaxing.map_err(|e| scene.at(&key, e))?);
+            let relaxing = relaxing.map_err(|e| scene.at(&key, e))?;
+            relaxes = has_moduli.then(|| relaxing.clone());
+            if let Some(motion) = &mut motion {
+                motion.relaxing = Some(relaxing);
+            }
         }
-        Ok(TimePlan { support: support.clone(), motion })
+        Ok(TimePlan { support: support.clone(), motion, relaxing: relaxes })
     }
 
-    /// Moves the finite elements and the networks of `outcome` and computes their frequencies, as far as the scene
+    /// Moves the finite elements and the networks of `outcome` and computes their frequencies and moduli, as far as the scene
     /// requests it.
     ///
     /// # Errors
@@ -69,14 +78,20 @@ impl TimePlan {
             let found = natural_frequencies(scene, &self.support, outcome, progress);
             outcome.frequencies = found.map_err(|e| scene.at("output.frequencies", e))?;
         }
+        // A network that does not relax so.
+        let place = |e: Error, other: &str| match (e.key(), scene.relaxation()) {
+            (Some("terms"), Some((key, _))) => scene.at(&key, e),
+            _ => scene.at(other, e),
+        };
+        if let Some(entry) = &scene.output().dynamic_moduli {
+            let frequencies = entry.frequencies().map_err(|e| scene.at("output.dynamic_moduli", e))?;
+            let model = (self.relaxing.as_ref(), self.motion.as_ref());
+            let found = dynamic_moduli(&frequencies, model, outcome, progress);
+            outcome.dynamic_moduli = Some(found.map_err(|e| e.placed(|e| place(e, "output")))?);
+        }
         if let Some(planned) = &self.motion {
             let moved = move_models(planned, energy, outcome, progress);
-            let place = |e: Error| match (e.key(), scene.relaxation()) {
-                // A network that does not relax so.
-                (Some("terms"), Some((key, _))) => scene.at(&key, e),
-                _ => scene.at("motion", e),
-            };
-            outcome.motion = Some(moved.map_err(|e| e.placed(place))?);
+            outcome.motion = Some(moved.map_err(|e| e.placed(|e| place(e, "motion")))?);
         }
         Ok(())
     }

@@ -16,6 +16,7 @@ use crate::model::{
 use crate::study::fits::{ExactRecipe, NamedFit, Recipe, Reference};
 use crate::study::fitting::fit_without_errors;
 use faer::sparse::Triplet;
+use nalgebra::Complex;
 
 /// The share of the bulk modulus with which a network is made again, to tell its bulk part from its shear part; and one between, that shows
 /// whether it is linear in the moduli.
@@ -25,6 +26,30 @@ const BETWEEN: f64 = 0.75;
 const LEAST: f64 = 0.02;
 /// The difference that rounding may leave in a network that is linear in the moduli, relative to its forces.
 const LINEAR: f64 = 1e-9;
+
+/// What a part of a stiffness belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// The shear modulus of this region, or of all if they relax alike.
+    Shear(usize),
+    /// The bulk modulus of this region, or of all.
+    Bulk(usize),
+    /// What does not relax.
+    Elastic,
+}
+
+/// A part of a stiffness.
+#[derive(Debug)]
+pub struct HarmonicPart {
+    pub entries: Entries,
+    pub share: Share,
+}
+
+impl HarmonicPart {
+    fn of((entries, is_shear): (Entries, bool)) -> HarmonicPart {
+        HarmonicPart { entries, share: if is_shear { Share::Shear(0) } else { Share::Bulk(0) } }
+    }
+}
 
 /// A body that relaxes.
 #[derive(Debug, Clone)]
@@ -89,7 +114,8 @@ impl Relaxing {
         self.series.iter().flatten().next().expect("a body that relaxes has a series")
     }
 
-    fn is_uniform(&self) -> bool {
+    /// Whether all regions relax alike.
+    pub fn is_uniform(&self) -> bool {
         self.series.windows(2).all(|pair| pair[0] == pair[1])
     }
 
@@ -123,9 +149,14 @@ impl Relaxing {
             return self.branches(mesh, ShearSprings::Cells, BranchForm::Tensors);
         }
         check_body(mesh)?;
+        self.parts(mesh, self.split_body(mesh))
+    }
+
+    /// The finite elements in a part of shear and one of bulk; one part where both relax alike.
+    fn split_body(&self, mesh: &Mesh) -> Vec<(Entries, bool)> {
         let moduli = self.material.moduli();
         if self.first().is_alike() {
-            return self.parts(mesh, vec![(finite_elements(mesh, moduli), true)]);
+            return vec![(finite_elements(mesh, moduli), true)];
         }
         let split = |hooke: &Hooke, is_shear: bool| {
             // That every cell is isotropic was checked.
@@ -136,7 +167,7 @@ impl Relaxing {
             })
         };
         let part = |is_shear| (finite_elements(mesh, moduli.map(|hooke| split(hooke, is_shear))), is_shear);
-        self.parts(mesh, vec![part(true), part(false)])
+        vec![part(true), part(false)]
     }
 
     /// What a network remembers, and at large deformation the network of what is left when all that relaxes has relaxed, which takes its place.
@@ -149,9 +180,14 @@ impl Relaxing {
             let rest = exact_network(mesh, material, &exact, &self.held)?;
             return Ok((Some(rest), self.branches(mesh, exact.shear, BranchForm::Edges)?));
         }
+        Ok((None, self.parts(mesh, self.split_network(mesh, fit, network)?)?))
+    }
+
+    /// A network in a part of shear and one of bulk; one part where both relax alike.
+    fn split_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<Vec<(Entries, bool)>> {
         let own = network.stiffness(&mesh.points);
         if self.first().is_alike() {
-            return Ok((None, self.parts(mesh, vec![(own, true)])?));
+            return Ok(vec![(own, true)]);
         }
         let with = |shear: f64, bulk: f64| -> Result<Entries> {
             let material = self.material.of_isotropic(|material: Material| with_moduli(material, shear, bulk))?;
@@ -178,7 +214,67 @@ impl Relaxing {
             );
             return Err(Error::expected("terms", expected, "others").of_kind(ErrorKind::Unsupported));
         }
-        Ok((None, self.parts(mesh, vec![(shear, true), (bulk, false)])?))
+        Ok(vec![(shear, true), (bulk, false)])
+    }
+
+    /// The finite elements in parts that resist harmonic strains.
+    ///
+    /// # Errors
+    /// There is no material with a part of the moduli.
+    pub fn harmonic_of_body(&self, mesh: &Mesh) -> Result<Vec<HarmonicPart>> {
+        match self.rest {
+            Some(_) => self.shear_of_regions(&|material| Ok(finite_elements(mesh, material.moduli()))),
+            None => Ok(self.split_body(mesh).into_iter().map(HarmonicPart::of).collect()),
+        }
+    }
+
+    /// A network in parts that resist harmonic strains.
+    ///
+    /// # Errors
+    /// As [`Relaxing::of_network`].
+    pub fn harmonic_of_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<Vec<HarmonicPart>> {
+        if let (Some((_, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
+            let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
+            let made =
+                |material: &MaterialMap| Ok(exact_network(mesh, material, &exact, &self.held)?.stiffness(&mesh.points));
+            return self.shear_of_regions(&made);
+        }
+        Ok(self.split_network(mesh, fit, network)?.into_iter().map(HarmonicPart::of).collect())
+    }
+
+    /// The part of shear of each region that relaxes, and what is left of the stiffness, which is linear in the moduli of each region.
+    fn shear_of_regions(&self, made: &dyn Fn(&MaterialMap) -> Result<Entries>) -> Result<Vec<HarmonicPart>> {
+        let own = made(&self.material)?;
+        let slope = 1.0 / (1.0 - OTHER);
+        let relaxes = (0..self.series.len()).filter(|&region| self.series[region].is_some());
+        let groups: Vec<usize> = if self.is_uniform() { vec![0] } else { relaxes.collect() };
+        let shear = |&region: &usize| -> Result<HarmonicPart> {
+            let softer = self.material.of_isotropic_in(|at, material: Material| {
+                let is_meant = self.is_uniform() || at == region;
+                if is_meant { with_moduli(material, OTHER, 1.0) } else { Ok(material) }
+            })?;
+            let entries = combined(&[(slope, &own), (-slope, &made(&softer)?)]);
+            Ok(HarmonicPart { entries, share: Share::Shear(region) })
+        };
+        let mut parts: Vec<HarmonicPart> = groups.iter().map(shear).collect::<Result<_>>()?;
+        let less = parts.iter().map(|part| (-1.0, &part.entries));
+        let entries = combined(&std::iter::once((1.0, &own)).chain(less).collect::<Vec<_>>());
+        parts.push(HarmonicPart { entries, share: Share::Elastic });
+        Ok(parts)
+    }
+
+    /// The complex coefficient of a part under harmonic strains of the frequency ω, rad/s, with Rayleigh's β, s, times the stiffness of the model that
+    /// moves: at large deformation that of what is left when all has relaxed.
+    pub fn harmonic(&self, share: Share, beta: f64, w: f64) -> Complex<f64> {
+        let (region, place) = match share {
+            Share::Shear(region) => (region, 0),
+            Share::Bulk(region) => (region, 1),
+            Share::Elastic => return Complex::new(1.0, w * beta),
+        };
+        let Some(series) = self.series.get(region).and_then(Option::as_ref) else { return Complex::new(1.0, w * beta) };
+        let [real, imaginary] = series.harmonic(w)[place];
+        let left = if self.rest.is_some() { 1.0 - series.sums()[place] } else { 1.0 };
+        Complex::new(real, imaginary + w * beta * left)
     }
 
     fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
