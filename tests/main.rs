@@ -40,6 +40,7 @@ mod fill_layers;
 mod fills;
 mod first_screen;
 mod fits;
+mod flat;
 mod formats;
 mod fraction;
 mod functions;

@@ -1,6 +1,7 @@
-//! Blender: meshes with the springs as edges and their numbers as attributes, and the motion as shape keys.
+//! Blender: meshes with the springs and hinges as edges and their numbers as attributes, and the motion as shape keys.
 
-use super::job::{Hinges, Holds, Job, Tension};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
 use crate::error::Result;
@@ -10,8 +11,8 @@ use crate::report::NetworkRecord;
 const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
-    membranes: false,
-    hinges: Hinges::None,
+    membranes: true,
+    hinges: Hinges::Any,
     negative: true,
     tension: Tension::Any,
     partial: true,
@@ -22,7 +23,7 @@ const HOLDS: Holds = Holds {
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {
     name: "blender",
-    title: "a Python script for Blender: springs as edges with attributes, the motion as shape keys",
+    title: "a Python script for Blender: springs and hinges as edges with attributes, the motion as shape keys",
     command: "python run.py",
     leaves_out: content_dampers,
     has_loads: true,

@@ -1,10 +1,12 @@
 //! A network on its way to another program, checked against what that program holds.
 
 use super::extent::check_parts;
+use super::hinges::{Hinges, check_angles, check_edges_of_hinges};
+use super::names::{named, ordered, sorted};
 use crate::engine::{Order, Sequence};
 use crate::error::{Error, ErrorKind, Result};
 use crate::network::QUADRILATERAL;
-use crate::report::{ContentPart, HingePart, NetworkRecord, Parts};
+use crate::report::{ContentPart, NetworkRecord, Parts};
 use crate::springs::{cross, dot, norm};
 use std::collections::{HashMap, HashSet};
 
@@ -29,17 +31,6 @@ pub struct Holds {
     pub plane: bool,
     /// Springs elsewhere than along the edges of tetrahedra.
     pub off_edges: bool,
-}
-
-/// Springs on the angle between two triangles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hinges {
-    /// Any.
-    Any,
-    /// Hinges that are flat at rest.
-    Flat,
-    /// None.
-    None,
 }
 
 /// Springs that pull at rest.
@@ -71,9 +62,6 @@ pub struct Job<'a> {
     /// The longest explicit step, s.
     pub step: f64,
 }
-
-/// The largest angle of a sheet that is flat at rest, rad: coordinates in files have six digits or more.
-pub(super) const FLAT: f64 = 1e-5;
 
 /// A sum of tensions at rest below this share of what they would be if the springs had no rest measures is a rounding error.
 const BALANCED: f64 = 1e-9;
@@ -116,24 +104,7 @@ impl<'a> Job<'a> {
             let advice = "objective = \"offdiag\" with nonnegative = true has springs between two points alone, and so has \"divergence\"";
             return unsupported("springs".into(), "springs between two points", found, advice);
         }
-        let is_node =
-            |point: &usize| network.cells.iter().any(|block| block.points.iter().any(|cell| cell.contains(point)));
-        let bent =
-            |part: &&HingePart| holds.hinges == Hinges::None || part.rest.abs() > FLAT && is_node(&part.points[3]);
-        if let Some(part) = parts.hinges.iter().find(bent).filter(|_| holds.hinges != Hinges::Any) {
-            let (expected, found, advice) = match holds.hinges {
-                Hinges::None => {
-                    ("springs between two points", "a hinge at", "mujoco, lammps, xpbd and npz hold hinges")
-                }
-                _ => ("sheets that are flat at rest", "a bent hinge at", "lammps, xpbd and npz hold bent hinges"),
-            };
-            return unsupported(
-                "springs".into(),
-                expected,
-                format!("{found} {}", named(network, &part.points)),
-                advice,
-            );
-        }
+        check_angles(network, &parts.hinges, program, holds.hinges)?;
         let negative = parts.lengths.iter().filter(|spring| spring.constant < 0.0).count();
         if negative > 0 && !holds.negative {
             let advice = "a fit with nonnegative = true has none: --fit names another fit of the scene";
@@ -230,26 +201,7 @@ impl<'a> Job<'a> {
         if let Some(part) = self.parts.contents.iter().find(|part| !corners.contains(&sorted(&part.points))) {
             return Err(error(&part.points));
         }
-        self.check_hinges(program, &corners)
-    }
-
-    /// That each hinge is between the only two triangles at its edge.
-    fn check_hinges(&self, program: &str, triangles: &HashSet<Vec<usize>>) -> Result<()> {
-        let mut edges: HashMap<[usize; 2], usize> = HashMap::new();
-        self.parts
-            .hinges
-            .iter()
-            .for_each(|part| *edges.entry(ordered(part.points[1], part.points[2])).or_default() += 1);
-        let is_held = |part: &&HingePart| {
-            let [apex, a, b, other] = part.points;
-            let are_cells = [apex, other].iter().all(|&corner| triangles.contains(&sorted(&[a, b, corner])));
-            are_cells && edges[&ordered(a, b)] == 1
-        };
-        let Some(part) = self.parts.hinges.iter().find(|part| !is_held(part)) else { return Ok(()) };
-        let expected = format!("hinges between two triangles, which {program} holds");
-        let found = format!("another at the edge of {}", named(self.network, &part.points[1..3]));
-        let advice = "; at a clamped edge hold two rows of points and leave clamp out; joints of three leaves go to lammps, xpbd and npz";
-        Err(Error::expected("springs", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported))
+        check_edges_of_hinges(self.network, &self.parts.hinges, program, &corners)
     }
 
     /// The area of a triangle, which has a sign in the plane, or the volume of a tetrahedron.
@@ -322,17 +274,6 @@ impl<'a> Job<'a> {
     }
 }
 
-/// Points in words: by their numbers in the mesh file, or by their places in the network, which count from 0.
-pub(super) fn named(network: &NetworkRecord, points: &[usize]) -> String {
-    let many = if points.len() == 1 { "" } else { "s" };
-    let (word, numbers): (_, Vec<u64>) = match &network.nodes {
-        Some(nodes) => ("node", points.iter().filter_map(|&p| nodes.get(p)).copied().collect()),
-        None => ("point", points.iter().map(|&p| p as u64).collect()),
-    };
-    let numbers: Vec<String> = numbers.iter().map(u64::to_string).collect();
-    format!("{word}{many} {}", numbers.join(" "))
-}
-
 fn free_points(network: &NetworkRecord) -> usize {
     let held = network.held.iter().filter(|held| held.displacement.iter().all(Option::is_some)).count();
     network.points.len() - held
@@ -348,16 +289,6 @@ pub(super) fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> [f64; 3
     let usual = if network.dimension == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };
     let given = asked.or(network.gravity.as_deref());
     given.map_or(usual, |given| [0, 1, 2].map(|k| given.get(k).copied().unwrap_or(0.0)))
-}
-
-fn ordered(a: usize, b: usize) -> [usize; 2] {
-    [a.min(b), a.max(b)]
-}
-
-fn sorted(points: &[usize]) -> Vec<usize> {
-    let mut points = points.to_vec();
-    points.sort_unstable();
-    points
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {

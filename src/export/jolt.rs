@@ -1,6 +1,7 @@
 //! Jolt: the edge and volume constraints of a soft body.
 
-use super::job::{Hinges, Holds, Job, Tension, has_compliance};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting};
@@ -14,7 +15,7 @@ const HOLDS: Holds = Holds {
     volumes: true,
     areas: false,
     membranes: false,
-    hinges: Hinges::None,
+    hinges: Hinges::None("its bend constraints are not written"),
     negative: false,
     tension: Tension::None,
     partial: false,

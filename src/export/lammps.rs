@@ -1,6 +1,7 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
-use super::job::{FLAT, Hinges, Holds, Job, Tension};
+use super::hinges::{FLAT, Hinges};
+use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
 use crate::report::{HingePart, NetworkRecord};

@@ -7,11 +7,13 @@
 mod blender;
 mod divided;
 mod extent;
+mod hinges;
 mod job;
 mod jolt;
 mod lammps;
 mod loads;
 mod mujoco;
+mod names;
 mod newton;
 mod npz;
 mod phystwin;
@@ -22,7 +24,8 @@ mod target;
 mod vtu;
 mod xpbd;
 
-pub use job::{Hinges, Holds, Job, Tension, used_gravity};
+pub use hinges::Hinges;
+pub use job::{Holds, Job, Tension, used_gravity};
 pub use target::{Content, NamedFile, Target, with_warnings, write_files};
 
 use crate::error::Result;

@@ -1,6 +1,7 @@
 //! MuJoCo: a flex of tetrahedra, or of triangles that bend, whose stiffness is that of the springs.
 
-use super::job::{Hinges, Holds, Job, Tension};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
 use super::target::{Content, NamedFile, Stands, Target, dampers, script};
 use crate::error::Result;

@@ -1,6 +1,8 @@
 //! PhysTwin: the arrays of its simulator `SpringMassSystemWarp`.
 
-use super::job::{Hinges, Holds, Job, Tension, named};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension};
+use super::names::named;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
@@ -11,7 +13,7 @@ const HOLDS: Holds = Holds {
     volumes: false,
     areas: false,
     membranes: false,
-    hinges: Hinges::None,
+    hinges: Hinges::None("it has springs between two points alone"),
     negative: false,
     tension: Tension::Any,
     partial: false,

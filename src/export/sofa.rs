@@ -1,6 +1,7 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
-use super::job::{Hinges, Holds, Job, Tension};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension};
 use super::target::{Content, NamedFile, Stands, Target, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -11,7 +12,7 @@ const HOLDS: Holds = Holds {
     volumes: false,
     areas: false,
     membranes: false,
-    hinges: Hinges::None,
+    hinges: Hinges::None("its bending springs have one constant of a whole component, and not one of each hinge"),
     negative: true,
     tension: Tension::Any,
     partial: false,

@@ -1,6 +1,7 @@
 //! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
 
-use super::job::{Hinges, Holds, Job, Tension, has_compliance};
+use super::hinges::Hinges;
+use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting, colours};

@@ -16,7 +16,7 @@ fn whole_messages_read_well() {
             scene("poisson = 0.3", "poison = 0.3"),
             "scene.toml:5: material.poison: unknown field \"poison\", expected one of \"name\", \"group\", \"where\", \
              \"young\", \"poisson\", \"shear_modulus\", \"bulk_modulus\", \"lambda\", \"orthotropic\", \"transversely-isotropic\", \"cubic\", \"stiffness\", \"axes\", \"plane\", \
-             \"thickness\", \"bending\", \"flexural\", \"torsional\", \"area\", \"density\", \"relaxation\", \"law\", \"parameters\", \"fibre\"; did you mean \"poisson\"?",
+             \"thickness\", \"bending\", \"rest\", \"flexural\", \"torsional\", \"area\", \"density\", \"relaxation\", \"law\", \"parameters\", \"fibre\"; did you mean \"poisson\"?",
         ),
         (scene("young = 10e3\n", ""), "scene.toml:3: material: missing field \"young\""),
         (scene("[mesh]", "[mesh"), "scene.toml:1: expected TOML: unclosed table, expected \"]\""),

@@ -12,6 +12,7 @@ use crate::mesh::{Directors, Mesh};
 use crate::springs::{BEND_POINTS, Turns, cross, distance, dot, norm, turn_points};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use smallvec::SmallVec;
+use std::f64::consts::FRAC_PI_2;
 
 /// The springs of a sheet as a plate, three of each triangle on its turns from all its directors, by the moduli of its membrane, N/m: a plate of thickness t has
 /// `D = C t²/12` of them, N·m.
@@ -31,6 +32,8 @@ fn sheet(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>, springs: S
     let mut network = Network { dimension: mesh.dimension, ..Network::default() };
     let mut holds = vec![0.0; directors.edges.len()];
     let first = mesh.node_count();
+    let mut sides = vec![0; directors.edges.len()];
+    directors.of_cells.iter().for_each(|director| sides[director - first] += 1);
     for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
         let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
         for &director in directors.of_cell(cell) {
@@ -40,7 +43,10 @@ fn sheet(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>, springs: S
             holds[director - first] += share * membrane[(0, 0)];
         }
         let points: SmallVec<[usize; BEND_POINTS]> = nodes.iter().chain(directors.of_cell(cell)).copied().collect();
-        let triangle = Triangle::of(mesh, &points);
+        let mut triangle = Triangle::of(mesh, &points);
+        if directors.flat {
+            triangle.flatten(|corner| sides[directors.of_cell(cell)[corner] - first] <= 2);
+        }
         let stiffness = membrane * directors.gyration[cell];
         network.others.extend(springs(&triangle, &stiffness));
     }
@@ -56,6 +62,8 @@ struct Triangle<'a> {
     /// Each edge, in the order of the opposite corners, has its length l, m, and `v = (n_x², n_y², 2 n_x n_y)` of its
     /// conormal in the axes of the triangle, in which its membrane has its moduli.
     edges: [(f64, Vector3<f64>); 3],
+    /// How far each turn is from that at rest, rad, in the same order: zero where the sheet is at rest as it is.
+    bent: [f64; 3],
 }
 
 impl<'a> Triangle<'a> {
@@ -77,7 +85,19 @@ impl<'a> Triangle<'a> {
             (length, Vector3::new(x * x, y * y, 2.0 * x * y))
         };
         let positions = (0..BEND_POINTS).flat_map(at).collect();
-        Triangle { points, positions, area, edges: std::array::from_fn(of_edge) }
+        Triangle { points, positions, area, edges: std::array::from_fn(of_edge), bent: [0.0; 3] }
+    }
+
+    /// Lets the sheet be at rest where its directors stand upright on the triangle, at the edges that are asked for: the triangles at each are then in one
+    /// plane.
+    fn flatten(&mut self, is_flat: impl Fn(usize) -> bool) {
+        let hinge = |corner| self.spring(SpringKind::Hinge, turn_points(corner), Turns::of_hinge(), [0.0; 2]).rest;
+        let bent = |corner| {
+            let turn: f64 = hinge(corner);
+            // Triangles of either order have their normals on this side of the director or on the other.
+            if is_flat(corner) { turn - FRAC_PI_2.copysign(turn) } else { 0.0 }
+        };
+        self.bent = std::array::from_fn(bent);
     }
 
     /// The springs of a plate with the flexural stiffness D, N·m, in the order xx, yy, xy with shear strains 2 ε.
@@ -89,7 +109,13 @@ impl<'a> Triangle<'a> {
         let SymmetricEigen { eigenvectors, eigenvalues } = SymmetricEigen::new(*d);
         std::array::from_fn(|m| {
             let weights = self.edges.map(|(length, v)| length * v.dot(&eigenvectors.column(m)));
-            self.spring(SpringKind::Bend, 0..BEND_POINTS, Turns::of_triangle(weights), eigenvalues[m] / self.area)
+            let bent = dot(&weights, &self.bent);
+            self.spring(
+                SpringKind::Bend,
+                0..BEND_POINTS,
+                Turns::of_triangle(weights),
+                [eigenvalues[m] / self.area, bent],
+            )
         })
     }
 
@@ -99,21 +125,23 @@ impl<'a> Triangle<'a> {
         std::array::from_fn(|corner| {
             let (length, v) = self.edges[corner];
             let constant = v.dot(&(d * v)) * length * length / self.area;
-            self.spring(SpringKind::Hinge, turn_points(corner), Turns::of_hinge(), constant)
+            self.spring(SpringKind::Hinge, turn_points(corner), Turns::of_hinge(), [constant, self.bent[corner]])
         })
     }
 
+    /// A spring of this constant on the turns of these points, which measures this more than at rest.
     fn spring(
         &self,
         kind: SpringKind,
         places: impl IntoIterator<Item = usize>,
         turns: Turns,
-        constant: f64,
+        [constant, bent]: [f64; 2],
     ) -> MeasureSpring {
         let places: SmallVec<[usize; BEND_POINTS]> = places.into_iter().collect();
         let x: Vec<f64> = places.iter().flat_map(|p| &self.positions[3 * p..3 * p + 3]).copied().collect();
         let points = places.iter().map(|&place| self.points[place]).collect();
-        MeasureSpring::turning(kind, points, &x, turns, constant)
+        let spring = MeasureSpring::turning(kind, points, &x, turns, constant);
+        MeasureSpring { rest: spring.rest - bent, ..spring }
     }
 }
 

@@ -82,7 +82,7 @@ impl Mesh {
             self.points.extend(middle.iter().zip(normal).map(|(x, n)| x + reach * n / size));
         }
         let edges = normals.into_iter().map(|(edge, ..)| edge).collect();
-        Ok(self.directed(Directors { edges, of_cells, gyration, torsion: Vec::new() }))
+        Ok(self.directed(Directors { edges, of_cells, gyration, torsion: Vec::new(), flat: false }))
     }
 
     /// The mesh with these directors, whose points are its last ones already.

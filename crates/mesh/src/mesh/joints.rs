@@ -70,7 +70,7 @@ impl Mesh {
             }
         }
         let edges = (0..first).flat_map(|joint| [[joint; 2]; 2]).collect();
-        Ok(self.directed(Directors { edges, of_cells, gyration, torsion }))
+        Ok(self.directed(Directors { edges, of_cells, gyration, torsion, flat: false }))
     }
 
     /// The length of a rod with these ends, m.

@@ -49,6 +49,8 @@ pub struct Directors {
     pub gyration: Vec<f64>,
     /// `G J/(E A)` of each rod, m², by which it resists torsion; none of a sheet.
     pub torsion: Vec<f64>,
+    /// Whether the sheet is without bending where it is flat, and not as it is. Edges of three triangles and more keep their angles.
+    pub flat: bool,
 }
 
 impl Directors {

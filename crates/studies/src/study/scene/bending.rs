@@ -22,6 +22,17 @@ pub enum Bending {
     Rod,
 }
 
+/// Where a sheet that bends is at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RestShape {
+    /// As the mesh is.
+    #[default]
+    Mesh,
+    /// Where it is flat: each edge of two triangles pulls them into one plane. The mesh has its lengths.
+    Flat,
+}
+
 impl Bending {
     /// The mesh with what resists bending, if anything does; `material_of` has thicknesses and cross-sections, and the flexural and the torsional stiffness are those that are given. If the flexural stiffness D, N·m, of a sheet is given and
     /// not that of the thickness, `D/C_xx` of the stiffness C of the membrane has the place of `t²/12`, in the rotary inertia too; as `E I/(E A)` has that

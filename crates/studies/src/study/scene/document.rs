@@ -1,5 +1,6 @@
 //! A scene that has been read and checked.
 
+use super::bending::RestShape;
 use super::calibrate::CalibrationRecipe;
 use super::entry::FixEntry;
 use super::gauge::Gauge;
@@ -149,6 +150,11 @@ impl Scene {
                 let expected = "a material with \"relaxation\", or [motion] with \"damping\"";
                 return Err(Error::expected(key, expected, "nothing that loses energy"));
             }
+        }
+        if entry.output.frequencies > 0 && entry.material.first().rest == RestShape::Flat {
+            let expected =
+                "0 of a sheet with rest = \"flat\", which is bent in the mesh: it vibrates about another shape";
+            return Err(Error::expected("output.frequencies", expected, entry.output.frequencies));
         }
         check_count("output.frequencies", entry.output.frequencies as u64, 0, bound::MODES)?;
         check_fits(&fits, &entry.material, &loads)?;

@@ -4,7 +4,7 @@ use super::anisotropic::{
     AnisotropicLaw, Axis, AxisEntry, CubicEntry, NumberField, OrthotropicEntry, StiffnessEntry, TransverseEntry,
     of_rows,
 };
-use super::bending::Bending;
+use super::bending::{Bending, RestShape};
 use super::constants::{Constant, young_and_poisson};
 use super::distribution::{self, Distribution};
 use super::part::Part;
@@ -90,6 +90,9 @@ pub struct MaterialEntry {
     /// A surface of triangles or lines of two nodes, in space, resist bending as this says. It is the same in every entry of `[[material]]`.
     #[serde(default)]
     pub bending: Bending,
+    /// A sheet that bends is without bending in this shape. `flat` needs a `law`, and is the same in every entry of `[[material]]`.
+    #[serde(default)]
+    pub rest: RestShape,
     /// A sheet that bends has this flexural stiffness D in N·m, and rods that bend have this E I in N·m², above 0, in place of that of thickness or
     /// area. It is the same in every entry of `[[material]]`.
     #[schemars(extend("x-default" = "`E t³/(12 (1 − ν²))`, `E A²/(4 π)`"))]
@@ -164,7 +167,7 @@ impl MaterialEntry {
     ///
     /// # Errors
     /// Three constants are given or one alone, one of those that are replaced or the other beside it is not a number, or there is no such material.
-    fn complete(&mut self) -> Result<()> {
+    pub(super) fn complete(&mut self) -> Result<()> {
         let others = [
             ("shear_modulus", self.shear_modulus.take()),
             ("bulk_modulus", self.bulk_modulus.take()),
@@ -293,7 +296,7 @@ impl MaterialEntry {
     }
 
     /// The checks that do not depend on the mesh.
-    fn check(&self) -> Result<()> {
+    pub(super) fn check(&self) -> Result<()> {
         self.part()?;
         let law = self.anisotropy()?;
         self.axes()?;
@@ -323,78 +326,5 @@ impl MaterialEntry {
         let thickness = self.thickness.as_ref().and_then(Distribution::number);
         Material::for_body(2, young, poisson, state, thickness)?;
         number(&self.density).map_or(Ok(()), |density| range::positive("density", density, "kg/m³").map(|_| ()))
-    }
-}
-
-impl MaterialEntries {
-    /// The key of an entry.
-    pub fn key(&self, entry: usize) -> String {
-        if self.is_list { format!("material[{entry}]") } else { "material".into() }
-    }
-
-    /// The first entry; there is one after [`MaterialEntries::check`].
-    pub fn first(&self) -> &MaterialEntry {
-        &self.all[0]
-    }
-
-    /// Whether all entries have a density.
-    pub fn has_density(&self) -> bool {
-        self.all.iter().all(|entry| entry.density.is_some())
-    }
-
-    /// Whether the material is the same in all cells.
-    pub fn is_uniform(&self) -> bool {
-        let first = self.first();
-        self.all.len() == 1 && !first.varies() && first.young.is_some()
-    }
-
-    /// Gives every isotropic entry Young's modulus and Poisson's ratio, whatever constants it is stated by.
-    ///
-    /// # Errors
-    /// The constants of an entry are not two, or there is no such material.
-    pub fn complete(&mut self) -> Result<()> {
-        for i in 0..self.all.len() {
-            let key = self.key(i);
-            self.all[i].complete().map_err(|e| e.under(key))?;
-        }
-        Ok(())
-    }
-
-    /// The checks that do not depend on the mesh.
-    ///
-    /// # Errors
-    /// There is no entry, several have no part of the mesh, they do not go together, or a number is out of its range.
-    pub fn check(&self) -> Result<()> {
-        if self.all.is_empty() {
-            return Err(Error::expected("material", "at least one [[material]]", "none"));
-        }
-        let mut rest = None;
-        for (i, entry) in self.all.iter().enumerate() {
-            entry.check().map_err(|e| e.under(self.key(i)))?;
-            let first = self.first();
-            if entry.part()? == Part::Everything
-                && let Some(other) = rest.replace(i)
-            {
-                let expected = format!("\"group\" or \"where\": {} has what is left of the body", self.key(other));
-                return Err(Error::expected(self.key(i), expected, "neither"));
-            }
-            let alike = [
-                ("plane", entry.plane.unwrap_or(Plane::Stress) == first.plane.unwrap_or(Plane::Stress)),
-                ("bending", entry.bending == first.bending),
-                ("flexural", entry.flexural == first.flexural),
-                ("torsional", entry.torsional == first.torsional),
-                ("relaxation", entry.law.is_some() || entry.relaxation == first.relaxation),
-            ];
-            if let Some((key, _)) = alike.into_iter().find(|(_, is_same)| !is_same) {
-                let expected = format!("that of {}", self.key(0));
-                return Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "another"));
-            }
-            let has = |entry: &MaterialEntry| [("law", entry.law.is_some()), ("density", entry.density.is_some())];
-            if let Some(((key, _), _)) = has(entry).into_iter().zip(has(first)).find(|(own, other)| own != other) {
-                let expected = format!("a {key} in every [[material]] or in none");
-                return Err(Error::expected(format!("{}.{key}", self.key(i)), expected, "one in some"));
-            }
-        }
-        Ok(())
     }
 }

@@ -20,6 +20,7 @@ mod laws;
 mod lists;
 mod load;
 mod material;
+mod material_entries;
 mod materials;
 mod motion;
 mod motion_recipe;

@@ -9,9 +9,11 @@
 
 What was converted: the object "springs" is a mesh with a vertex for each point and an edge for each spring. Attributes of its edges are
 constant (N/m), rest (m) and damping (kg/s), those of its vertices mass (kg) and fixed. The object "surface" has the triangles of the
-boundary over the same vertices. Blender's soft bodies have one stiffness for all edges, so that they do not take these attributes: this
-script moves the network by symplectic Euler at half the longest stable step, with the springs on volumes, and both objects get the
-motion as shape keys, one for each frame. Geometry nodes read the attributes by their names. Blender counts in 32 bits.
+boundary over the same vertices. Hinges are edges of an object "hinges" with the attributes constant (N m) and rest (rad).
+Blender's soft bodies have one stiffness for all edges, and its cloth bends by forces at the corners that are no moment of an angle and
+do not balance, so that neither takes these attributes: this script moves the network by symplectic Euler at half the longest stable
+step, with the springs on volumes and areas and the hinges, and all objects get the motion as shape keys, one for each frame. Geometry
+nodes read the attributes by their names. Blender counts in 32 bits.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -104,6 +106,8 @@ folder = Path(__file__).parent
 net = np.load(folder / "network.npz")
 points, masses, springs, k, rest, damper = (net[name] for name in ["points", "masses", "springs", "k", "rest", "damper"])
 volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", "rest_volume"])
+areas, k_area, rest_area = (net.get(name, np.empty(0)) for name in ["areas", "k_area", "rest_area"])
+hinges, k_hinge, rest_hinge = (net.get(name, np.empty(0)) for name in ["hinges", "k_hinge", "rest_hinge"])
 step = 0.5 * float(net["dt_max"])  # s
 free = np.isnan(net["held"])
 rate = 24  # frames per second
@@ -114,8 +118,27 @@ def gathered(corners, forces):
     return np.stack([np.bincount(corners, forces[:, axis], len(points)) for axis in range(3)], axis=1)
 
 
+def dot(a, b):
+    return np.sum(a * b, axis=1, keepdims=True)
+
+
+def turns(x):
+    """The angles of the hinges beside those at rest, rad, and their gradients by the apex, the ends of the edge and the apex beyond it."""
+    apex, a, b, last = (x[hinges[:, i]] for i in range(4))
+    t, u, w = b - a, apex - a, last - a
+    size = np.sqrt(dot(t, t))
+    t = t / size
+    feet = dot(u, t) / size, dot(w, t) / size
+    up, away = u - dot(u, t) * t, w - dot(w, t) * t
+    n = np.cross(t, up)
+    g0, g3 = n / dot(up, up), np.cross(away, t) / dot(away, away)
+    # n is as long as up, and so are both sides of this right-handed pair.
+    angle = np.arctan2(dot(away, n), dot(away, -up))[:, 0] - rest_hinge
+    return angle, [g0, (feet[0] - 1) * g0 + (feet[1] - 1) * g3, -feet[0] * g0 - feet[1] * g3, g3]
+
+
 def force(x, v, applied=0.0):
-    """The force on each point, N: `applied`, springs with dampers, springs on volumes, weight, and damping of the masses."""
+    """The force on each point, N: `applied`, springs with dampers, springs on volumes and areas, hinges, weight, and damping of the masses."""
     i, j = springs.T
     r = x[j] - x[i]
     length = np.maximum(np.linalg.norm(r, axis=1), 1e-300)
@@ -130,6 +153,17 @@ def force(x, v, applied=0.0):
         pull = (k_volume * (volume - rest_volume))[:, None, None] * slopes
         for a in range(4):
             total -= gathered(volumes[:, a], pull[:, a])
+    if len(areas):
+        a, b, c = (x[areas[:, i]] for i in range(3))
+        normal = np.cross(b - a, c - a)
+        size = np.sqrt(dot(normal, normal))
+        tension = k_area[:, None] * (size / 2 - rest_area[:, None])
+        for i, opposite in enumerate([b - c, c - a, a - b]):
+            total -= gathered(areas[:, i], tension * np.cross(opposite, normal / size) / 2)
+    if len(hinges):
+        angle, slopes = turns(x)
+        for i, slope in enumerate(slopes):
+            total -= gathered(hinges[:, i], (k_hinge * angle)[:, None] * slope)
     return total
 
 
@@ -171,12 +205,16 @@ def objects():
     collection = bpy.data.collections.new("springfit")
     bpy.context.scene.collection.children.link(collection)
     made = []
-    for name, edges, faces in [("springs", springs.tolist(), []), ("surface", [], net["surface"].tolist())]:
+    of_springs = [("constant", "FLOAT", k), ("rest", "FLOAT", rest), ("damping", "FLOAT", damper)]
+    bodies = [("springs", springs, [], of_springs), ("surface", [], net["surface"].tolist(), [])]
+    if len(hinges):
+        # Two hinges at a joint of three triangles are two edges.
+        bodies.append(("hinges", hinges[:, 1:3], [], [("constant", "FLOAT", k_hinge), ("rest", "FLOAT", rest_hinge)]))
+    for name, edges, faces, of_edges in bodies:
         mesh = bpy.data.meshes.new(name)
-        mesh.from_pydata(points.tolist(), edges, faces)
+        mesh.from_pydata(points.tolist(), [list(map(int, edge)) for edge in edges], faces)
         of_points = [("mass", "FLOAT", masses), ("fixed", "BOOLEAN", ~free.any(axis=1))]
-        of_edges = [("constant", "FLOAT", k), ("rest", "FLOAT", rest), ("damping", "FLOAT", damper)]
-        for domain, attributes in [("POINT", of_points), ("EDGE", of_edges if edges else [])]:
+        for domain, attributes in [("POINT", of_points), ("EDGE", of_edges)]:
             for attribute, kind, values in attributes:
                 values = values.astype(np.float32 if kind == "FLOAT" else bool)
                 mesh.attributes.new(attribute, kind, domain).data.foreach_set("value", values)

@@ -13,6 +13,9 @@ k_lambda = K V0. Points that are held have no mass. The solver is explicit: its 
 Constants that were fitted for a setting of SolverVBD or SolverXPBD are moved by that solver at that setting, without dampers, which would
 change where the body rests. VBD gets colours in which the ends of springs differ as well; XPBD leaves out tetrahedra without shear
 modulus, and gets a millionth of k_lambda.
+A hinge of constant k is an edge with edge_ke = k/L, L its length at rest, for Newton's energy is 1/2 ke L (theta - rest)^2; its angles have
+the other sign. Networks with hinges are moved by SolverVBD, in 10 iterations of twice the longest explicit step: the bending forces of the
+explicit solver and of SolverXPBD lack a factor and do not balance.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -107,7 +110,8 @@ points, masses, springs, k, rest = (net[name] for name in ["points", "masses", "
 volumes, k_volume, rest_volume = (net[name] for name in ["volumes", "k_volume", "rest_volume"])
 fitted = {name: net[name].ravel()[0].item() for name in ["method", "step", "substeps", "iterations", "relaxation"] if name in net}
 setting = dict(fitted)  # empty where the constants are those of equations that are solved
-step = setting["step"] / setting["substeps"] if setting else 0.5 * float(net["dt_max"])  # s
+has_hinges = "hinges" in net
+step = setting["step"] / setting["substeps"] if setting else (2 if has_hinges else 0.5) * float(net["dt_max"])  # s
 
 
 def build(material=None):
@@ -137,6 +141,11 @@ def build(material=None):
         builder.tet_activations.append(0.0)
         shear = 1e-6 * constant * at_rest if setting.get("method") == "newton-xpbd" else 0.0
         builder.tet_materials.append((shear, constant * at_rest, 0.0))
+    if has_hinges:
+        apex, a, b, other = net["hinges"].T
+        stiffness = net["k_hinge"] / np.linalg.norm(points[b] - points[a], axis=1)
+        nothing = [0.0] * len(stiffness)
+        builder.add_edges(*(ends.tolist() for ends in (apex, other, a, b)), rest=(-net["rest_hinge"]).tolist(), edge_ke=stiffness.tolist(), edge_kd=nothing)
     if "colours" in net:
         colours = net["colours"]
         builder.set_coloring([np.flatnonzero(colours == colour) for colour in range(colours.max() + 1)])
@@ -146,10 +155,10 @@ def build(material=None):
 def solver_of(model, material=None):
     """The solver, for a step of `step`: the one that the constants were fitted for, or the explicit one."""
     solvers = newton.solvers
-    if material or not setting:
+    if material or not (setting or has_hinges):
         return solvers.SolverSemiImplicit(model)
-    if setting["method"] == "newton-vbd":
-        return solvers.SolverVBD(model, iterations=setting["iterations"])
+    if has_hinges or setting["method"] == "newton-vbd":
+        return solvers.SolverVBD(model, iterations=setting.get("iterations", 10))
     return solvers.SolverXPBD(model, iterations=setting["iterations"], soft_body_relaxation=setting["relaxation"])
 
 
