@@ -250,8 +250,18 @@ impl Curve {
             };
             return Err(Error::expected(key, problem, format!("{found:?}")));
         }
-        if let Some(found) = values.iter().find(|value| kind == DampingKind::Ratio && **value >= 1.0) {
-            return Err(Error::expected(key, "below 1: from 1 on nothing vibrates", format!("{found:?}")));
+        let ratio = |value: f64| match kind {
+            DampingKind::LossFactor => value / 2.0,
+            DampingKind::Ratio => value,
+            DampingKind::Decrement => value / TAU.hypot(value),
+        };
+        let is_free = kind != DampingKind::LossFactor;
+        if let Some(found) = values.iter().find(|value| is_free && ratio(**value) >= 1.0) {
+            return Err(Error::expected(
+                key,
+                "damping ratios below 1: from 1 on nothing vibrates",
+                format!("{found:?}"),
+            ));
         }
         if values.iter().all(|value| *value == 0.0) {
             return Err(Error::expected(key, "some damping above 0", "none"));
@@ -263,11 +273,11 @@ impl Curve {
             let found = format!("{} after {}", pair[1], pair[0]);
             return Err(Error::expected("frequency", "numbers that rise", found));
         }
-        if let Some([from, to]) = band {
-            if !(range::contains(from) && range::contains(to) && from < to) {
-                let expected = "two frequencies in Hz above 0, the second above the first";
-                return Err(Error::expected("band", expected, format!("{from:?} and {to:?}")));
-            }
+        if let Some([from, to]) = band
+            && !(range::contains(from) && range::contains(to) && from < to)
+        {
+            let expected = "two frequencies in Hz above 0, the second above the first";
+            return Err(Error::expected("band", expected, format!("{from:?} and {to:?}")));
         }
         let is_one = values.len() == 1 && frequencies.len() <= 1;
         if !is_one && values.len() != frequencies.len() {
@@ -286,12 +296,6 @@ impl Curve {
             let expected = format!("frequencies around {only} Hz, where damping was measured");
             return Err(Error::expected("band", expected, format!("{from:?} and {to:?}")));
         }
-        let is_free = kind != DampingKind::LossFactor;
-        let ratio = |value: f64| match kind {
-            DampingKind::LossFactor => value / 2.0,
-            DampingKind::Ratio => value,
-            DampingKind::Decrement => value / TAU.hypot(value),
-        };
         let (frequencies, ratios): (Vec<f64>, Vec<f64>) = match (band, is_one) {
             (Some(band), true) => (band.to_vec(), vec![ratio(values[0]); 2]),
             (None, true) if frequencies.is_empty() => {
@@ -310,11 +314,7 @@ impl Curve {
         let [from, to] = self.band;
         let count = ((to / from).log10() * PER_DECADE).ceil().max(PER_DECADE) as usize;
         let place = |i: usize| {
-            let frequency = match i {
-                0 => from,
-                i if i == count => to,
-                _ => from * (to / from).powf(i as f64 / count as f64),
-            };
+            let frequency = if i == count { to } else { from * (to / from).powf(i as f64 / count as f64) };
             Place::new(frequency, self.ratio_at(frequency), self.is_free)
         };
         (0..=count).map(place).collect()
