@@ -1,14 +1,14 @@
-//! The gallery shows twelve scenes, each with its command and a picture that loads at once.
+//! The gallery shows thirteen scenes, each with its command and a picture that loads at once.
 
 use super::markdown::{page, root};
 use springfit::study::Scene;
 
 #[test]
-fn the_gallery_has_twelve_scenes_with_command_and_picture() {
+fn the_gallery_has_thirteen_scenes_with_command_and_picture() {
     let text = page("docs/src/gallery.md").text;
     let (scenes, _) = text.split_once("\n## Figures for a paper").unwrap();
     let parts: Vec<&str> = scenes.split("\n## ").skip(1).collect();
-    assert_eq!(parts.len(), 12);
+    assert_eq!(parts.len(), 13);
     for part in parts {
         let command = part.lines().find(|line| line.starts_with("springfit run ")).unwrap_or_else(|| panic!("{part}"));
         Scene::load(&root().join(command.split(' ').nth(2).unwrap())).unwrap();
