@@ -27,6 +27,9 @@ impl Target {
             prepared = hinged;
         }
         sentences.extend(take_gravity(&mut prepared, gravity));
+        if prepared.motion.as_ref().is_some_and(|drive| !(drive.forces.is_empty() && drive.pulls.is_empty())) {
+            sentences.push("what [[motion.force]] and [[motion.pull]] prescribe in time is left out: the loads that are exported are constant".into());
+        }
         if let Some((divided, changed)) = self.divided(&prepared, gravity)? {
             sentences.push(changed);
             prepared = divided;

@@ -65,7 +65,11 @@ fn region_rows(region: &CalibratedRegion) -> Vec<Vec<String>> {
         ("lambda", "Pa", &region.lambda, true),
     ];
     let row = |(i, (name, unit, value, is_own)): (usize, (&str, &str, &Value, bool))| {
-        let own = |x: f64| if unit == "Pa" { format!("{x:.4e}") } else { format!("{x:.4}") };
+        let own = |x: f64| match (x.is_finite(), unit) {
+            (false, _) => "-".into(),
+            (true, "Pa") => format!("{x:.4e}"),
+            (true, _) => format!("{x:.4}"),
+        };
         let share = |deviation: Option<f64>| {
             // Deviations of E and μ are those of logarithms.
             let unit = if is_own { value.value.abs() } else { 1.0 };

@@ -73,14 +73,18 @@ pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
     let bends = |load: &&BodyLoad| load.deformation.is_some_and(bends);
     let loads: Vec<&str> =
         outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
-    (!loads.is_empty() && outcome.too_stiff == Some(TooStiff::Bends)).then(|| {
-        let words = format!(
-            "the body is about one cell across and bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
-             from = \"quadratic\" compares with quadratic elements",
-            loads.join(", ")
-        );
-        Note::of_body(Weight::Reference, words)
-    })
+    let cells = match outcome.too_stiff.filter(|_| !loads.is_empty())? {
+        TooStiff::Locks(_) => return None,
+        TooStiff::Bends => "the body is about one cell across",
+        TooStiff::Slender => "the cells are long beside the thickness of the body, which",
+    };
+    let and = if outcome.too_stiff == Some(TooStiff::Bends) { " and" } else { "" };
+    let words = format!(
+        "{cells}{and} bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
+         from = \"quadratic\" compares with quadratic elements",
+        loads.join(", ")
+    );
+    Some(Note::of_body(Weight::Reference, words))
 }
 
 /// Under which loads, and whether in the motion, the linear theory is left: the largest strain and rotation of all.

@@ -52,7 +52,7 @@ fn all(outcome: &Outcome) -> Vec<Note> {
     notes.extend(unsolved.map(|words| Note::of_model(Weight::Broken, BODY, words)));
     notes.extend(outcome.of_loads.iter().cloned().map(of_body(Weight::Reference)));
     notes.extend(bending_note(outcome).into_iter().chain(linear_note(outcome)).chain(measured(outcome)));
-    let model = outcome.assumed.iter().cloned().chain(fibres(outcome));
+    let model = outcome.assumed.iter().cloned().chain(fibres(outcome)).chain(odd_density(outcome));
     let model = model.chain(outcome.mesh.quality.filled.as_ref().and_then(Filled::far_off));
     notes.extend(model.chain(outcome.material.remarks().iter().cloned()).map(of_body(Weight::Model)));
     notes.extend(sheet_notes(outcome));
@@ -97,6 +97,18 @@ fn spurious(outcome: &Outcome) -> Vec<String> {
         ))
     };
     outcome.mesh.blocks.iter().filter_map(note).collect()
+}
+
+/// Densities of solids, kg/m³: from aerogels to osmium, with room for models that are lighter or heavier.
+const DENSITIES: std::ops::RangeInclusive<f64> = 0.1..=5e4;
+
+/// That no solid has such a density: one of a deck in millimetres and tonnes, or in the unit of another, is 10³ or 10¹² times as large as it should be.
+fn odd_density(outcome: &Outcome) -> Option<String> {
+    let ends = outcome.material.density()?.range();
+    let odd = ends.into_iter().find(|density| !DENSITIES.contains(density))?;
+    Some(format!(
+        "the density {odd:.3e} kg/m³ is that of no solid (0.1 to 5e4 kg/m³): its unit or that of the mesh is another one"
+    ))
 }
 
 /// That what is linear does not know the fibres of the law.

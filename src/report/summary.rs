@@ -67,8 +67,10 @@ pub fn summary(outcome: &Outcome) -> String {
 pub(super) fn size(extent: &[f64]) -> String {
     let largest = extent.iter().fold(0.0, |largest: f64, x| largest.max(*x));
     let decimals = (2.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize;
+    // A thin body keeps two digits of its thickness.
+    let own = |x: f64| if x > 0.0 { (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
     let along = |x: &f64| match largest {
-        1e-4..1e6 => format!("{x:.decimals$}"),
+        1e-4..1e6 => format!("{x:.*}", if *x < 0.1 * largest { decimals.max(own(*x)) } else { decimals }),
         _ => format!("{x:.2e}"),
     };
     format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))

@@ -40,7 +40,7 @@ pub(super) fn finite_elements_verdict(outcome: &Outcome) -> String {
     }
     match outcome.too_stiff {
         Some(TooStiff::Locks(_)) => LOCKS.into(),
-        Some(TooStiff::Bends) => TOO_STIFF.into(),
+        Some(TooStiff::Bends | TooStiff::Slender) => TOO_STIFF.into(),
         None => String::new(),
     }
 }

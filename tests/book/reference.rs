@@ -135,6 +135,7 @@ fn the_page_of_meshes_has_the_units_that_are_read() {
         ("force", Quantity::Force),
         ("moment", Quantity::Moment),
         ("acceleration", Quantity::Acceleration),
+        ("force density", Quantity::ForceDensity),
     ];
     for (name, quantity) in quantities {
         let row = text.lines().find(|line| line.starts_with(&format!("| {name} |"))).unwrap();

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 mod entrance;
+mod findings;
 mod scenes;
 
 const TRI3: &str = include_str!("../../elements/tri3.toml");

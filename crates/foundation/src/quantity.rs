@@ -23,6 +23,8 @@ pub enum Quantity {
     Moment,
     /// An acceleration, in m/s².
     Acceleration,
+    /// A force for each volume, in N/m³.
+    ForceDensity,
     /// The length of one unit of a mesh, in m. A unit alone stands for one of it: `mm` is 0.001 m.
     MeshUnit,
 }
@@ -136,6 +138,9 @@ const MOMENTS: [Unit; 8] = [
     ("mN m", 1.0, -3),
     ("uN m", 1.0, -6),
 ];
+/// Units of force for each volume.
+const FORCE_DENSITIES: [Unit; 5] =
+    [("N/m^3", 1.0, 0), ("kN/m^3", 1.0, 3), ("MN/m^3", 1.0, 6), ("N/cm^3", 1.0, 6), ("N/mm^3", 1.0, 9)];
 /// Units of acceleration.
 const ACCELERATIONS: [Unit; 4] = [("m/s^2", 1.0, 0), ("cm/s^2", 1.0, -2), ("mm/s^2", 1.0, -3), ("km/s^2", 1.0, 3)];
 
@@ -188,6 +193,7 @@ impl Quantity {
             Quantity::Force => &FORCES,
             Quantity::Moment => &MOMENTS,
             Quantity::Acceleration => &ACCELERATIONS,
+            Quantity::ForceDensity => &FORCE_DENSITIES,
         }
     }
 
@@ -202,6 +208,7 @@ impl Quantity {
             Quantity::Time => "a time such as 0.005, \"5 ms\" or \"1/60 s\"",
             Quantity::Force => "a force such as 0.5, \"0.5 N\" or \"500 mN\"",
             Quantity::Moment => "a moment such as 0.5, \"0.5 N m\" or \"500 N mm\"",
+            Quantity::ForceDensity => "a force for each volume such as -9810 or \"-9.81 kN/m^3\"",
             Quantity::Acceleration => "an acceleration such as -9.81 or \"-9.81 m/s^2\"",
             Quantity::MeshUnit => "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\"",
         }

@@ -88,6 +88,33 @@ impl Mesh {
         is_outer
     }
 
+    /// About how many cells the body is thick where it is thickest, by the layers of points between its sides; `None` from `most` on.
+    pub fn cells_across(&self, most: usize) -> Option<usize> {
+        let mut depth: Vec<usize> =
+            self.outer_points().iter().map(|outer| if *outer { 0 } else { usize::MAX }).collect();
+        let cells: Vec<&[usize]> = self.body_blocks().flat_map(|(_, block)| block.cells()).collect();
+        let mut deepest = 0;
+        loop {
+            let next: Vec<usize> = cells
+                .iter()
+                .filter(|cell| cell.iter().any(|&p| depth[p] == deepest))
+                .flat_map(|cell| cell.iter().copied().filter(|&p| depth[p] == usize::MAX))
+                .collect();
+            if next.is_empty() {
+                break;
+            }
+            deepest += 1;
+            if 2 * deepest >= most {
+                return None;
+            }
+            next.into_iter().for_each(|p| depth[p] = deepest);
+        }
+        // An odd number has a layer of cells in its middle.
+        let middle = cells.iter().filter(|cell| cell.iter().all(|&p| depth[p] == deepest)).count();
+        let is_odd = deepest == 0 || 10 * middle >= cells.len();
+        Some(2 * deepest + usize::from(is_odd))
+    }
+
     /// Chooses what conditions select, on this mesh and on all into which its cells are divided: a point of a divided cell is selected where
     /// all points whose shape functions do not vanish there are, and the parts of a selected cell are. What is held, loaded or of one material is
     /// therefore the same part of the body on every mesh, whatever the condition says between the points of this one. Each condition comes with

@@ -17,6 +17,20 @@ const ENDS: [[&str; 2]; 6] =
 const CONSTANT: [&str; 4] = ["constant", "k", "stiffness", "ke"];
 const REST: [&str; 5] = ["rest", "rest_length", "length", "l0", "r0"];
 
+/// The unit of a column that has one.
+fn unit_of(name: &str) -> Option<&'static str> {
+    match name {
+        "x" | "y" | "z" => Some("m"),
+        "mass" => Some("kg"),
+        _ if REST.contains(&name) => Some("m"),
+        _ if CONSTANT.contains(&name) => Some(OF_LENGTHS),
+        _ => None,
+    }
+}
+
+/// The unit of the constants of springs on lengths.
+const OF_LENGTHS: &str = "N/m";
+
 /// A table with named columns, and the line of each row.
 struct Table {
     columns: HashMap<String, usize>,
@@ -33,9 +47,21 @@ impl Table {
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(bytes);
         let header = reader.headers().map_err(wrong)?.clone();
         // A unit in brackets is no part of the name.
-        let name = |text: &str| text.split('(').next().unwrap_or_default().trim().to_lowercase();
-        let columns =
-            header.iter().enumerate().map(|(i, text)| (name(text.trim_start_matches('\u{feff}')), i)).collect();
+        let parts = |text: &str| -> (String, Option<String>) {
+            let (name, rest) = text.split_once(['(', '[']).unwrap_or((text, ""));
+            let unit = rest.trim_end_matches([')', ']']).trim();
+            (name.trim().to_lowercase(), (!unit.is_empty()).then(|| unit.to_string()))
+        };
+        let mut columns = HashMap::new();
+        for (i, text) in header.iter().enumerate() {
+            let (name, unit) = parts(text.trim_start_matches('\u{feff}'));
+            if let (Some(found), Some(known)) = (unit, unit_of(&name))
+                && found != known
+            {
+                return Err(Error::expected(name, format!("values in {known}"), format!("({found})")).on_line(1));
+            }
+            columns.insert(name, i);
+        }
         let mut rows = Vec::new();
         for row in reader.records() {
             let row = row.map_err(wrong)?;
@@ -146,7 +172,7 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
         return Err(Error::expected("columns", expected, table.names()).of_kind(ErrorKind::Syntax));
     };
     let (rest, kind, law) = (table.column(&REST), table.column(&["kind"]), table.column(&["law"]));
-    let parameters = table.column(&["parameters"]);
+    let (parameters, unit) = (table.column(&["parameters"]), table.column(&["unit"]));
     let mut springs =
         Springs { d, points: &points, network: Network { dimension: d, ..Network::default() }, known: HashMap::new() };
     for (line, row) in &table.rows {
@@ -161,6 +187,10 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
             .map(|text| place("points", whole(text, "points", *line)?, 0, points.len() / d).map_err(at))
             .collect::<Result<_>>()?;
         let k = number(row, constant, "constant", *line)?;
+        let (unit, is_length) = (text(unit), ["", "length"].contains(&text(kind)));
+        if is_length && !unit.is_empty() && unit != OF_LENGTHS {
+            return Err(at(Error::expected("unit", OF_LENGTHS, format!("\"{unit}\""))));
+        }
         let rest = match text(rest) {
             "" => None,
             _ => Some(number(row, rest.expect("it has a text"), "rest", *line)?),

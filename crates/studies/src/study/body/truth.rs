@@ -48,7 +48,7 @@ pub fn judge_by_truth(
     // Notes of the report say that errors are relative to cells that bend too little.
     let (locks, is_told) = match too_stiff {
         TooStiff::Locks(locking) => (format!("at nu = {} linear cells lock", locking.poisson), false),
-        TooStiff::Bends => {
+        TooStiff::Bends | TooStiff::Slender => {
             ("the body is about one cell across and bends, where linear cells are too stiff".to_string(), true)
         }
     };

@@ -57,6 +57,17 @@ fn of_scene(scene: &Scene, mesh: &Mesh, load: usize) -> Result<Seen> {
 }
 
 impl Observed {
+    /// Whether forces were measured.
+    pub fn has_forces(&self) -> bool {
+        self.observations.iter().any(|seen| matches!(seen.quantity, Quantity::Force { .. }))
+    }
+
+    /// The largest component of the displacements, m.
+    pub fn largest(&self) -> f64 {
+        let of = |seen: &&Observation| matches!(seen.quantity, Quantity::Displacement { .. });
+        self.observations.iter().filter(of).fold(0.0, |most, seen| most.max(seen.value.abs()))
+    }
+
     /// The observations of a scene.
     ///
     /// # Errors

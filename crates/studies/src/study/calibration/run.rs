@@ -16,10 +16,13 @@ use crate::study::body::applied_cases;
 use crate::study::checkpoint::Controls;
 use crate::study::progress::{Event, Progress};
 use crate::study::scene::{CalibrationRecipe, Scene};
+use crate::text::rounded;
 
 /// Residuals that are as large by chance with a smaller probability are more than noise. One run in a hundred with
 /// right noise is warned of.
 const UNLIKELY: f64 = 0.01;
+/// Displacements beyond this share of the body are often beyond the linear theory: a bar that is pulled so has the strain from which on a run tells of it.
+const LARGE: f64 = 0.1;
 /// What a field has for the error of meshes: one refinement, whose difference is extrapolated.
 const OF_FIELD: usize = 1;
 
@@ -72,9 +75,24 @@ pub fn calibrate_with(
     }
     let is_known = known_regions(&scene.region_names(&base), recipe).map_err(|e| scene.at("calibrate", e))?;
     let (_, cases) = applied_cases(scene, &mesh, &base)?;
+    let is_forced: Vec<bool> = cases.iter().map(|case| case.forces.iter().any(|force| *force != 0.0)).collect();
     let supports: Vec<_> = cases.into_iter().map(|case| case.support).collect();
     let observed = Observed::of(scene, &mesh, &supports, readings, recipe.loads.as_deref())?;
     let (weights, noise) = observed.weights()?;
+    let has_forces = observed.has_forces() || observed.loads.iter().any(|load| is_forced[*load]);
+    if !has_forces && is_known.iter().all(|known| !known) {
+        let expected = "loads of forces, or \"reactions\" that were measured, or a region that is \"known\": what is prescribed moves the body alike \
+                        whatever factor all moduli have in common";
+        return Err(scene.at("calibrate", Error::expected("unknowns", expected, "prescribed displacements alone")));
+    }
+    let (most, size) = (observed.largest(), mesh.longest_side());
+    if most > size && scene.law().is_none() {
+        let expected = format!(
+            "displacements below the size of the body, {} m, which \"scale\" of \"measured\" gives the unit",
+            rounded(size, 4)
+        );
+        return Err(scene.placed(Error::expected("measured", expected, format!("{} m", rounded(most, 4)))));
+    }
     if recipe.asked == Asked::Cells && !noise {
         let expected = "the noise of all measurements, by which the prior of a field is weighed";
         return Err(scene.placed(Error::expected("sigma", expected, "none")));
@@ -114,6 +132,13 @@ pub fn calibrate_with(
     outcome.seconds = start.seconds();
     outcome.is_trusted = outcome.stands();
     outcome.notes = outcome.sentences();
+    if most > LARGE * size && scene.law().is_none() {
+        outcome.notes.push(format!(
+            "displacements of up to {:.0} % of the body are measured, and moduli are those of the linear theory, which may not hold there: law = \
+             \"stable-neo-hookean\" in [material] finds them at large deformation",
+            100.0 * most / size
+        ));
+    }
     Ok(outcome)
 }
 

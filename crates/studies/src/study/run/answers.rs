@@ -56,7 +56,7 @@ impl Answers {
                 let deformations: Vec<_> = body.displacements().map(deformed).collect();
                 let too_stiff = TooStiff::of(&posed.mesh, &posed.material, &deformations);
                 // After the fits, which are to the finite elements of the mesh.
-                if let Some(too_stiff) = too_stiff {
+                if let Some(too_stiff) = too_stiff.filter(|cells| *cells != TooStiff::Slender) {
                     posed.judge_by_truth(too_stiff, &deformations, progress);
                 }
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;
@@ -79,8 +79,8 @@ impl Answers {
             name: case.name.clone(),
             support: case.support.clone(),
             forces: forces(case, followed.as_ref(), &mesh),
-            gravity: scene.loads()[i].gravity(scene.loads()),
-            is_gravity: scene.loads()[i].key() == "gravity",
+            gravity: scene.loads()[i].gravity(scene.loads(), &mesh),
+            is_gravity: scene.loads()[i].is_acceleration() && scene.loads()[i].gravity(scene.loads(), &mesh).is_some(),
             gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
             measured: case.measured(&mesh, &fem, work),
             deformation: deformations[i],

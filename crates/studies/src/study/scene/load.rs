@@ -3,6 +3,7 @@
 use super::part::Part;
 use super::value::{self, PRESCRIBED, PRESSURE, PrescribedComponent, Varying, VaryingPressure};
 use crate::error::{Error, Result};
+use crate::mesh::Mesh;
 use crate::model::{Action, Component};
 use crate::named::unknown;
 use crate::quantity::Quantity;
@@ -56,16 +57,17 @@ pub enum LoadKind {
 }
 
 impl LoadCase {
-    /// The acceleration of gravity, m/s², `[dimension]`, of the load itself or of those of its sum among `all` loads; `None` if it has no gravity.
-    pub fn gravity(&self, all: &[LoadCase]) -> Option<Vec<f64>> {
+    /// The acceleration of gravity, m/s², `[dimension]`, of the load itself or of those of its sum among `all` loads; `None` if it has no gravity, or
+    /// one that acts on a part of the mesh alone, which is a force on points as others are.
+    pub fn gravity(&self, all: &[LoadCase], mesh: &Mesh) -> Option<Vec<f64>> {
         match &self.kind {
             // An acceleration is the same everywhere.
-            LoadKind::Single { action: Action::Body(components), is_acceleration: true, .. } => {
-                Some(components.iter().map(|component| component.at(&[])).collect())
+            LoadKind::Single { part, action: Action::Body(components), is_acceleration: true, .. } => {
+                part.is_whole(mesh).then(|| components.iter().map(|component| component.at(&[])).collect())
             }
             LoadKind::Single { .. } => None,
             LoadKind::Sum(parts) => {
-                let found: Vec<Vec<f64>> = parts.iter().filter_map(|&part| all[part].gravity(all)).collect();
+                let found: Vec<Vec<f64>> = parts.iter().filter_map(|&part| all[part].gravity(all, mesh)).collect();
                 let sum = |k: usize| found.iter().map(|gravity| gravity[k]).sum();
                 found.first().map(|first| (0..first.len()).map(sum).collect())
             }
@@ -340,7 +342,7 @@ impl LoadEntry {
             actions.push(Action::Force(v));
         }
         if let Some(v) = self.body {
-            actions.push(Action::Body(varying("body", v, ("N/m³", None))?));
+            actions.push(Action::Body(varying("body", v, ("N/m³", Some(Quantity::ForceDensity)))?));
         }
         let is_acceleration = self.gravity.is_some();
         if let Some(v) = self.gravity {

@@ -53,6 +53,12 @@ impl Part {
         })
     }
 
+    /// Whether all cells of the mesh belong to the part.
+    pub(super) fn is_whole(&self, mesh: &Mesh) -> bool {
+        let cells = self.selection(mesh.dimension).and_then(|selection| selection.cells(mesh));
+        cells.is_ok_and(|cells| cells.len() == mesh.cell_count())
+    }
+
     /// The error of a part that has no points or cells, with where the body is if a condition selects the part.
     pub(in crate::study) fn without_members(&self, problem: &str, mesh: &Mesh) -> Error {
         match self {

@@ -196,6 +196,7 @@ pub fn name_and_unit(quantity: Quantity) -> (&'static str, &'static str) {
         Quantity::Force => ("force", "N"),
         Quantity::Moment => ("moment", "N·m"),
         Quantity::Acceleration => ("acceleration", "m/s²"),
+        Quantity::ForceDensity => ("force density", "N/m³"),
     }
 }
 
