@@ -11,9 +11,11 @@ use tempfile::TempDir;
 const ANGLE: f64 = 0.8;
 const CELLS: usize = 8;
 
+type Points = Vec<[f64; 3]>;
+
 /// The corners of a strip that is bent to an arc of the length 1, and those of the strip that is unrolled: its cells are as long and in the plane of the first, at which it is
 /// held. They have the width 0.25 and parallel diagonals.
-fn strip() -> (Vec<[f64; 3]>, Vec<[f64; 3]>, Vec<[usize; 3]>) {
+fn strip() -> (Points, Points, Vec<[usize; 3]>) {
     let radius = 1.0 / ANGLE;
     let turn = ANGLE / CELLS as f64;
     let chord = 2.0 * radius * (turn / 2.0).sin();

@@ -1,11 +1,10 @@
 //! The program as users start it, and what it says.
 
-use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output};
 
 /// Runs `springfit ARGUMENTS…` in a folder.
-pub fn springfit<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Output {
+pub fn springfit(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()
 }
 

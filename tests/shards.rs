@@ -21,7 +21,7 @@ fn fit(folder: &Path, mesh: &str, options: &[&str], (number, count): (usize, usi
 
 fn error(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
-    said(&output)
+    said(output)
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn gravity_on_a_part_is_exported_as_forces() {
         // 1000 kg/m³ of 2 cm, or of 6 cm, of the bar.
         let weight = if is_whole { -0.5 * 0.024 } else { -0.5 * 0.008 };
         assert!((sum(&loads[0]) / weight - 1.0).abs() < 1e-12 && (sum(&loads[2]) / weight - 1.0).abs() < 1e-12);
-        let output = springfit(folder.path(), ["export", "s.toml", "--to", "xpbd", "--out", "x"]);
+        let output = springfit(folder.path(), &["export", "s.toml", "--to", "xpbd", "--out", "x"]);
         assert!(output.status.success(), "{}", said(&output));
         let written = fs::read_dir(folder.path().join("x")).unwrap().map(|entry| entry.unwrap().path());
         let texts: String = written.filter_map(|path| fs::read_to_string(path).ok()).collect();
@@ -53,7 +53,7 @@ fn gravity_on_a_part_is_exported_as_forces() {
 fn forces_in_time_are_told_to_be_left_out() {
     let motion = "[motion]\nduration = 0.01\nstep = 1e-3\n[[motion.force]]\ngroup = \"xmax\"\nforce = [\"t\", 0, 0]\n";
     let folder = folder_with(&[("s.toml", bar("tet4", [0.06, 0.02, 0.02], [6, 2, 2], motion))]);
-    let output = springfit(folder.path(), ["export", "s.toml", "--to", "npz", "--out", "x"]);
+    let output = springfit(folder.path(), &["export", "s.toml", "--to", "npz", "--out", "x"]);
     assert!(output.status.success() && said(&output).contains("[[motion.force]]"), "{}", said(&output));
 }
 
@@ -98,7 +98,7 @@ fn a_modulus_that_nothing_shows_is_not_found() {
     let told = refused(folder.path(), &["calibrate", "pulled.toml"]);
     assert!(told.contains("displacements below the size of the body, 0.1 m") && told.contains("0.75 m"), "{told}");
     fs::write(folder.path().join("u.csv"), times(0.3)).unwrap();
-    let large = springfit(folder.path(), ["calibrate", "pulled.toml"]);
+    let large = springfit(folder.path(), &["calibrate", "pulled.toml"]);
     let told = String::from_utf8_lossy(&large.stdout).into_owned() + &said(&large);
     assert!(told.contains("linear theory"), "{told}");
 }
@@ -124,7 +124,7 @@ fn long_cells_of_a_bent_body_are_too_stiff_whatever_their_number_across() {
         ("pulled plate", text("hex8", [0.1, 0.1, 0.001], [10, 10, 2], "[1e-6, 0, 0]"), false),
     ] {
         let folder = folder_with(&[("s.toml", text)]);
-        let output = springfit(folder.path(), ["run", "s.toml", "--out", "out"]);
+        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
         let report = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
         let report: serde_json::Value = serde_json::from_str(&report).unwrap();
         let is_told = report["finite_elements_verdict"] == "too stiff";
@@ -174,7 +174,7 @@ fn a_density_of_no_solid_is_told() {
         let text =
             bar("tet4", [0.06, 0.02, 0.02], [2, 1, 1], "").replace("density = 1000", &format!("density = {density}"));
         let folder = folder_with(&[("s.toml", text)]);
-        let output = springfit(folder.path(), ["run", "s.toml", "--out", "out"]);
+        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
         assert_eq!(said(&output).contains("is that of no solid"), is_told, "{}", said(&output));
     }
 }
