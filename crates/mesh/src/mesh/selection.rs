@@ -1,9 +1,10 @@
 //! Parts of a mesh, selected by group name or by a condition on the coordinates.
 
 use super::embedding::Embedding;
-use super::mesh::{CellIndex, Chosen, Group, Mesh, SideIndex, sorted};
+use super::mesh::{CellBlock, CellIndex, Chosen, Group, Mesh, SideIndex, sorted};
 use crate::error::{Error, Result};
 use crate::named::unknown;
+use crate::springs::distance;
 use crate::symbolic::Predicate;
 use std::collections::HashSet;
 
@@ -113,6 +114,23 @@ impl Mesh {
         let middle = cells.iter().filter(|cell| cell.iter().all(|&p| depth[p] == deepest)).count();
         let is_odd = deepest == 0 || 10 * middle >= cells.len();
         Some(2 * deepest + usize::from(is_odd))
+    }
+
+    /// The number of cells of the body whose longest edge is so many times as long as their shortest, or more.
+    pub fn long_cells(&self, times: f64) -> usize {
+        let of_block = |block: &CellBlock| {
+            let corner = |c: usize| block.element.corner_node(c);
+            let edges: Vec<[usize; 2]> =
+                block.element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
+            let is_long = |nodes: &&[usize]| {
+                let length = |[a, b]: &[usize; 2]| distance(self.point(nodes[*a]), self.point(nodes[*b]));
+                let ends = |[least, most]: [f64; 2], length: f64| [least.min(length), most.max(length)];
+                let [least, most] = edges.iter().map(length).fold([f64::INFINITY, 0.0], ends);
+                most >= times * least
+            };
+            block.cells().filter(is_long).count()
+        };
+        self.body_blocks().map(|(_, block)| of_block(block)).sum()
     }
 
     /// Chooses what conditions select, on this mesh and on all into which its cells are divided: a point of a divided cell is selected where

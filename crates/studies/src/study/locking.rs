@@ -4,7 +4,6 @@ use crate::element::Element;
 use crate::material::{MaterialMap, State};
 use crate::mesh::{CellBlock, Mesh};
 use crate::model::Deformation;
-use crate::springs::distance;
 
 /// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
 pub(super) const LOCKS: f64 = 0.4;
@@ -109,21 +108,8 @@ const MOST_ACROSS: usize = 32;
 
 /// Whether at least half of the cells are long beside the thickness of the body.
 fn is_slender(mesh: &Mesh) -> bool {
-    let Some(across) = mesh.cells_across(MOST_ACROSS) else { return false };
-    let long = LONG * across as f64;
-    let of_block = |block: &CellBlock| {
-        let corner = |c: usize| block.element.corner_node(c);
-        let edges: Vec<[usize; 2]> =
-            block.element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
-        let is_long = |nodes: &&[usize]| {
-            let length = |[a, b]: &[usize; 2]| distance(mesh.point(nodes[*a]), mesh.point(nodes[*b]));
-            let ends = |[least, most]: [f64; 2], length: f64| [least.min(length), most.max(length)];
-            let [least, most] = edges.iter().map(length).fold([f64::INFINITY, 0.0], ends);
-            most >= long * least
-        };
-        block.cells().filter(is_long).count()
-    };
-    2 * mesh.body_blocks().map(|(_, block)| of_block(block)).sum::<usize>() >= count(mesh)
+    let across = mesh.cells_across(MOST_ACROSS);
+    across.is_some_and(|across| 2 * mesh.long_cells(LONG * across as f64) >= count(mesh))
 }
 
 /// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.

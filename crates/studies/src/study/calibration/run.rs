@@ -80,7 +80,8 @@ pub fn calibrate_with(
     let observed = Observed::of(scene, &mesh, &supports, readings, recipe.loads.as_deref())?;
     let (weights, noise) = observed.weights()?;
     let has_forces = observed.has_forces() || observed.loads.iter().any(|load| is_forced[*load]);
-    if !has_forces && is_known.iter().all(|known| !known) {
+    // With both moduli Poisson's ratio is seen, and Young's modulus is said not to be.
+    if !has_forces && recipe.asked != Asked::Moduli && is_known.iter().all(|known| !known) {
         let expected = "loads of forces, or \"reactions\" that were measured, or a region that is \"known\": what is prescribed moves the body alike \
                         whatever factor all moduli have in common";
         return Err(scene.at("calibrate", Error::expected("unknowns", expected, "prescribed displacements alone")));

@@ -77,9 +77,23 @@ impl<'a> Posed<'a> {
             let cells = (too_stiff, deformations);
             let notes = judge_by_truth(self.scene, &self.mesh, &mut self.cases, cells, progress);
             self.of_reference.extend(notes);
+            self.tell_of_stiff_targets();
         }
         if let TooStiff::Locks(locking) = too_stiff {
             self.tell_of_finer_locking(locking);
+        }
+    }
+
+    /// Says that fits to the whole object have seen cells that are too stiff, where what they are compared with is not.
+    fn tell_of_stiff_targets(&mut self) {
+        let whole = self.scene.fits().iter().filter(|fit| fit.recipe.whole().is_some());
+        let fits: Vec<&str> = whole.map(|fit| &*fit.name).collect();
+        if !fits.is_empty() && self.cases.iter().any(|case| case.finer.is_some()) {
+            self.of_reference.push(format!(
+                "{}: fitted to the finite elements of the mesh, which are too stiff, and compared with quadratic elements here; from = \"quadratic\" in \
+                 [reference] fits to these",
+                fits.join(", ")
+            ));
         }
     }
 

@@ -192,7 +192,9 @@ def come_to_rest(material=None, forces=None):
     weight = masses.copy()
     weight[net["fixed"]] = 0.0
     energy = lambda: float(weight @ np.sum(body.velocities() ** 2, axis=1))
-    settle(body.advance, energy, lambda factor: body.now.particle_qd.assign(body.velocities() * factor), 120)
+    # Vertex block descent of hinges settles as early; measured: the same points after 25, 40 and 120.
+    quarters = 40 if has_hinges else 120
+    settle(body.advance, energy, lambda factor: body.now.particle_qd.assign(body.velocities() * factor), quarters)
     return body.positions()
 
 
