@@ -67,7 +67,7 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// That a body of one cell across bends, which linear cells resist too much, and that errors are relative to these cells.
+/// That a body bends whose linear cells resist it too much, and that errors are relative to these cells.
 pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
     let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
     let bends = |load: &&BodyLoad| load.deformation.is_some_and(bends);
@@ -75,12 +75,11 @@ pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
         outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
     let cells = match outcome.too_stiff.filter(|_| !loads.is_empty())? {
         TooStiff::Locks(_) => return None,
-        TooStiff::Bends => "the body is about one cell across",
+        TooStiff::Bends => "the body is about one cell across and",
         TooStiff::Slender => "the cells are long beside the thickness of the body, which",
     };
-    let and = if outcome.too_stiff == Some(TooStiff::Bends) { " and" } else { "" };
     let words = format!(
-        "{cells}{and} bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
+        "{cells} bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
          from = \"quadratic\" compares with quadratic elements",
         loads.join(", ")
     );

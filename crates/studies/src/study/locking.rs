@@ -60,12 +60,12 @@ impl TooStiff {
     pub fn of(mesh: &Mesh, material: &MaterialMap, deformations: &[Option<Deformation>]) -> Option<TooStiff> {
         let locks = Locking::of_body(mesh, material).map(TooStiff::Locks);
         let has_bent = || deformations.iter().flatten().any(|deformation| bends(*deformation));
-        let bends = || match (has_bent() && is_linear(mesh), is_one_cell_across(mesh)) {
-            (false, _) => None,
-            (true, true) => Some(TooStiff::Bends),
-            (true, false) => is_slender(mesh).then_some(TooStiff::Slender),
+        let across = || match is_one_cell_across(mesh) {
+            true => Some(TooStiff::Bends),
+            false => is_slender(mesh).then_some(TooStiff::Slender),
         };
-        locks.or_else(bends)
+        // The boundary of a large mesh is not looked for where nothing asks for it.
+        locks.or_else(|| if has_bent() && is_linear(mesh) { across() } else { None })
     }
 
     /// The largest Poisson's ratio of the cells that lock.

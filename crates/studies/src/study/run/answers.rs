@@ -75,17 +75,21 @@ impl Answers {
         let Answers { displacements, works, deformations, too_stiff, followed, laws, masses } = self;
         let Posed { scene, mesh, material, support, cases, gauged, plan, of_reference, .. } = posed;
         let answers = cases.iter().zip(displacements.into_iter().zip(works)).zip(followed).enumerate();
-        let loads = answers.map(|(i, ((case, (fem, work)), followed))| BodyLoad {
-            name: case.name.clone(),
-            support: case.support.clone(),
-            forces: forces(case, followed.as_ref(), &mesh),
-            gravity: scene.loads()[i].gravity(scene.loads(), &mesh),
-            is_gravity: scene.loads()[i].is_acceleration() && scene.loads()[i].gravity(scene.loads(), &mesh).is_some(),
-            gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
-            measured: case.measured(&mesh, &fem, work),
-            deformation: deformations[i],
-            followed,
-            fem,
+        let loads = answers.map(|(i, ((case, (fem, work)), followed))| {
+            let load = &scene.loads()[i];
+            let gravity = load.gravity(scene.loads(), &mesh);
+            BodyLoad {
+                name: case.name.clone(),
+                support: case.support.clone(),
+                forces: forces(case, followed.as_ref(), &mesh),
+                is_gravity: load.is_acceleration() && gravity.is_some(),
+                gravity,
+                gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
+                measured: case.measured(&mesh, &fem, work),
+                deformation: deformations[i],
+                followed,
+                fem,
+            }
         });
         let loads = loads.collect();
         let outcome = Outcome {
