@@ -57,7 +57,7 @@ fn forces_in_time_are_told_to_be_left_out() {
     assert!(output.status.success() && said(&output).contains("[[motion.force]]"), "{}", said(&output));
 }
 
-/// Displacements under prescribed displacements are the same with any modulus: none is found where no force acts or is known.
+/// Prescribed displacements move a body alike whatever its modulus is: no modulus is found where no force acts or is measured.
 #[test]
 fn a_modulus_that_nothing_shows_is_not_found() {
     let scene = |load: &str, more: &str| {
@@ -167,7 +167,7 @@ fn units_in_the_heads_of_tables_are_read() {
     }
 }
 
-/// A density in the unit of another deck is told.
+/// A note names a density that no solid has.
 #[test]
 fn a_density_of_no_solid_is_told() {
     for (density, is_told) in [("7850", false), ("7.85e-9", true), ("7.85e15", true)] {

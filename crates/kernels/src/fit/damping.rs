@@ -157,7 +157,7 @@ impl DampingTest<'_> {
     /// over the band if there is one. ω₀ is `|s|`, the frequency without damping, so that free vibrations are met exactly.
     ///
     /// # Errors
-    /// As [`DampingTest::series`].
+    /// It fails as [`DampingTest::series`] does.
     pub fn rayleigh(&self) -> Result<FittedRayleigh> {
         let curve = Curve::of(self)?;
         let [first, last] = curve.band;

@@ -231,7 +231,7 @@ impl Relaxing {
     /// A network in parts that resist harmonic strains.
     ///
     /// # Errors
-    /// As [`Relaxing::of_network`].
+    /// It fails as [`Relaxing::of_network`] does.
     pub fn harmonic_of_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<Vec<HarmonicPart>> {
         if let (Some((_, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
             let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
