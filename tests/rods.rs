@@ -4,13 +4,14 @@ use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use springfit::element::{Element, SpringKind};
 use springfit::material::{Energy, Material, State};
-use springfit::mesh::{CellBlock, Mesh};
+use springfit::mesh::{CellBlock, Mesh, Selection};
 use springfit::model::{
-    BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
-    lumped_masses,
+    Action, BendingSprings, Body, Component, Elastic, Network, Support, bending_springs, displaced, exact_network,
+    finite_elements, lumped_masses, nodal_forces,
 };
 use springfit::solve::{Ending, Newton, System, lowest_modes};
 use springfit::study::{Scene, run};
+use springfit::symbolic::Scope;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -74,6 +75,61 @@ fn solved(mesh: &Mesh, clamped: &[usize], loads: &[(usize, [f64; 3], [f64; 3])])
     let (mut u, _) = system.solve(&factor, &load);
     u.truncate(3 * mesh.node_count());
     u
+}
+
+/// The displacements of the nodes under a force per volume, N/m³, with these nodes clamped.
+fn sagged(mesh: &Mesh, clamped: &[usize], body: [&str; 3]) -> Vec<f64> {
+    let mut support = Support::free(mesh);
+    support.fix(&mesh.with_directors_of(clamped), &[0, 1, 2], 3);
+    let scope = Scope::of_place(3);
+    let body = body.map(|text| Component::Varying(scope.expression(text).unwrap())).to_vec();
+    let load = nodal_forces(mesh, &Selection::Everything, &Action::Body(body), AREA).unwrap();
+    let system = System::new(&finite_elements(mesh, material().moduli()), &support).unwrap();
+    let factor = system.cholesky().unwrap().unwrap();
+    let (mut u, _) = system.solve(&factor, &load);
+    u.truncate(3 * mesh.node_count());
+    u
+}
+
+/// Joints move under loads along rods as those of a beam, with one rod for each member: closed forms of cantilevers, of a beam that is clamped at both ends, and
+/// random frames whose members are divided or not.
+#[test]
+fn loads_along_rods_move_joints_as_those_of_a_beam() {
+    let [_, bend, _] = stiffness();
+    let q = 1e-3 / AREA;
+    let one = line(&[[0.0, 0.0, 0.0], [0.8, 0.0, 0.0]]);
+    let length = 0.8f64;
+    let unit = 1e-3 * length.powi(4) / bend;
+    let tip = |body: &str| sagged(&one, &[0], ["0", "0", body])[5];
+    let even = tip(&format!("{q}"));
+    assert!((even / (unit / 8.0) - 1.0).abs() < 1e-10, "{even} {unit}");
+    let rising = tip(&format!("{q}*x/0.8"));
+    assert!((rising / (11.0 * unit / 120.0) - 1.0).abs() < 1e-10, "{rising} {unit}");
+    let two = line(&[[0.0, 0.0, 0.0], [0.4, 0.0, 0.0], [0.8, 0.0, 0.0]]);
+    let middle = sagged(&two, &[0, 2], ["0", &format!("{q}"), "0"])[4];
+    assert!((middle / (unit / 384.0) - 1.0).abs() < 1e-10, "{middle} {unit}");
+
+    let mut random = Random(7);
+    for _ in 0..5 {
+        let nodes: Vec<[f64; 3]> = (0..6).map(|p| [p as f64 * 0.3, random.next(), random.next()]).collect();
+        let rods = [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5], [0, 2], [1, 4], [3, 5]];
+        let parts = 3;
+        let (mut finer, mut pieces) = (nodes.clone(), Vec::new());
+        for [a, b] in rods {
+            let mut last = a;
+            for part in 1..parts {
+                let share = part as f64 / parts as f64;
+                finer.push(std::array::from_fn(|k| nodes[a][k] + share * (nodes[b][k] - nodes[a][k])));
+                pieces.push([last, finer.len() - 1]);
+                last = finer.len() - 1;
+            }
+            pieces.push([last, b]);
+        }
+        let body = ["2*x", "1 - y", "-3 + z*0.5"];
+        let coarse = sagged(&frame(&nodes, &rods), &[0], body);
+        let fine = sagged(&frame(&finer, &pieces), &[0], body);
+        agree(&coarse, &fine[..18], 1e-7, "divided");
+    }
 }
 
 /// The same by direct stiffness: six degrees of freedom of each node, and the matrix of twelve of each beam.
@@ -323,6 +379,19 @@ fn scenes_have_rods_that_bend() {
     let outcome = run(&scene(folder.path(), "bending = \"rod\"", &torque).unwrap(), &mut |_| {}).unwrap();
     assert!(outcome.fits[0].loads[0].error.unwrap().max < 1e-6);
     assert!(!outcome.of_loads.iter().any(|note| note.contains("held points")), "{:?}", outcome.of_loads);
+    // Its own weight, as gravity and as a force that its lines share.
+    let weight = 1000.0 * 1e-4 * 1e-3;
+    let gravity = format!("{CLAMPED}[[load]]\ngravity = [0, 0, -1e-3]\n");
+    let shared = format!("{CLAMPED}[[load]]\ngroup = \"ALL\"\nforce = [0, 0, {:e}]\n", -weight);
+    for load in [gravity, shared] {
+        let u = answer("density = 1000\nbending = \"rod\"", &load).unwrap();
+        agree(&tip(&u), &[0.0, 0.0, -weight / (8.0 * bend)], 1e-9, "weight");
+    }
+    // Of a moment on a joint that is clamped nothing is left.
+    let on_foot = format!("{CLAMPED}[[load]]\nname = \"m\"\nwhere = \"x < 0.2\"\nmoment = [0, -1e-3, 0]\n");
+    let outcome = run(&scene(folder.path(), "bending = \"rod\"", &on_foot).unwrap(), &mut |_| {}).unwrap();
+    let told = outcome.of_loads.iter().any(|note| note.starts_with("50 % of the moment of m acts on joints"));
+    assert!(told, "{:?}", outcome.of_loads);
     // The end is turned by 0.01 about y and kept where it is: a beam with both ends clamped and one turned.
     let turned = format!(
         "{CLAMPED}[[load]]\ngroup = \"TIP\"\ndisplacement = [\"0.01*z\", 0, \"-0.01*(x - 1)\"]\nclamp = true\n"

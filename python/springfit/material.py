@@ -48,7 +48,8 @@ class Material:
         thickness: Of a plane body or a surface, m. A plane body without it is 1 m thick; a surface in space requires it.
         area: The cross-section of rods, m². Rods without it have 1 m².
         density: kg/m³; gives the points of a network their masses.
-        orthotropic: ``{"young": [E1, E2, E3], "poisson": [ν12, ν13, ν23], "shear": [G12, G13, G23]}`` in place of ``young`` and ``poisson``.
+        orthotropic: ``{"young": [E1, E2, E3], "poisson": [ν12, ν23, ν13], "shear": [G12, G23, G13]}`` in place of ``young`` and ``poisson``;
+            ν_ij is the contraction along j for each stretch along i under tension along i.
         transversely_isotropic: ``{"young": [along, across], "poisson": [along, across], "shear": along}``.
         cubic: ``{"c11": …, "c12": …, "c44": …}``.
         stiffness: Six rows of six numbers, Pa, in Voigt's notation.

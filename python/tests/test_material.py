@@ -165,3 +165,28 @@ def test_materials_are_values():
     kept = sf.Material(given, 0.3)
     given[:] = 5.0
     assert kept.young.tolist() == [1e4, 2e4]
+
+
+def test_orthotropic_constants_are_in_the_order_that_help_names():
+    """The work of uniform strains is that of the inverse of the compliance, which is written here for itself."""
+    young, (n12, n23, n13), (g12, g23, g13) = [3e4, 2e4, 1e4], (0.3, 0.25, 0.15), (9e3, 7e3, 5e3)
+    assert "[ν12, ν23, ν13]" in sf.Material.__doc__ and "[G12, G23, G13]" in sf.Material.__doc__
+    compliance = np.diag([1 / young[0], 1 / young[1], 1 / young[2], 1 / g23, 1 / g13, 1 / g12])
+    for i, j, ratio in [(0, 1, n12), (1, 2, n23), (0, 2, n13)]:
+        compliance[i, j] = compliance[j, i] = -ratio / young[i]
+    mesh = unit("hex8", 1)
+    material = sf.Material(orthotropic={"young": young, "poisson": [n12, n23, n13], "shear": [g12, g23, g13]})
+    stiffness = dense(sf.stiffness(mesh, material))
+    x = mesh.points
+    modes = []
+    for i, j in [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]:
+        u = np.zeros_like(x)
+        u[:, i] += x[:, j] / 2
+        u[:, j] += x[:, i] / 2
+        modes.append(u.ravel())
+    modes = np.array(modes)
+    found = modes @ stiffness @ modes.T
+    wanted = np.linalg.inv(compliance)
+    # The content of the cell is one factor of all entries.
+    volume = found[0, 0] / wanted[0, 0]
+    assert np.abs(found / volume - wanted).max() < 1e-9 * np.abs(wanted).max()

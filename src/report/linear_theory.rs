@@ -3,7 +3,7 @@
 use super::note::{Note, Weight};
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome, TooStiff, bends};
+use crate::study::{BodyLoad, ModelMotion, Outcome, TooStiff};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,19 +69,24 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
 
 /// That a body bends whose linear cells resist it too much, and that errors are relative to these cells.
 pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
-    let is_of_cells = |load: &&BodyLoad| load.measured.is_none();
-    let bends = |load: &&BodyLoad| load.deformation.is_some_and(bends);
-    let loads: Vec<&str> =
-        outcome.loads.iter().filter(is_of_cells).filter(bends).map(|load| load.name.as_str()).collect();
-    let cells = match outcome.too_stiff.filter(|_| !loads.is_empty())? {
+    let is_seen = |load: &&BodyLoad| load.measured.is_none() && load.bends;
+    let mut under: Vec<&str> = outcome.loads.iter().filter(is_seen).map(|load| load.name.as_str()).collect();
+    if outcome.loads.is_empty() {
+        under.push("its vibrations");
+    }
+    let cells = match outcome.too_stiff.filter(|_| !under.is_empty())? {
         TooStiff::Locks(_) => return None,
         TooStiff::Bends => "the body is about one cell across and",
         TooStiff::Slender => "the cells are long beside the thickness of the body, which",
     };
+    // A finer body of a law has no quadratic elements.
+    let way_out = match outcome.law {
+        None => "[reference] with from = \"quadratic\" compares with quadratic elements",
+        Some(_) => "more cells across, or elements of higher order, are not",
+    };
     let words = format!(
-        "{cells} bends under {}: linear cells are too stiff there, and errors are relative to them; [reference] with \
-         from = \"quadratic\" compares with quadratic elements",
-        loads.join(", ")
+        "{cells} bends under {}: linear cells are too stiff there, and errors are relative to them; {way_out}",
+        under.join(", ")
     );
     Some(Note::of_body(Weight::Reference, words))
 }

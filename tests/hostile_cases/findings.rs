@@ -178,3 +178,101 @@ fn a_density_of_no_solid_is_told() {
         assert_eq!(said(&output).contains("is that of no solid"), is_told, "{}", said(&output));
     }
 }
+
+/// Triangles of a clamped plate that are too large are told of, with about the error that they have.
+#[test]
+fn large_triangles_of_a_sheet_are_told() {
+    // Clamped and pressed: 0.00126 q a⁴/D in the middle (Timoshenko and Woinowsky-Krieger, table 35, for ν = 0.3).
+    let (young, thickness, q, side) = (1e7f64, 0.01f64, 1.0f64, 1.0f64);
+    let plate = young * thickness.powi(3) / (12.0 * (1.0 - 0.09));
+    let truth = 0.00126 * q * side.powi(4) / plate;
+    for (cells, is_told) in [(8, true), (32, false)] {
+        let mut points = String::new();
+        let mut faces = String::new();
+        for i in 0..(cells + 1) * (cells + 1) {
+            points += &format!(
+                "v {} {} 0\n",
+                (i % (cells + 1)) as f64 / cells as f64,
+                (i / (cells + 1)) as f64 / cells as f64
+            );
+        }
+        for i in 0..cells * cells {
+            let [a, b] = [i / cells * (cells + 1) + i % cells + 1, (i / cells + 1) * (cells + 1) + i % cells + 1];
+            faces += &format!("f {a} {} {}\nf {a} {} {b}\n", a + 1, b + 1, b + 1);
+        }
+        let text = format!(
+            "[mesh]\nfile = \"plate.obj\"\nscale = 1\n[material]\nyoung = {young}\npoisson = 0.3\nthickness = {thickness}\nbending = \"plate\"\n\
+             [[fit]]\nname = \"sheet\"\nobjective = \"exact\"\n[[fix]]\nwhere = \"x < 1e-6 || x > 0.999999 || y < 1e-6 || y > 0.999999\"\nclamp = true\n\
+             [[load]]\nname = \"press\"\nbody = [0, 0, {}]\n",
+            q / thickness
+        );
+        let folder = folder_with(&[("plate.obj", points + &faces), ("s.toml", text)]);
+        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let report: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap();
+        let found = report["fits"][0]["loads"][0]["largest_displacement"].as_f64().unwrap();
+        let off = 100.0 * (found / truth - 1.0).abs();
+        let note = said(&output).lines().find(|line| line.contains("too large")).map(str::to_string);
+        println!("{cells}: {off:.1} % off; {note:?}");
+        assert_eq!(note.is_some(), is_told, "{off}");
+        if let Some(note) = note {
+            let told: f64 = note.split("about ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+            assert!((0.5..2.0).contains(&(told / off)), "{told} of {off}");
+        }
+    }
+}
+
+/// A condition of a material or of a weight that ends within cells is told of, and one that ends between them is not.
+#[test]
+fn conditions_that_cut_cells_of_a_material_are_told() {
+    for (at, is_told) in [(0.03, false), (0.0325, true)] {
+        let material = format!(
+            "[[material]]\nyoung = 1e5\npoisson = 0.3\ndensity = 1000\nwhere = \"x < {at}\"\n[[material]]\nyoung = 1e6\npoisson = 0.3\ndensity = 1000\n\
+             where = \"x >= {at}\"\n"
+        );
+        let load = format!("[[load]]\nname = \"w\"\nwhere = \"x < {at}\"\ngravity = [0, 0, -9.81]\n");
+        let text = bar("hex8", [0.06, 0.02, 0.02], [6, 2, 2], &load)
+            .replace("[material]\nyoung = 1e5\npoisson = 0.3\ndensity = 1000\n", &material);
+        let folder = folder_with(&[("s.toml", text)]);
+        let printed = said(&springfit(folder.path(), &["run", "s.toml", "-v", "--out", "out"]));
+        let told = printed.matches("cuts through 4 cells").count();
+        assert_eq!(told, if is_told { 2 } else { 0 }, "{at}: {printed}");
+    }
+}
+
+/// A length is not compared with an area.
+#[test]
+fn sides_of_a_condition_are_of_one_kind() {
+    let load = |text: &str| format!("[[load]]\nname = \"f\"\nwhere = \"{text}\"\nforce = [0.01, 0, 0]\n");
+    for (text, found) in [
+        ("x > 5 cm^2", "a length and an area"),
+        ("y^2 + z < 1 cm", "an area and a length"),
+        ("x*y > 1 mm || x > 5 ml", "an area and a length"),
+        ("x/(5 mm) > 10 mm", "a number without a unit and a length"),
+    ] {
+        let folder = folder_with(&[("s.toml", bar("tet4", [0.06, 0.02, 0.02], [6, 2, 2], &load(text)))]);
+        let said = refused(folder.path(), &["run", "s.toml", "--out", "out"]);
+        assert!(said.contains(found) && said.contains("quantities of one kind"), "{said}");
+    }
+    for text in
+        ["x > 5 cm", "(x - 60 mm)^2 + y^2 < 25 mm^2", "sqrt(x^2 + y^2) > 4 cm", "x > 4 cm + 0.1*y^2", "x > 0.05"]
+    {
+        let folder = folder_with(&[("s.toml", bar("tet4", [0.06, 0.02, 0.02], [6, 2, 2], &load(text)))]);
+        prints(folder.path(), &["run", "s.toml", "--out", "out"]);
+    }
+}
+
+/// A body of one cell across that bends at large deformation, or that is asked for vibrations alone, is too stiff, and the run says so.
+#[test]
+fn one_cell_across_is_too_stiff_with_a_law_and_without_loads() {
+    let load = "[[load]]\nname = \"f\"\ngroup = \"xmax\"\nforce = [0, 0, 1e-4]\n";
+    let vibrations = "[output]\nfrequencies = 2\n";
+    for (law, rest) in [("law = \"stable-neo-hookean\"\n", load), ("", vibrations)] {
+        let text = bar("hex8", [0.1, 0.01, 0.01], [10, 1, 1], rest)
+            .replace("density = 1000\n", &format!("density = 1000\n{law}"));
+        let folder = folder_with(&[("s.toml", text)]);
+        let printed = said(&springfit(folder.path(), &["run", "s.toml", "-v", "--out", "out"]));
+        assert!(printed.contains("too stiff"), "{printed}");
+    }
+}

@@ -197,6 +197,22 @@ impl Quantity {
         }
     }
 
+    /// The power of a length that a quantity at places is.
+    pub fn power_of_length(self) -> Option<u8> {
+        match self {
+            Quantity::Length | Quantity::MeshUnit => Some(1),
+            Quantity::Area => Some(2),
+            Quantity::Volume => Some(3),
+            Quantity::Pressure
+            | Quantity::Density
+            | Quantity::Time
+            | Quantity::Force
+            | Quantity::Moment
+            | Quantity::Acceleration
+            | Quantity::ForceDensity => None,
+        }
+    }
+
     /// An example of a valid text, for error messages.
     pub fn expected(self) -> &'static str {
         match self {

@@ -5,6 +5,7 @@
 use super::component::Component;
 use super::integration::each_cell_points;
 use super::pressed::PressedFaces;
+use super::rod_load::RodLoad;
 use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::material::CellMap;
@@ -36,7 +37,11 @@ pub enum Action {
 
 /// The load integrand of the largest degree of the components.
 fn load_of(components: &[Component]) -> Integrand {
-    Integrand::Load(components.iter().map(Component::degree).max().unwrap_or(0))
+    Integrand::Load(degree_of(components))
+}
+
+fn degree_of(components: &[Component]) -> usize {
+    components.iter().map(Component::degree).max().unwrap_or(0)
 }
 
 /// The components of a load, and the values that they had.
@@ -131,6 +136,11 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
         Action::Force(force) => {
             let weights = match part.carrier(mesh)? {
                 Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),
+                Carrier::Cells(cells) if RodLoad::of(mesh).is_some() => {
+                    let total: f64 = contents_of(mesh, &cells, thickness).iter().sum();
+                    let even: Vec<Component> = force.iter().map(|f| Component::Constant(f / total)).collect();
+                    return Ok(body_forces(mesh, &cells, &Values::of(&even), thickness));
+                }
                 Carrier::Cells(cells) => cell_weights(mesh, &cells, thickness),
                 Carrier::Points(points) => points.into_iter().map(|p| (p, 1.0)).collect(),
             };
@@ -198,22 +208,35 @@ fn not_finite(mesh: &Mesh, point: usize, place: &str, found: &str) -> Error {
 
 fn body_forces(mesh: &Mesh, cells: &[CellIndex], body: &Values, thickness: &CellMap<f64>) -> Vec<f64> {
     let d = mesh.dimension;
-    let mut chosen: Vec<Vec<bool>> = mesh.blocks.iter().map(|b| vec![false; b.cells().len()]).collect();
-    cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
     let mut forces = vec![0.0; mesh.points.len()];
-    let is_chosen = |cell: CellIndex| chosen[cell.block][cell.cell];
-    each_cell_points(mesh, load_of(body.components), is_chosen, |cell| {
+    let mut rods = RodLoad::of(mesh);
+    let integrand = match rods {
+        Some(_) => RodLoad::integrand(degree_of(body.components)),
+        None => load_of(body.components),
+    };
+    each_cell_points(mesh, integrand, is_among(mesh, cells), |cell| {
         let thickness = thickness.at(cell.index.block, cell.index.cell);
         for (values, volume) in cell.each() {
             let at = |k: usize| cell.nodes.iter().zip(values).map(|(&p, n)| n * mesh.point(p)[k]).sum();
             let x: Vec<f64> = (0..d).map(at).collect();
             let b: Vec<f64> = body.at(&x).into_iter().map(|b| thickness * b).collect();
+            if let Some(rods) = &mut rods {
+                rods.add([cell.nodes[0], cell.nodes[1]], values[1], std::array::from_fn(|k| volume * b[k]));
+                continue;
+            }
             for (&node, n) in cell.nodes.iter().zip(values) {
                 (0..d).for_each(|k| forces[node * d + k] += n * volume * b[k]);
             }
         }
     });
-    forces
+    rods.map_or(forces, RodLoad::forces)
+}
+
+/// Whether a cell is one of these.
+fn is_among(mesh: &Mesh, cells: &[CellIndex]) -> impl Fn(CellIndex) -> bool {
+    let mut chosen: Vec<Vec<bool>> = mesh.blocks.iter().map(|b| vec![false; b.cells().len()]).collect();
+    cells.iter().for_each(|c| chosen[c.block][c.cell] = true);
+    move |cell| chosen[cell.block][cell.cell]
 }
 
 fn spread(mesh: &Mesh, weights: &[(usize, f64)], per_unit: &[f64]) -> Vec<f64> {
@@ -244,10 +267,25 @@ fn side_weights(mesh: &Mesh, sides: &[SideIndex], thickness: &CellMap<f64>) -> V
 
 /// `∫ N_a dV` of every node of the cells, m³.
 fn cell_weights(mesh: &Mesh, cells: &[CellIndex], thickness: &CellMap<f64>) -> Vec<(usize, f64)> {
-    let unit = vec![Component::Constant(1.0); mesh.dimension];
-    let forces = body_forces(mesh, cells, &Values::of(&unit), thickness);
-    let along_x = forces.iter().step_by(mesh.dimension).copied().enumerate();
-    along_x.filter(|(_, weight)| *weight != 0.0).collect()
+    let contents = contents_of(mesh, cells, thickness);
+    contents.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0).collect()
+}
+
+/// `∫ N_a dV` of every point over all cells, `[points]`, m³: what a body force of 1 N/m³ adds there.
+pub fn point_contents(mesh: &Mesh, thickness: &CellMap<f64>) -> Vec<f64> {
+    let cells = Selection::Everything.cells(mesh).expect("everything is no group that may be missing");
+    contents_of(mesh, &cells, thickness)
+}
+
+fn contents_of(mesh: &Mesh, cells: &[CellIndex], thickness: &CellMap<f64>) -> Vec<f64> {
+    let mut contents = vec![0.0; mesh.point_count()];
+    each_cell_points(mesh, Integrand::Load(0), is_among(mesh, cells), |cell| {
+        let thickness = thickness.at(cell.index.block, cell.index.cell);
+        for (values, volume) in cell.each() {
+            cell.nodes.iter().zip(values).for_each(|(&node, n)| contents[node] += n * volume * thickness);
+        }
+    });
+    contents
 }
 
 /// A force per area, Pa, as a function of the position and of the normal, which points outwards and, on a surface in

@@ -4,7 +4,7 @@
 
 use crate::material::CellMap;
 use crate::mesh::{Mesh, Selection};
-use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces};
+use crate::model::{Action, Support, Traction, boundary_forces, nodal_forces, point_contents};
 use crate::springs::{cross, distance, dot, norm, unit};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -103,6 +103,11 @@ fn largest(forces: &[f64]) -> f64 {
     forces.iter().fold(0.0, |largest, f| largest.max(f.abs()))
 }
 
+/// The share of each degree of freedom in a body force of 1 N/m³.
+fn weights(mesh: &Mesh, thickness: &CellMap<f64>) -> Vec<f64> {
+    point_contents(mesh, thickness).into_iter().flat_map(|content| vec![content; mesh.dimension]).collect()
+}
+
 /// "random 1", …: smooth body forces, each component a sum of sines with up to half a wave across the object. The same
 /// seed always gives the same loads.
 pub fn random_loads(
@@ -120,8 +125,7 @@ fn random(mesh: &Mesh, support: &Support, thickness: CellMap<f64>, count: usize,
     let d = mesh.dimension;
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
-    let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
-        .expect("a mesh has cells to act on");
+    let weights = weights(mesh, &thickness);
     let mut field = |index: usize| {
         let sines: Vec<(Vec<f64>, f64, f64)> = (0..d * SINES)
             .map(|_| {
@@ -175,8 +179,7 @@ fn varied(
     let least = ROUNDING * largest(&uniform);
     let on_boundary: Vec<usize> =
         (0..mesh.point_count()).filter(|p| uniform[p * d..(p + 1) * d].iter().any(|f| f.abs() > least)).collect();
-    let weights = nodal_forces(mesh, &Selection::Everything, &Action::body(&vec![1.0; d]), thickness)
-        .expect("a mesh has cells to act on");
+    let weights = weights(mesh, thickness);
     let mut loads = vec![match pressure {
         Pressure::Uniform => NodalLoad { name: PRESSURE.into(), forces: uniform },
         Pressure::Varying => {

@@ -54,6 +54,8 @@ pub(super) fn excessive(problem: impl Into<String>) -> Error {
 pub(super) struct Lexed {
     pub rewritten: String,
     pub literals: Vec<BigRational>,
+    /// The power of a length that the unit of each literal is.
+    pub powers: Vec<Option<u8>>,
     /// The number of terms and factors that have been copied so far.
     parts: Cell<usize>,
 }
@@ -75,8 +77,12 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
         return Err(excessive(format!("expected at most {LONGEST_TEXT} characters, found {}", text.len())));
     }
     let chars: Vec<char> = text.chars().collect();
-    let mut lexed =
-        Lexed { rewritten: String::with_capacity(2 * text.len()), literals: Vec::new(), parts: Cell::new(0) };
+    let mut lexed = Lexed {
+        rewritten: String::with_capacity(2 * text.len()),
+        literals: Vec::new(),
+        powers: Vec::new(),
+        parts: Cell::new(0),
+    };
     let mut operators = 0;
     // The operator before the operand that comes next.
     let mut before = ' ';
@@ -109,7 +115,8 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
                     at = end_of_number(&chars, at);
                     let literal: String = chars[start..at].iter().collect();
                     let Some(mut value) = decimal(&literal) else { return fault(start, "a decimal number") };
-                    if let Some((end, size)) = unit_after(&chars, at, units) {
+                    let mut power = None;
+                    if let Some((end, size, of_length)) = unit_after(&chars, at, units) {
                         let follows = chars[end..].iter().find(|c| !c.is_whitespace());
                         if before == '/' || before == '^' || follows == Some(&'^') {
                             let own: String = chars[start..end].iter().collect();
@@ -119,10 +126,11 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
                                 &format!("parentheses around a number with a unit beside {near}: ({own})"),
                             );
                         }
-                        (value, at) = (value * size, end);
+                        (value, at, power) = (value * size, end, of_length);
                     }
                     lexed.rewritten += &format!("#{}", lexed.literals.len());
                     lexed.literals.push(value);
+                    lexed.powers.push(power);
                     operand_next = false;
                     continue;
                 }
@@ -179,16 +187,17 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
     Ok(lexed)
 }
 
-/// Where the unit after a number ends, and its size in the SI unit; spaces may stand between them.
-fn unit_after(chars: &[char], number_end: usize, units: &[Quantity]) -> Option<(usize, BigRational)> {
+/// Where the unit after a number ends, its size in the SI unit, and the power of a length that it is; spaces may stand between number and unit.
+fn unit_after(chars: &[char], number_end: usize, units: &[Quantity]) -> Option<(usize, BigRational, Option<u8>)> {
     let start = number_end + chars[number_end..].iter().take_while(|c| c.is_whitespace()).count();
     // Most numbers have no unit: nothing is copied or compared for them. Every unit begins with a letter.
     chars.get(start).filter(|c| c.is_alphabetic())?;
     // Of a text of some thousand numbers only the beginning of what follows is copied.
     let rest: String = chars[start..].iter().take(LONGEST_UNIT).collect();
-    let (length, number, power) = units.iter().filter_map(|q| q.unit_at(&rest)).max_by_key(|(length, ..)| *length)?;
+    let found = units.iter().filter_map(|quantity| Some((quantity.unit_at(&rest)?, quantity.power_of_length())));
+    let ((length, number, power), of_length) = found.max_by_key(|((length, ..), _)| *length)?;
     let size = decimal(&format!("{number}e{power}"))?;
-    Some((start + rest[..length].chars().count(), size))
+    Some((start + rest[..length].chars().count(), size, of_length))
 }
 
 /// The names in a text that are not called as functions, in the order in which they appear.

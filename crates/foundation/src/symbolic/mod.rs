@@ -12,6 +12,7 @@ mod fraction;
 mod jet;
 mod lex;
 mod parse;
+mod powers;
 mod precise;
 mod predicate;
 mod print;

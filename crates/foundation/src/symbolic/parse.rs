@@ -60,6 +60,15 @@ impl Scope {
         })
     }
 
+    /// Whether the variables are coordinates, in m.
+    pub(super) fn is_of_places(&self) -> bool {
+        self.units == OF_PLACES
+    }
+
+    pub(super) fn has_variable(&self, name: &str) -> bool {
+        self.variables.iter().any(|variable| variable == name)
+    }
+
     /// Defines `name` as an abbreviation of `text` for every expression that is parsed later.
     ///
     /// # Errors
@@ -114,7 +123,10 @@ impl Scope {
         };
         let real = |i: usize| child(i)?.real();
         let condition = |i: usize| child(i)?.condition();
-        let compare = |c| Ok(Parsed::Condition(Predicate::Compare(c, real(0)?, real(1)?)));
+        let compare = |c| {
+            self.check_powers(node, lexed)?;
+            Ok(Parsed::Condition(Predicate::Compare(c, real(0)?, real(1)?)))
+        };
         let parsed = match node.operator() {
             Operator::RootNode => return child(0),
             Operator::Add => Expr::sum([real(0)?, real(1)?]),

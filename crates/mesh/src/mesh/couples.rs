@@ -16,7 +16,7 @@ impl Mesh {
             // The two directors of a joint follow each other.
             let joints: Vec<usize> = own.iter().map(|director| edges[director - first][0]).step_by(2).collect();
             let share = moment.map(|m| m / joints.len() as f64);
-            joints.iter().for_each(|&joint| self.turn_joint(joint, share, &mut forces));
+            joints.iter().for_each(|&joint| self.add_moment(joint, share, &mut forces));
             return (!joints.is_empty()).then_some(forces);
         }
         let length = |director: usize| {
@@ -31,8 +31,9 @@ impl Mesh {
         (!own.is_empty()).then_some(forces)
     }
 
-    /// Adds the forces `ω × a_i` on the directors of a joint with the arms a_i, whose moment is that given: `Σ (|a|² I − a aᵀ) ω` is. The joint has the opposite ones.
-    fn turn_joint(&self, joint: usize, moment: [f64; 3], forces: &mut [f64]) {
+    /// Adds the forces `ω × a_i`, N, on the directors of a joint of rods with the arms a_i, whose moment is that given, N·m: `Σ (|a|² I − a aᵀ) ω` is. The joint has
+    /// the opposite ones.
+    pub fn add_moment(&self, joint: usize, moment: [f64; 3], forces: &mut [f64]) {
         let directors = [0, 1].map(|k| self.node_count() + 2 * joint + k);
         let arms = directors
             .map(|p| Vector3::from_column_slice(self.point(p)) - Vector3::from_column_slice(self.point(joint)));

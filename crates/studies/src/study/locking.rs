@@ -49,23 +49,22 @@ impl Locking {
 pub enum TooStiff {
     /// They lock.
     Locks(Locking),
-    /// The body bends under some load and is about one cell across.
+    /// The body bends under some load, or where it vibrates, and is about one cell across.
     Bends,
     /// The body bends under some load, is more cells across, and these are long beside its thickness.
     Slender,
 }
 
 impl TooStiff {
-    /// Finds why the cells resist too much in these deformations, one for each load; `None` at large deformation, where bending is not judged.
-    pub fn of(mesh: &Mesh, material: &MaterialMap, deformations: &[Option<Deformation>]) -> Option<TooStiff> {
+    /// Finds why the cells of a body resist too much, as it bends under some load or not. The lowest vibrations of most bodies bend them.
+    pub fn of(mesh: &Mesh, material: &MaterialMap, has_bent: bool) -> Option<TooStiff> {
         let locks = Locking::of_body(mesh, material).map(TooStiff::Locks);
-        let has_bent = || deformations.iter().flatten().any(|deformation| bends(*deformation));
         let across = || match is_one_cell_across(mesh) {
             true => Some(TooStiff::Bends),
             false => is_slender(mesh).then_some(TooStiff::Slender),
         };
         // The boundary of a large mesh is not looked for where nothing asks for it.
-        locks.or_else(|| if has_bent() && is_linear(mesh) { across() } else { None })
+        locks.or_else(|| if has_bent && is_linear(mesh) { across() } else { None })
     }
 
     /// The largest Poisson's ratio of the cells that lock.
@@ -115,7 +114,8 @@ fn is_slender(mesh: &Mesh) -> bool {
 /// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.
 const BENDS: f64 = 1.5;
 
-/// Whether a body that is deformed so much bends or is twisted.
+/// Whether a body that is deformed so much bends or is twisted. At large deformation as well: strains of linear theory that a rotation alone has exceed two thirds of
+/// its sine from 67° on.
 pub fn bends(deformation: Deformation) -> bool {
     deformation.rotation > BENDS * deformation.strain
 }

@@ -13,8 +13,10 @@ const CONTRADICTS: f64 = 0.05;
 
 /// What must be known of the loads of a scene on its mesh, one sentence each.
 pub fn load_notes(scene: &Scene, mesh: &Mesh, cases: &[Case]) -> Vec<String> {
-    let of_cases =
-        cases.iter().zip(scene.loads()).flat_map(|(case, load)| [swallowed(case, load), contradicted(case, mesh)]);
+    let of_cases = cases
+        .iter()
+        .zip(scene.loads())
+        .flat_map(|(case, load)| [swallowed(case, load, mesh), contradicted(case, mesh)]);
     part_notes(scene, mesh)
         .into_iter()
         .chain(scene.relaxation_note())
@@ -24,16 +26,18 @@ pub fn load_notes(scene: &Scene, mesh: &Mesh, cases: &[Case]) -> Vec<String> {
 }
 
 /// That a part of a force acts on held points, where it does nothing. Of a body force that is the weight of what is held.
-fn swallowed(case: &Case, load: &LoadCase) -> Option<String> {
-    // A moment turns edges and joints that are held in their place.
-    if matches!(load.single()?.1, Action::Body(_) | Action::Displacement(_) | Action::Volume(_) | Action::Moment(_)) {
-        return None;
-    }
-    let forces = || case.forces.iter().enumerate();
+fn swallowed(case: &Case, load: &LoadCase, mesh: &Mesh) -> Option<String> {
+    // A moment turns edges and joints that are held in their place, unless their directors are held as well.
+    let (first, what, place) = match load.single()?.1 {
+        Action::Body(_) | Action::Displacement(_) | Action::Volume(_) => return None,
+        Action::Moment(_) => (mesh.node_count() * mesh.dimension, "moment", "joints or edges that are clamped"),
+        Action::Force(_) | Action::Traction(_) | Action::Pressure(_) => (0, "force", "held points"),
+    };
+    let forces = || case.forces.iter().enumerate().skip(first);
     let all: f64 = forces().map(|(_, force)| force.abs()).sum();
     let held: f64 = forces().filter(|(dof, _)| case.support.is_fixed(*dof)).map(|(_, force)| force.abs()).sum();
     (held > SWALLOWED * all).then(|| {
-        format!("{:.0} % of the force of {} acts on held points, where it does nothing", 100.0 * held / all, case.name)
+        format!("{:.0} % of the {what} of {} acts on {place}, where it does nothing", 100.0 * held / all, case.name)
     })
 }
 

@@ -3,6 +3,7 @@
 mod answer;
 mod case;
 mod cases;
+mod coarse_sheet;
 mod factored;
 mod fine;
 mod fine_laws;
@@ -18,6 +19,7 @@ mod truth;
 
 pub use case::Case;
 pub use cases::{applied_cases, held, load_cases};
+pub use coarse_sheet::judge_sheet;
 pub use fine::FineBody;
 pub use gauge::Gauged;
 pub use large::LargeBody;

@@ -8,7 +8,12 @@ use std::collections::BTreeSet;
 
 /// What must be known of the parts of a scene on its mesh, one sentence each.
 pub(super) fn part_notes(scene: &Scene, mesh: &Mesh) -> Vec<String> {
-    of_names(scene, mesh).into_iter().chain(of_tractions(scene, mesh)).chain(of_conditions(scene, mesh)).collect()
+    of_names(scene, mesh)
+        .into_iter()
+        .chain(of_tractions(scene, mesh))
+        .chain(of_conditions(scene, mesh))
+        .chain(of_cells(scene, mesh))
+        .collect()
 }
 
 /// That a name lists several parts of the body which are not the same part.
@@ -110,4 +115,41 @@ fn of_conditions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
         })
     });
     all.collect()
+}
+
+/// How far corners are moved to the middle of their cell before a condition is asked there: a condition that ends at corners cuts no cell.
+const INWARDS: f64 = 0.01;
+
+/// That a condition of a material or of a body force ends within cells, each of which is in it or not as its middle is.
+fn of_cells(scene: &Scene, mesh: &Mesh) -> Vec<String> {
+    let materials = scene.material_parts().into_iter();
+    let loads = scene.loads().iter().filter_map(|load| match load.single()? {
+        (part, Action::Body(_)) => Some((format!("the load {}", load.name), part.clone())),
+        _ => None,
+    });
+    let note = |(what, part): (String, Part)| {
+        let (Part::Where(text), Selection::Where(condition)) = (&part, part.selection(mesh.dimension).ok()?) else {
+            return None;
+        };
+        let (mut cut, mut chosen) = (0, 0);
+        for cell in mesh.cell_indices() {
+            let middle = mesh.middle(cell);
+            let inwards = |node: usize| -> Vec<f64> {
+                mesh.point(node).iter().zip(&middle).map(|(x, m)| x + INWARDS * (m - x)).collect()
+            };
+            let is_in = condition.holds(&middle);
+            let is_cut = mesh.cell_nodes(cell).iter().any(|&node| condition.holds(&inwards(node)) != is_in);
+            cut += usize::from(is_cut);
+            chosen += usize::from(is_in);
+        }
+        (cut > 0).then(|| {
+            let cells = if cut == 1 { "1 cell".to_string() } else { format!("{cut} cells") };
+            format!(
+                "where = \"{text}\" of {what} cuts through {cells}: each is in the part or not as its middle is, so that the part has {chosen} whole cells and \
+                 another size than the condition says; errors leave this out, and a condition between cells, or smaller ones, makes it small"
+            )
+        })
+    };
+    // What one region lacks, its neighbour has: one note is enough for both.
+    materials.filter_map(note).take(1).chain(loads.filter_map(note)).collect()
 }

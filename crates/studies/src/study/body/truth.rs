@@ -30,9 +30,9 @@ const MOST_APART: f64 = 50.0;
 const CELLS: &str = "from = \"cells\" in [reference] compares with the finite elements of the mesh";
 
 /// The answers to each load on one level.
-struct Level {
+pub(super) struct Level {
     standard: Standard,
-    answers: Vec<FinerAnswer>,
+    pub(super) answers: Vec<FinerAnswer>,
 }
 
 /// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock or a body of one cell across bends under it: on
@@ -78,21 +78,14 @@ pub fn judge_by_truth(
         );
         (!is_told).then_some(words)
     };
-    let growth = 1 << mesh.cell_dimension();
-    let is_small = |growth: usize| growth * mesh.point_count() <= MOST_POINTS;
-    if !is_small(growth) {
-        notes.extend(too_long());
-        return notes;
-    }
-    let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + scene.fits().len(), cases.len(), scene.fits().len()));
-    let mut level = |finer: Result<Mesh>, standard: Standard| -> Result<Option<Level>> {
-        let finer = finer?;
-        let is_affordable = work(&finer, 1, cases.len(), 0) <= allowed;
-        is_affordable.then(|| Level::solve(scene, &finer, standard, progress)).transpose()
+    let loads = cases.len();
+    let mut level = |halvings: u32, finer: &dyn Fn() -> Result<Mesh>, standard: Standard| -> Result<Option<Level>> {
+        let finer = affordable(scene, mesh, (loads, halvings), finer)?;
+        finer.map(|finer| Level::solve(scene, &finer, standard, "quadratic elements", progress)).transpose()
     };
-    let first = level(mesh.elevated(), Standard::Quadratic);
-    let second = match (&first, is_small(growth * growth)) {
-        (Ok(Some(_)), true) => level(mesh.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
+    let first = level(1, &|| mesh.elevated(), Standard::Quadratic);
+    let second = match &first {
+        Ok(Some(_)) => level(2, &|| mesh.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
         _ => Ok(None),
     };
     let (best, coarser) = match (first, second) {
@@ -134,6 +127,25 @@ pub fn judge_by_truth(
     notes
 }
 
+/// A finer mesh of the body, with about as many points as this one has after so many halvings, if its answers to the loads take at most what a reference may.
+///
+/// # Errors
+/// The finer mesh cannot be made.
+pub(super) fn affordable(
+    scene: &Scene,
+    mesh: &Mesh,
+    (loads, halvings): (usize, u32),
+    finer: impl FnOnce() -> Result<Mesh>,
+) -> Result<Option<Mesh>> {
+    let growth = 1usize << (mesh.cell_dimension() as u32 * halvings);
+    if growth * mesh.point_count() > MOST_POINTS {
+        return Ok(None);
+    }
+    let networks = scene.fits().len();
+    let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + networks, loads, networks));
+    Ok(Some(finer()?).filter(|finer| work(finer, 1, loads, 0) <= allowed))
+}
+
 /// Makes the errors of a load unknown.
 fn forget(case: &mut Case) {
     case.measured = Some(Field { displacements: vec![None; case.forces.len()] });
@@ -161,11 +173,21 @@ fn work(mesh: &Mesh, models: usize, loads: usize, networks: usize) -> f64 {
 }
 
 impl Level {
-    fn solve(scene: &Scene, finer: &Mesh, standard: Standard, progress: &mut Progress) -> Result<Level> {
+    /// The answers of the finite elements of a finer mesh to the loads of a scene; `stage` names the work.
+    ///
+    /// # Errors
+    /// A load does not act on the finer mesh, or has no answer there.
+    pub(super) fn solve(
+        scene: &Scene,
+        finer: &Mesh,
+        standard: Standard,
+        stage: &str,
+        progress: &mut Progress,
+    ) -> Result<Level> {
         let material = scene.material_of(finer)?;
         let (_, cases) = applied_cases(scene, finer, &material)?;
         let body = (finer, &material, scene.solver());
-        let answers = answers(body, &cases, &KnownEquations::default(), "quadratic elements", progress)?;
+        let answers = answers(body, &cases, &KnownEquations::default(), stage, progress)?;
         Ok(Level { standard, answers })
     }
 }

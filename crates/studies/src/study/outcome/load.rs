@@ -33,6 +33,8 @@ pub struct BodyLoad {
     pub measured: Option<Measured>,
     /// The deformation of the finite elements, at small deformation: beyond a bound the linear theory is not valid.
     pub deformation: Option<Deformation>,
+    /// Whether the body bends or is twisted under the load.
+    pub bends: bool,
 }
 
 /// Displacements that the errors under a load are relative to, in place of those of the finite elements of the mesh.

@@ -7,7 +7,7 @@ use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Deformation;
 use crate::study::body::{Case, LargeBody, LinearBody, load_notes};
-use crate::study::locking::TooStiff;
+use crate::study::locking::{TooStiff, bends};
 use crate::study::masses::PointMasses;
 use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
 use crate::study::progress::{Event, Progress};
@@ -24,6 +24,8 @@ pub(super) struct Answers {
     works: Vec<Option<f64>>,
     /// How far the finite elements deform under each load; `None` at large deformation.
     deformations: Vec<Option<Deformation>>,
+    /// Whether they bend or are twisted under each load.
+    has_bent: Vec<bool>,
     /// Why the cells of the mesh resist these deformations too much.
     too_stiff: Option<TooStiff>,
     /// The energies of the laws, at large deformation.
@@ -39,40 +41,52 @@ impl Answers {
     pub fn of(posed: &mut Posed, solved: Solved, fits: &mut [FitOutcome], progress: &mut Progress) -> Result<Answers> {
         let Solved { large, linear, masses, .. } = solved;
         let count = posed.cases.len();
-        let (displacements, works, followed, laws, deformations, too_stiff) = match large {
+        let vibrates = count == 0 && posed.scene.output().frequencies > 0;
+        let (displacements, works, followed, laws, (deformations, has_bent), too_stiff) = match large {
             Some(large) => {
-                let deformations = vec![None; count];
-                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, &deformations);
+                let deformed = |u: &Vec<f64>| bends(Deformation::largest(&posed.mesh, u));
+                let has_bent: Vec<bool> = large.displacements.iter().map(deformed).collect();
+                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, vibrates || has_bent.contains(&true));
                 if let Some(TooStiff::Locks(locking)) = too_stiff {
                     posed.tell_of_locking(locking);
                 }
                 at_large(posed, &large, fits, progress)?;
                 let followed = large.followed.into_iter().map(Some).collect();
-                (large.displacements, vec![None; count], followed, Some(large.laws), deformations, too_stiff)
+                let deformations = vec![None; count];
+                (
+                    large.displacements,
+                    vec![None; count],
+                    followed,
+                    Some(large.laws),
+                    (deformations, has_bent),
+                    too_stiff,
+                )
             }
             None => {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
                 let deformed = |u: &Vec<f64>| Some(Deformation::largest(&posed.mesh, u));
                 let deformations: Vec<_> = body.displacements().map(deformed).collect();
-                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, &deformations);
+                let has_bent: Vec<bool> = deformations.iter().map(|found| found.is_some_and(bends)).collect();
+                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, vibrates || has_bent.contains(&true));
                 // After the fits, which are to the finite elements of the mesh.
                 if let Some(too_stiff) = too_stiff.filter(|cells| *cells != TooStiff::Slender) {
                     posed.judge_by_truth(too_stiff, &deformations, progress);
                 }
+                posed.judge_sheet(body.displacements(), progress);
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;
                 let (displacements, works) = body.into_answers();
-                (displacements, works, vec![None; count], None, deformations, too_stiff)
+                (displacements, works, vec![None; count], None, (deformations, has_bent), too_stiff)
             }
         };
         if let Some(gauged) = &posed.gauged {
             fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
         }
-        Ok(Answers { displacements, works, deformations, too_stiff, followed, laws, masses })
+        Ok(Answers { displacements, works, deformations, has_bent, too_stiff, followed, laws, masses })
     }
 
     /// All that was found, without what happens over time; with the plan of that, and the laws that it needs.
     pub fn outcome(self, posed: Posed, fits: Vec<FitOutcome>) -> (Outcome, TimePlan, Option<EnergyMap>) {
-        let Answers { displacements, works, deformations, too_stiff, followed, laws, masses } = self;
+        let Answers { displacements, works, deformations, has_bent, too_stiff, followed, laws, masses } = self;
         let Posed { scene, mesh, material, support, cases, gauged, plan, of_reference, .. } = posed;
         let answers = cases.iter().zip(displacements.into_iter().zip(works)).zip(followed).enumerate();
         let loads = answers.map(|(i, ((case, (fem, work)), followed))| {
@@ -87,6 +101,7 @@ impl Answers {
                 gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
                 measured: case.measured(&mesh, &fem, work),
                 deformation: deformations[i],
+                bends: has_bent[i],
                 followed,
                 fem,
             }

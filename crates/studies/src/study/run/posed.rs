@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
-use crate::study::body::{Case, Gauged, judge_by_truth, load_cases};
+use crate::study::body::{Case, Gauged, judge_by_truth, judge_sheet, load_cases};
 use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
 use crate::study::locking::{Locking, TooStiff};
@@ -82,6 +82,11 @@ impl<'a> Posed<'a> {
         if let TooStiff::Locks(locking) = too_stiff {
             self.tell_of_finer_locking(locking);
         }
+    }
+
+    /// Says that the triangles of a sheet that bends are too large for its loads.
+    pub fn judge_sheet<'b>(&mut self, displacements: impl Iterator<Item = &'b Vec<f64>>, progress: &mut Progress) {
+        self.of_reference.extend(judge_sheet(self.scene, &self.mesh, &self.cases, displacements, progress));
     }
 
     /// Says that fits to the whole object have seen cells that are too stiff, where what they are compared with is not.

@@ -278,6 +278,15 @@ impl Scene {
         self.bent(mesh)
     }
 
+    /// Reads or generates the mesh with halved cells, whose first points are those of [`Self::build_mesh`].
+    ///
+    /// # Errors
+    /// Those of [`Self::build_mesh`], or a cell cannot be divided.
+    pub fn build_refined(&self) -> Result<Mesh> {
+        let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
+        self.bent(mesh.refined()?)
+    }
+
     /// The names of the regions of a material map of this scene, in their order.
     pub(in crate::study) fn region_names(&self, map: &MaterialMap) -> Vec<String> {
         match map.regions() {
