@@ -137,10 +137,17 @@ def places(key: str, values: Any, count: int, of: str = "points") -> np.ndarray:
     if found.ndim != 1 or found.dtype.kind not in "iu":
         expected = f"a list of places of {of}, or a flag for each of {count}"
         raise failure(key, expected, f"values of type {found.dtype}, shape {found.shape}")
+    no_flags(key, found, count)
     wrong = found[(found < 0) | (found >= count)]
     if wrong.size:
         raise failure(key, f"places of {of} from 0 and below {count}", wrong[0])
     return np.ascontiguousarray(found, dtype=np.int64)
+
+
+def no_flags(key: str, found: np.ndarray, count: int) -> None:
+    """Raises where numbers 0 and 1 of all things look like flags: as places they would be the first two things, again and again."""
+    if count > 2 and found.shape == (count,) and found.max(initial=0) <= 1 and found.min(initial=0) >= 0:
+        raise failure(key, f"places, or {count} flags of type bool", f"{count} numbers 0 and 1 of type {found.dtype}")
 
 
 def element_of(given: ElementLike) -> Element:

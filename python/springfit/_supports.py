@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import array, failure, shown, typed
+from ._arguments import array, failure, no_flags, shown, typed
 
 if TYPE_CHECKING:
     from .springs import Network
@@ -42,6 +42,7 @@ def held_flags(shape: "tuple[int, ...]", groups: "dict[str, np.ndarray] | None",
     if fix.dtype == bool and fix.shape in (shape, shape[:1]):
         held[fix] = True
     elif fix.ndim == 1 and (fix.size == 0 or fix.dtype.kind in "iu"):
+        no_flags("fix", fix, shape[0])
         outside = fix[(fix < 0) | (fix >= shape[0])] if fix.size else fix
         if outside.size:
             raise failure("fix", f"places of points from 0 and below {shape[0]}", outside[0])
@@ -73,8 +74,15 @@ def displacement_of(net: "Network", displacement: Any, held: np.ndarray) -> np.n
         return np.zeros(shape)
     if isinstance(displacement, Mapping):
         found, groups = np.zeros(shape), net._groups
+        seen: dict[int, str] = {}
         for name, moved in displacement.items():
-            found[group_points("displacement", groups, name)] = _vector(f"displacement.{name}", moved, shape[1])
+            points, moved = group_points("displacement", groups, name), _vector(f"displacement.{name}", moved, shape[1])
+            twice = [p for p in points.tolist() if p in seen and (found[p] != moved).any()]
+            if twice:
+                expected = f"one displacement of each point, or flags and an array of shape {shape}"
+                raise failure(f"displacement.{name}", expected, f"another one of point {twice[0]} in displacement.{seen[twice[0]]}")
+            found[points] = moved
+            seen.update(dict.fromkeys(points.tolist(), name))
     else:
         found = vectors("displacement", displacement, shape)
     check_held(found, held)

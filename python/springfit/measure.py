@@ -249,13 +249,16 @@ def measure(
     if springs is None or constants is None:
         raise failure("springs" if springs is None else "constants", "an array beside the points", "none")
     held = None if fix is None else places("fix", fix, total)
+    masses = numbers("masses", masses)
+    if masses is not None and (masses < 0).any():
+        raise failure("masses", "masses from 0 kg", masses[masses < 0][0])
     network = {
         "points": matrix("points", points, np.float64),
         "springs": matrix("springs", springs, np.int64),
         "constants": numbers("constants", constants),
         "rest": numbers("rest", rest),
         "contents": _contents(contents),
-        "masses": numbers("masses", masses),
+        "masses": masses,
         "cell": vectors,
         "held": held,
     }

@@ -79,6 +79,8 @@ pub struct Equilibrium {
 /// The largest rounding error of the forces, relative to the applied forces, at which a balance of forces counts as an
 /// equilibrium. Beyond it the displacements would have less than four digits, which no report could show as a solution.
 pub(crate) const ROUGHEST: f64 = 1e-4;
+/// Forces of all points, held ones too, that exceed the bound of the rounding of the free ones by no more than this are none.
+const RIGID: f64 = 10.0;
 /// The relative accuracy to which prescribed displacements are reached. The last part of a displacement is added to the
 /// others, whose rounding it leaves.
 const REACHED: f64 = 1e-14;
@@ -304,8 +306,15 @@ impl<'a> Statics<'a> {
                 return Ok((history, ForceBalance::Exact));
             }
             let hidden = is_hidden(&now, &rest);
-            let rounded =
-                if hidden && now.rounding <= ROUGHEST * acting { ForceBalance::Rounded } else { ForceBalance::None };
+            // A body that is moved as a whole has no forces: all that is left of them is their rounding.
+            let has_no_forces = form == Form::Displacement && acting <= RIGID * now.rounding;
+            let rounded = match hidden && (has_no_forces || now.rounding <= ROUGHEST * acting) {
+                true => ForceBalance::Rounded,
+                false => ForceBalance::None,
+            };
+            if has_no_forces && rounded == ForceBalance::Rounded {
+                return Ok((history, rounded));
+            }
             let following = forces.stiffness(model.points, u, load);
             let Some((step, shift)) = direction(&now.response.tangent, &following, moves, &rest, known)? else {
                 return Ok((history, rounded));

@@ -53,10 +53,10 @@ impl Tension {
         };
         let unbalanced = (0..sizes.len()).map(left).fold(0.0, f64::max);
         let most = sizes.iter().copied().fold(0.0, f64::max);
-        // σ = −1/V Σ_p f_p ⊗ x_p, over all points and images.
+        // σ = 1/V Σ_p g_p ⊗ x_p, over all points and images: the gradients g of the energy are opposite to the forces of the springs.
         let virial = DMatrix::from_fn(d, d, |k, l| {
             let at = |p: usize| specimen.points[p * d + l] - specimen.points[l];
-            -(0..all.len() / d).map(|p| all[p * d + k] * at(p)).sum::<f64>() / volume
+            (0..all.len() / d).map(|p| all[p * d + k] * at(p)).sum::<f64>() / volume
         });
         let stress = basis(d).iter().map(|strain| virial.component_mul(strain).sum()).collect();
         let unbalanced = if springs > 0 && most > 0.0 { unbalanced / most } else { 0.0 };
