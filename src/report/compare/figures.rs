@@ -147,7 +147,13 @@ impl Data<'_> {
             }
         }
         series.retain(|series| series.shape != Shape::Whiskers || series.points.iter().all(|p| p.1 > 2.0 * least));
-        series.push(Series::new("Pareto front", front(points), Shape::Guide));
+        let front = front(points);
+        if let [.., (x, y), (to_x, to_y)] = front[..] {
+            // The name stands above the middle of the last part, where no mark is.
+            let middle = ((x * to_x).sqrt(), (y * to_y).sqrt());
+            series.push(Series::new("Pareto front", vec![middle], Shape::Guide));
+        }
+        series.push(Series::new("", front, Shape::Guide));
         Chart {
             title: format!("{} against processor time", self.error()),
             x: Axis::log(format!("processor time {}, {unit} (median)", cost.words())),
