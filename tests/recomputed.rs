@@ -176,7 +176,7 @@ fn a_network_for_an_engine_is_a_method() {
     let drawn = prints(folder.path(), &["plot", "out/compare-c", "--figure", "work-precision", "--cost", "second"]);
     assert!(drawn.starts_with("<svg"));
     // What is wrong with a fit is said of the file that has it, not of the scene.
-    fs::write(folder.path().join("bar.toml"), BAR.replace("young = 1000", "young = 1e8")).unwrap();
+    fs::write(folder.path().join("bar.toml"), BAR.replace("young = 1000", "young = 1e12")).unwrap();
     let output = springfit(folder.path(), &["compare", "c.toml", "--out", "other"]);
     let said = said(&output);
     assert!(

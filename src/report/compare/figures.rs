@@ -147,6 +147,10 @@ impl Data<'_> {
             }
         }
         series.retain(|series| series.shape != Shape::Whiskers || series.points.iter().all(|p| p.1 > 2.0 * least));
+        // A method without error beats all that take as long or longer.
+        let exact = series.iter().filter(|series| series.shape == Shape::Below).map(|series| series.points[0].0);
+        let exact = exact.fold(f64::INFINITY, f64::min);
+        points.retain(|point| point.0 < exact);
         let front = front(points);
         if let [.., (x, y), (to_x, to_y)] = front[..] {
             // The name stands above the middle of the last part, where no mark is.

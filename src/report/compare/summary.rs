@@ -79,13 +79,17 @@ pub struct Told {
     /// Quantiles.
     #[serde(flatten)]
     pub quantiles: Quantiles,
-    /// The bootstrap interval of the median, 95 %.
-    pub interval: Interval,
+    /// The bootstrap interval of the median, 95 %; absent of fewer values than can hold it so often.
+    pub interval: Option<Interval>,
 }
+
+/// Of fewer values not even the least and the largest hold the median in 95 % of samples: they do in a share `1 − 2^(1−n)`.
+const FEWEST: usize = 6;
 
 impl Told {
     fn of(values: &[f64]) -> Option<Told> {
-        let told = || Told { quantiles: Quantiles::of(values), interval: median_interval(values) };
+        let interval = (values.len() >= FEWEST).then(|| median_interval(values));
+        let told = || Told { quantiles: Quantiles::of(values), interval };
         (!values.is_empty()).then(told)
     }
 }

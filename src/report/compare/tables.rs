@@ -107,11 +107,15 @@ fn objects(summary: &Summary, quantity: &str, is_first: bool) -> Table {
             fits.push(&object.fit);
         }
     }
+    let has_interval = own.iter().any(|object| object.error.is_some_and(|told| told.interval.is_some()));
     let is_timed = is_first && own.iter().any(|object| object.seconds.is_some());
     let mut columns = vec![Column::words("fit")];
     for name in &names {
         let number = |title: &str| Column::numbers(title).unit(unit).group(*name);
-        columns.extend([number("median"), number("from"), number("to")]);
+        columns.push(number("median"));
+        if has_interval {
+            columns.extend([number("from"), number("to")]);
+        }
         columns.extend(is_timed.then(|| Column::numbers("time to fit").unit("µs").group(*name)));
     }
     let of = |fit: &str, name: &str| own.iter().find(|o| o.fit == fit && o.name == name);
@@ -132,8 +136,10 @@ fn objects(summary: &Summary, quantity: &str, is_first: bool) -> Table {
                 number(value, digits).best(is_best)
             };
             row.push(cell(|object| object.error.map(|told| told.quantiles.median), Fixed(places)));
-            row.push(number(|object| object.error.map(|told| told.interval.low), Fixed(places)));
-            row.push(number(|object| object.error.map(|told| told.interval.high), Fixed(places)));
+            if has_interval {
+                row.push(number(|object| Some(object.error?.interval?.low), Fixed(places)));
+                row.push(number(|object| Some(object.error?.interval?.high), Fixed(places)));
+            }
             row.extend(is_timed.then(|| cell(|object| object.seconds.map(|seconds| 1e6 * seconds), Significant(3))));
         }
         row
@@ -142,8 +148,8 @@ fn objects(summary: &Summary, quantity: &str, is_first: bool) -> Table {
         true => ("objects".to_string(), if is_timed { ", and the median time" } else { "" }),
         false => (format!("objects-{quantity}"), ""),
     };
-    let title =
-        format!("Each fit on each object: the median {heading} over all cases with its interval of 95 %{times}");
+    let interval = if has_interval { " with its interval of 95 %" } else { "" };
+    let title = format!("Each fit on each object: the median {heading} over all cases{interval}{times}");
     Table::new(&name, title, columns, fits.iter().map(row))
 }
 
@@ -174,6 +180,8 @@ fn cases(summary: &Summary) -> Table {
         .iter()
         .filter(|(name, ..)| methods().any(|m| m.figures.get(*name).is_some_and(Option::is_some)))
         .collect();
+    let has_interval =
+        |quantity: &str| methods().any(|m| m.values.get(quantity).is_some_and(|told| told.interval.is_some()));
     let has_negative = methods().any(|m| m.values.contains_key("negative"));
     let has_gap = methods().any(|m| m.values.contains_key("gap"));
     let is_copied = methods().any(|m| m.copied > 0);
@@ -186,7 +194,10 @@ fn cases(summary: &Summary) -> Table {
     }
     for told in &told {
         let column = |title| Column::numbers(title).unit(told.unit).group(told.heading);
-        columns.extend(["median", "from", "to"].map(|title| column(title).priority(First)));
+        columns.push(column("median").priority(First));
+        if has_interval(told.quantity) {
+            columns.extend(["from", "to"].map(|title| column(title).priority(First)));
+        }
         columns.extend([column("mean"), column("max")]);
     }
     columns.extend(has_gap.then(|| Column::numbers("gap max")));
@@ -221,7 +232,11 @@ fn cases(summary: &Summary) -> Table {
                 let told = method.values.get(*quantity);
                 let cell = |value: fn(&Told) -> f64| Cell::number(told.map(value), Fixed(*places));
                 row.push(cell(|told| told.quantiles.median).best(best.is(quantity, told)));
-                row.extend([cell(|told| told.interval.low), cell(|told| told.interval.high)]);
+                if has_interval(quantity) {
+                    let ends = told.and_then(|told| told.interval);
+                    let ends = [ends.map(|ends| ends.low), ends.map(|ends| ends.high)];
+                    row.extend(ends.map(|end| Cell::number(end, Fixed(*places))));
+                }
                 row.extend([cell(|told| told.quantiles.mean), cell(|told| told.quantiles.largest)]);
             }
             if has_gap {
@@ -272,7 +287,10 @@ fn notes(summary: &Summary) -> Vec<String> {
                   engine, made by this program on one thread.";
     let has_second = methods().any(|method| method.times.contains_key("simulated-second"));
     let notes = [
-        (methods().any(|method| TOLD.iter().any(|told| method.values.contains_key(told.quantity))), interval),
+        (
+            methods().any(|m| TOLD.iter().any(|t| m.values.get(t.quantity).is_some_and(|t| t.interval.is_some()))),
+            interval,
+        ),
         (methods().any(|method| !method.times.is_empty()), times),
         (has_second, second),
     ];
