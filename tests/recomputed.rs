@@ -184,3 +184,36 @@ fn a_network_for_an_engine_is_a_method() {
         "{said}"
     );
 }
+
+/// A learning curve is one command: a curve for each family of fits that differ in the number of shapes alone, named by the rest.
+#[test]
+fn learning_curves_are_named_by_what_they_share() {
+    let folder = TempDir::new().unwrap();
+    let shapes =
+        "shapes = { families = [[\"uniaxial\"], [\"uniaxial\", \"simple-shear\"]], count = [4, 40], held_out = 20 }";
+    let fit = format!("[[compare.fit]]\nobjective = \"sampled\"\n{shapes}\n");
+    let text = format!("[compare]\nelements = [\"tet4\"]\nlaws = [\"neo-hookean\"]\ntime = false\n{fit}");
+    fs::write(folder.path().join("c.toml"), text).unwrap();
+    prints(folder.path(), &["compare", "c.toml"]);
+    let drawn = prints(folder.path(), &["plot", "out/compare-c", "--figure", "samples", "--columns", "two"]);
+    let names: Vec<&str> = drawn.lines().filter(|line| line.starts_with("sampled")).collect();
+    assert_eq!(names, ["sampled, families uniaxial", "sampled, families uniaxial + simple-shear"], "{drawn}");
+}
+
+/// A comparison that finds nothing is no success: a sampler whose shapes are flat or inverted is one line.
+#[test]
+fn shapes_that_are_flat_or_inverted_are_one_line() {
+    let folder = TempDir::new().unwrap();
+    for (last, content) in [("0", "0.0000"), ("-1", "-1.0000")] {
+        let shapes = format!("shapes = {{ gradients = [[[1, 0, 0], [0, 1, 0], [0, 0, {last}]]] }}");
+        let text = format!(
+            "[compare]\nelements = [\"tet4\"]\nlaws = [\"neo-hookean\"]\n[[compare.fit]]\nobjective = \"sampled\"\n{shapes}\n"
+        );
+        fs::write(folder.path().join("c.toml"), text).unwrap();
+        let output = springfit(folder.path(), &["compare", "c.toml", "--out", &format!("out{last}")]);
+        let said = said(&output);
+        let words = "sampled: shapes.gradients[0]: expected a shape that is neither flat nor inverted";
+        assert!(output.status.code() == Some(2) && said.contains(words) && said.contains(content), "{said}");
+        assert_eq!(said.lines().filter(|line| line.starts_with("error")).count(), 1, "{said}");
+    }
+}

@@ -220,7 +220,8 @@ impl Data<'_> {
             let count = number(method.settings.get("shapes.count"));
             let held_out = method.figures.get("held_out").copied().flatten();
             let (Some(count), Some(held_out)) = (count, held_out) else { continue };
-            let name = method.fit.replace(&format!("count {count}"), "").trim_end_matches([',', ' ']).to_string();
+            let own = format!("count {count}");
+            let name = method.fit.split(", ").filter(|part| *part != own).collect::<Vec<_>>().join(", ");
             match series.iter_mut().find(|known| known.name == name) {
                 Some(known) => known.points.push((count, 100.0 * held_out)),
                 None => series.push(Series::new(name, vec![(count, 100.0 * held_out)], Shape::Curve)),

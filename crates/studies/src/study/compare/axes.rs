@@ -100,6 +100,10 @@ fn words(key: &str, value: &serde_json::Value) -> String {
             let all = method.chain(others.into_iter().map(|(name, value)| words(name, value)));
             format!("{key} {}", all.collect::<Vec<_>>().join(" "))
         }
+        serde_json::Value::Array(list) => {
+            let all: Vec<String> = list.iter().map(|one| one.as_str().map_or(one.to_string(), String::from)).collect();
+            format!("{key} {}", all.join(" + "))
+        }
         value => format!("{key} {value}"),
     }
 }
