@@ -56,7 +56,7 @@ fn a_run_that_is_timed_has_all_costs() {
         assert_eq!(times.errors.is_some(), fit.fit.recipe.whole().is_none(), "{}", fit.fit.name);
         assert!(times.constants.seconds.iter().sum::<f64>() > 0.04 || times.constants.passes >= 400);
         // Without a density the longest step is not known.
-        assert!(model.longest_step.is_none());
+        assert!(model.longest_step.is_none() && model.simulated_second.is_none());
     }
     let body = outcome.model_times.as_ref().unwrap();
     assert!([&body.solve, &body.explicit_step, &body.implicit_step].iter().all(|t| is_sound(t.as_ref().unwrap())));
@@ -66,6 +66,44 @@ fn a_run_that_is_timed_has_all_costs() {
         timed(&text).fits[0].model_times.as_ref().unwrap().longest_step.unwrap()
     };
     assert!((step("1000") / step("100") - 10f64.sqrt()).abs() < 1e-6);
+}
+
+/// A second of motion is that of explicit steps, and of a network for an engine that of its own steps, which grows with the sweeps.
+#[test]
+fn a_simulated_second_is_that_of_the_steps_that_move_the_network() {
+    let engine = |substeps: usize| {
+        let fit = "[[fit]]\nname = \"NAME\"\nobjective = \"offdiag\"\nsprings = \"all + volume\"\nnonnegative = true\n";
+        let keys = format!("engine = {{ method = \"xpbd\", step = \"1/30 s\", substeps = {substeps} }}\n");
+        fit.replace("NAME", &format!("of {substeps}")) + &keys
+    };
+    let bar = BOX.replace("quad4", "tri3").replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
+    let text = bar.replace("[[fix]]", &format!("{}{}[[fix]]", engine(40), engine(400)));
+    let outcome = timed(&text);
+    let model = |name: &str| outcome.fits.iter().find(|f| f.fit.name == name).unwrap().model_times.as_ref().unwrap();
+    let plain = model("frobenius");
+    let second = plain.simulated_second.as_ref().unwrap();
+    let steps = 1.0 / (0.5 * plain.longest_step.unwrap());
+    assert!((second.median / (steps * plain.explicit_step.as_ref().unwrap().median) - 1.0).abs() < 1e-9);
+    assert!(outcome.model_times.as_ref().unwrap().simulated_second.is_some());
+    let of = |name: &str| model(name).simulated_second.as_ref().unwrap().clone();
+    assert!(is_sound(&of("of 40")));
+    let growth = of("of 400").least / of("of 40").least;
+    assert!((7.0..13.0).contains(&growth), "ten times the substeps take {growth} times as long");
+    // The table and the figure have it.
+    let costs = Table::all(&Report::of(&outcome)).into_iter().find(|table| table.name == "costs").unwrap();
+    assert!(costs.csv().lines().next().unwrap().contains("\"simulated second: median, s\""), "{}", costs.csv());
+    let scene = Scene::parse(&text, Path::new("s.toml")).unwrap();
+    let folder = TempDir::new().unwrap();
+    write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
+    let run = RunFolder::at(folder.path());
+    match Figure::WorkPrecision.picture(&run, None, None, Some(Cost::Second)).unwrap() {
+        Picture::Chart(chart) => {
+            assert_eq!(chart.x.title, "processor time of a simulated second, s (median)");
+            let names: Vec<&str> = chart.series.iter().map(|series| &*series.name).collect();
+            assert!(names.iter().any(|name| name.starts_with("of 40")), "{names:?}");
+        }
+        Picture::Moduli(_) | Picture::Deformation(_) => panic!("no chart"),
+    }
 }
 
 /// The time of an element is that of all divided by those that were fitted: all cells of this box are congruent.

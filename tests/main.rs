@@ -92,6 +92,7 @@ mod prony_damping;
 mod published;
 mod quadrature;
 mod quantities;
+mod recomputed;
 mod referee;
 mod regions;
 mod report;

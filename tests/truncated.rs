@@ -2,11 +2,11 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::{grid, mapped};
-use springfit::engine::{Ceiling, Engine, Order, Sequence, Setting, Sweep, Truncated, TruncatedModel, colours};
+use springfit::engine::{Ceiling, Engine, Frames, Order, Sequence, Setting, Sweep, Truncated, TruncatedModel, colours};
 use springfit::fit::{Fit, Objective, Weight, fit_cells};
 use springfit::material::Material;
 use springfit::mesh::Mesh;
-use springfit::model::{Network, Support, masses};
+use springfit::model::{Elastic, Network, Support, masses};
 use springfit::springs::Springs;
 use springfit::whole::{Displacements, LeastSquares, Object, Target, Unknowns};
 use std::process::Command;
@@ -205,6 +205,50 @@ fn the_effective_stiffness_is_where_the_loop_comes_to_rest() {
             );
         }
     }
+}
+
+/// The steps that are timed are those of the engines: with the geometry as it moves they come to rest, under a small load, where the linear
+/// theory says, of each engine by its name as well; and in the plane.
+#[test]
+fn the_steps_of_an_engine_come_to_rest_where_the_theory_says() {
+    let bar = Bar::new(2);
+    let force: Vec<f64> = bar.force(6).iter().map(|f| 0.01 * f).collect();
+    let named = [Engine::Jolt, Engine::NewtonVbd].map(Setting::usual);
+    for setting in settings().into_iter().chain(named) {
+        let truncated = Truncated::new(bar.model(), &bar.support, &setting).unwrap().unwrap();
+        let wanted = truncated.answers(std::slice::from_ref(&force)).unwrap().remove(0);
+        let mut frames = Frames::new(bar.model(), &bar.support, &setting).unwrap();
+        // From a shape that is not that of rest: what has been before decides nothing.
+        frames.start(&wanted.iter().map(|u| -3.0 * u).collect::<Vec<f64>>());
+        for _ in 0..4000 {
+            frames.step(&force);
+            frames.slow(0.8);
+        }
+        let found = frames.displacement();
+        // The gradients turn by the strain, some 1e-5.
+        assert!(distance(&found, &wanted) < 1e-3, "{}: {}", setting.words(), distance(&found, &wanted));
+        assert!(distance(&found, &vec![0.0; found.len()]).is_infinite());
+    }
+    // Pulled far, springs on lengths and volumes answer with their own geometry: the loop holds the balance of its own energy, not that of the
+    // linear springs.
+    let setting = Setting { substeps: 40, iterations: 20, order: Order::Given, ..Setting::usual(Engine::Xpbd) };
+    let force: Vec<f64> = bar.force(6).iter().map(|f| 30.0 * f).collect();
+    let mut frames = Frames::new(bar.model(), &bar.support, &setting).unwrap();
+    for _ in 0..600 {
+        frames.step(&force);
+        frames.slow(0.9);
+    }
+    let u = frames.displacement();
+    let moved: Vec<f64> = bar.mesh.points.iter().zip(&u).map(|(x, u)| x + u).collect();
+    let mut forces = vec![0.0; u.len()];
+    assert!(Elastic::forces(&bar.network, &moved, &mut forces));
+    let free = |dof: &usize| !bar.support.is_fixed(*dof);
+    let left: f64 = (0..u.len()).filter(free).map(|dof| (forces[dof] - force[dof]).powi(2)).sum();
+    let all: f64 = force.iter().map(|f| f * f).sum();
+    let linear = Truncated::new(bar.model(), &bar.support, &setting).unwrap().unwrap();
+    let linear = linear.answers(std::slice::from_ref(&force)).unwrap().remove(0);
+    assert!(distance(&u, &linear) > 0.02, "the pull is too weak to tell: {}", distance(&u, &linear));
+    assert!((left / all).sqrt() < 1e-3, "{}", (left / all).sqrt());
 }
 
 /// The gradient and the products with the Jacobian are those of differences, for springs one by one and for shared factors.

@@ -11,7 +11,7 @@ use springfit::element::Element;
 use springfit::error::{Error, Result};
 use springfit::material::Material;
 use springfit::report::{self, CASES, COMPARE_FILES, Comparison, StudyLines, Table};
-use springfit::study::{self, CaseRecord, Comparing, Event, Forecast, is_comparison, stages};
+use springfit::study::{self, CaseRecord, Comparing, Event, Forecast, MethodRecord, is_comparison, stages};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -233,6 +233,13 @@ impl Compare {
         let records: Vec<CaseRecord> = records.into_iter().flatten().collect();
         if let [CaseRecord { error: Some(error), .. }] = &records[..] {
             return Err(Error::new(error.clone()));
+        }
+        let has_none = |method: &MethodRecord| method.refused.is_some() && method.values.is_empty();
+        if let Some(first) = records.iter().flat_map(|record| &record.methods).next()
+            && records.iter().all(|record| record.error.is_none() && record.methods.iter().all(has_none))
+        {
+            let why = first.refused.as_deref().unwrap_or_default();
+            return Err(Error::new(format!("no fit has figures on any case: {}: {why}", first.fit)));
         }
         let summary = report::summarized(&title, &records);
         let paths = report::write_comparison(&summary, &records, edition, !is_file);

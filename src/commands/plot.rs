@@ -20,7 +20,7 @@ pub struct Plot {
     /// Typeset the tables of the run
     #[arg(long, value_enum)]
     table: Option<Markup>,
-    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: overview, fits, errors, materials, times, costs, whole, unseen, frequencies, motion; of a comparison: comparison, objects, pairs, ranks
+    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: overview, fits, errors, materials, times, costs, whole, unseen, frequencies, motion; of a comparison: comparison, objects, objects-frobenius, objects-e_rms, pairs, ranks
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
     /// The load of the figure deformation, whose fit is --of [default: the first]

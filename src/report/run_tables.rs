@@ -250,6 +250,7 @@ fn costs(report: &Report) -> Table {
     columns.extend(pair("solution", "ms"));
     columns.extend(pair("explicit step", "µs"));
     columns.extend(pair("implicit step", "ms"));
+    columns.extend(pair("simulated second", "s"));
     let third = [("assembly", "ms"), ("matrix errors", "ms"), ("moduli", "ms"), ("longest explicit step", "µs")];
     columns.extend(third.map(|(title, unit)| alone(title, unit).priority(Third)));
     let both = |times: Option<&Times>, factor: f64| {
@@ -263,6 +264,7 @@ fn costs(report: &Report) -> Table {
         row.extend(both(model.solve.as_ref(), 1e3));
         row.extend(both(model.explicit_step.as_ref(), 1e6));
         row.extend(both(model.implicit_step.as_ref(), 1e3));
+        row.extend(both(model.simulated_second.as_ref(), 1.0));
         row.push(median(fit.map(|fit| &fit.assembly), 1e3));
         row.push(median(fit.and_then(|fit| fit.errors.as_ref()), 1e3));
         row.push(median(fit.map(|fit| &fit.moduli), 1e3));

@@ -222,20 +222,28 @@ pub fn studies_table<'a>(
     }
     let mut columns = vec![Column::words("study")];
     columns.extend(keys.iter().map(Column::numbers));
-    columns.extend(names.iter().map(|name| Column::numbers("e_rms").unit("%").group(*name)));
+    // What fits cost is told where it was measured as comparisons measure it: in repeated passes of one thread.
+    let seconds = |fit: &Value| fit["times"]["element"]["median"].as_f64();
+    let is_timed = studies.iter().filter_map(found).flat_map(fits).any(|fit| seconds(fit).is_some());
+    for name in &names {
+        columns.push(Column::numbers("e_rms").unit("%").group(*name));
+        columns.extend(is_timed.then(|| Column::numbers("fit median").unit("µs/element").group(*name)));
+    }
     let done: Vec<_> = studies.iter().enumerate().filter_map(|(i, study)| Some((i, study, found(study)?))).collect();
     let mut is_marked = false;
     let rows: Vec<Vec<Cell>> = done
         .iter()
         .map(|&(place, study, record)| {
             let mut row = settings(keys, place, study);
-            row.extend(names.iter().map(|name| {
+            row.extend(names.iter().flat_map(|name| {
                 let fit = fits(record).iter().find(|fit| fit["name"] == **name);
                 let error = Cell::number(fit.and_then(rms), Digits::Fixed(2));
                 let status = fit.and_then(|fit| fit["status"].as_str()).unwrap_or_default();
                 let stands = !UNSTABLE.map(standing_word).contains(&status);
                 is_marked |= !stands;
-                if stands { error } else { error.marked(" !") }
+                let error = if stands { error } else { error.marked(" !") };
+                let time = Cell::number(fit.and_then(seconds).map(|seconds| 1e6 * seconds), Digits::Significant(3));
+                std::iter::once(error).chain(is_timed.then_some(time))
             }));
             row
         })
@@ -263,6 +271,8 @@ pub fn studies_table<'a>(
         )
     });
     let notes = mixed.into_iter().chain(is_marked.then(|| mark.to_string())).chain(failed.into_iter().take(FAULTS));
+    let timed = "Times are processor times of one thread for each element that is fitted, in passes that take turns within a study.";
+    let notes = notes.chain(is_timed.then(|| timed.to_string()));
     let notes: Vec<String> = notes.chain((more > 0).then(|| format!("and {more} more failed"))).collect();
     Table::new("sweep", format!("{title}: largest e_rms under any load"), columns, rows).with_notes(notes)
 }

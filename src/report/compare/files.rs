@@ -18,12 +18,14 @@ use std::path::{Path, PathBuf};
 pub const CASES: &str = "cases.jsonl";
 
 /// What [`write_comparison`] writes at most, beside [`CASES`].
-pub const COMPARE_FILES: [&str; 20] = [
+pub const COMPARE_FILES: [&str; 23] = [
     "values.csv",
     "values.parquet",
     "summary.json",
     "comparison.csv",
     "objects.csv",
+    "objects-frobenius.csv",
+    "objects-e_rms.csv",
     "pairs.csv",
     "ranks.csv",
     "tables.tex",
@@ -33,6 +35,7 @@ pub const COMPARE_FILES: [&str; 20] = [
     "precision-solve.svg",
     "precision-explicit-step.svg",
     "precision-implicit-step.svg",
+    "precision-simulated-second.svg",
     "ecdf.svg",
     "poisson.svg",
     "distortion.svg",

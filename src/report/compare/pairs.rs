@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Two times tie if they differ by less than this factor: other work on the machine changes them by as much.
 const SAME_TIME: f64 = 1.1;
 /// Quantities that are figures of merit: the smaller the better.
-const MERITS: [&str; 3] = ["spectral", "frobenius", "e_rms"];
+pub(super) const MERITS: [&str; 3] = ["spectral", "frobenius", "e_rms"];
 /// Smaller errors are those of rounding, which are no better or worse than each other; of e_rms in percent.
 const ROUNDING: f64 = 1e-12;
 /// With more fits each is compared with the first alone.

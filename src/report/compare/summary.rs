@@ -1,6 +1,6 @@
 //! The summary of a comparison: quantiles of every figure, and intervals of their medians.
 
-use super::pairs::{Pair, Rank, fits, means, method as method_of, of_same_shapes, pairs, ranks};
+use super::pairs::{MERITS, Pair, Rank, fits, means, method as method_of, of_same_shapes, pairs, ranks};
 use crate::study::statistics::{Interval, Quantiles, median, median_interval};
 use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct Summary {
     pub machine: String,
     /// Each case with its methods.
     pub cases: Vec<CaseSummary>,
-    /// Each method on each element or scene, over all its cases.
+    /// Each method on each element or scene, over all its cases, by quantity.
     pub objects: Vec<Object>,
     /// Each pair of methods, by quantity.
     pub pairs: Vec<Pair>,
@@ -79,13 +79,17 @@ pub struct Told {
     /// Quantiles.
     #[serde(flatten)]
     pub quantiles: Quantiles,
-    /// The bootstrap interval of the median, 95 %.
-    pub interval: Interval,
+    /// The bootstrap interval of the median, 95 %; absent of fewer values than can hold it so often.
+    pub interval: Option<Interval>,
 }
+
+/// Of fewer values not even the least and the largest hold the median in 95 % of samples: they do in a share `1 − 2^(1−n)`.
+const FEWEST: usize = 6;
 
 impl Told {
     fn of(values: &[f64]) -> Option<Told> {
-        let told = || Told { quantiles: Quantiles::of(values), interval: median_interval(values) };
+        let interval = (values.len() >= FEWEST).then(|| median_interval(values));
+        let told = || Told { quantiles: Quantiles::of(values), interval };
         (!values.is_empty()).then(told)
     }
 }
@@ -129,26 +133,27 @@ fn objects(records: &[CaseRecord]) -> Vec<Object> {
     let mut all = Vec::new();
     for name in names {
         let own: Vec<&CaseRecord> = records.iter().filter(|record| object_of(record) == name).collect();
-        let has = |quantity: &&&str| own.iter().flat_map(|r| &r.methods).any(|m| m.values.contains_key(**quantity));
-        let quantity = ["spectral", "e_rms"].iter().find(has).copied().unwrap_or("e_rms");
+        let has = |quantity: &&str| own.iter().flat_map(|r| &r.methods).any(|m| m.values.contains_key(*quantity));
         for fit in fits(records) {
             let methods: Vec<&MethodRecord> = own.iter().filter_map(|record| method_of(record, fit)).collect();
-            let of_shapes = |same: Vec<&CaseRecord>| {
-                means(same.into_iter().filter_map(|record| method_of(record, fit)?.values.get(quantity)))
-            };
-            let errors: Vec<f64> =
-                of_same_shapes(own.iter().copied()).into_iter().flat_map(of_shapes).flatten().collect();
             let times: Vec<f64> = methods.iter().filter_map(|m| Some(median(m.times.get("fit")?))).collect();
             if methods.is_empty() {
                 continue;
             }
-            all.push(Object {
-                name: name.clone(),
-                fit: fit.into(),
-                quantity: quantity.into(),
-                error: Told::of(&errors),
-                seconds: (!times.is_empty()).then(|| median(&times)),
-            });
+            for quantity in MERITS.into_iter().filter(has) {
+                let of_shapes = |same: Vec<&CaseRecord>| {
+                    means(same.into_iter().filter_map(|record| method_of(record, fit)?.values.get(quantity)))
+                };
+                let errors: Vec<f64> =
+                    of_same_shapes(own.iter().copied()).into_iter().flat_map(of_shapes).flatten().collect();
+                all.push(Object {
+                    name: name.clone(),
+                    fit: fit.into(),
+                    quantity: quantity.into(),
+                    error: Told::of(&errors),
+                    seconds: (!times.is_empty()).then(|| median(&times)),
+                });
+            }
         }
     }
     all

@@ -1,6 +1,6 @@
 //! The tables of a comparison.
 
-use super::pairs::Pair;
+use super::pairs::{MERITS, Pair};
 use super::summary::{CaseSummary, MethodSummary, Object, Summary, Told};
 use crate::report::table::Digits::{self, Fixed, Significant};
 use crate::report::table::Priority::First;
@@ -19,23 +19,32 @@ const EQUAL: f64 = 1e-6;
 struct Quantity {
     quantity: &'static str,
     heading: &'static str,
+    /// Its name in a sentence.
+    short: &'static str,
     unit: &'static str,
     places: usize,
 }
 
 /// The quantities that tables have, in their order.
 const TOLD: [Quantity; 4] = [
-    Quantity { quantity: "frobenius", heading: "|R-K|/|R| Frobenius", unit: "", places: 4 },
-    Quantity { quantity: "spectral", heading: "2-norm", unit: "", places: 4 },
-    Quantity { quantity: "e_rms", heading: "e_rms", unit: "%", places: 2 },
-    Quantity { quantity: "e_max", heading: "e_max", unit: "%", places: 2 },
+    Quantity {
+        quantity: "frobenius",
+        heading: "|R-K|/|R| Frobenius",
+        short: "error in the Frobenius norm",
+        unit: "",
+        places: 4,
+    },
+    Quantity { quantity: "spectral", heading: "2-norm", short: "error in the 2-norm", unit: "", places: 4 },
+    Quantity { quantity: "e_rms", heading: "e_rms", short: "e_rms", unit: "%", places: 2 },
+    Quantity { quantity: "e_max", heading: "e_max", short: "e_max", unit: "%", places: 2 },
 ];
 /// The processor times that tables have, with the unit and how many of it are a second.
-const TIMES: [(&str, &str, &str, f64); 4] = [
+const TIMES: [(&str, &str, &str, f64); 5] = [
     ("fit", "time to fit", "µs/element", 1e6),
     ("solve", "solution", "ms", 1e3),
     ("explicit-step", "explicit step", "µs", 1e6),
     ("implicit-step", "implicit step", "ms", 1e3),
+    ("simulated-second", "simulated second", "s", 1.0),
 ];
 /// Figures of a case that tables have, with their headings, units, factors and places.
 const FIGURES: [(&str, &str, &str, f64, usize); 7] = [
@@ -72,56 +81,76 @@ pub fn compare_text(summary: &Summary) -> String {
 pub fn compare_tables(summary: &Summary) -> Vec<Table> {
     let several = summary.cases.len() > 1;
     let mut tables = vec![cases(summary)];
-    tables.extend(several.then(|| objects(summary)));
+    if several {
+        let has = |quantity: &&str| summary.objects.iter().any(|object| object.quantity == *quantity);
+        let told = MERITS.into_iter().filter(has).enumerate();
+        tables.extend(told.map(|(place, quantity)| objects(summary, quantity, place == 0)));
+    }
     tables.extend((!summary.pairs.is_empty()).then(|| pairs(&summary.pairs)));
     tables.extend((several && !summary.ranks.is_empty()).then(|| ranks(summary)));
     tables
 }
 
-/// A row for each fit, and columns for each element or scene: the median of all errors with its interval, and that of the times.
-fn objects(summary: &Summary) -> Table {
-    let name = |object: &Object| object.name.clone();
-    let quantity = TOLD.iter().find(|told| summary.objects.iter().any(|o| o.quantity == told.quantity));
-    let (heading, unit, places) = quantity.map_or(("error", "", 4), |told| (told.heading, told.unit, told.places));
-    let mut names: Vec<String> = Vec::new();
+/// A row for each fit, and columns for each element or scene: the median of all errors of a quantity with its interval, and in the first of these
+/// tables that of the times.
+fn objects(summary: &Summary, quantity: &str, is_first: bool) -> Table {
+    let told = TOLD.iter().find(|told| told.quantity == quantity);
+    let (heading, unit, places) = told.map_or(("error", "", 4), |told| (told.short, told.unit, told.places));
+    let own: Vec<&Object> = summary.objects.iter().filter(|object| object.quantity == quantity).collect();
+    let mut names: Vec<&str> = Vec::new();
     let mut fits: Vec<&str> = Vec::new();
-    for object in &summary.objects {
-        if !names.contains(&object.name) {
-            names.push(name(object));
+    for object in &own {
+        if !names.contains(&object.name.as_str()) {
+            names.push(&object.name);
         }
         if !fits.contains(&object.fit.as_str()) {
             fits.push(&object.fit);
         }
     }
+    let has_interval = own.iter().any(|object| object.error.is_some_and(|told| told.interval.is_some()));
+    let is_timed = is_first && own.iter().any(|object| object.seconds.is_some());
     let mut columns = vec![Column::words("fit")];
     for name in &names {
-        columns.push(Column::numbers(heading).unit(unit).group(name));
-        columns.push(Column::words("95 %").group(name));
-        columns.push(Column::numbers("time to fit").unit("µs").group(name));
+        let number = |title: &str| Column::numbers(title).unit(unit).group(*name);
+        columns.push(number("median"));
+        if has_interval {
+            columns.extend([number("from"), number("to")]);
+        }
+        columns.extend(is_timed.then(|| Column::numbers("time to fit").unit("µs").group(*name)));
     }
-    let of = |fit: &str, name: &String| summary.objects.iter().find(|o| o.fit == fit && o.name == *name);
-    let least = |name: &String, value: fn(&Object) -> Option<f64>| {
-        let own = summary.objects.iter().filter(|object| object.name == *name);
-        own.filter_map(value).fold(f64::INFINITY, f64::min)
+    let of = |fit: &str, name: &str| own.iter().find(|o| o.fit == fit && o.name == name);
+    let least = |name: &str, value: fn(&Object) -> Option<f64>| {
+        let own = own.iter().filter(|object| object.name == name);
+        own.filter_map(|object| value(object)).fold(f64::INFINITY, f64::min)
     };
     let row = |fit: &&str| {
         let mut row = vec![Cell::from(*fit)];
         for name in &names {
             let object = of(fit, name);
+            let number = |value: fn(&Object) -> Option<f64>, digits: Digits| {
+                Cell::number(object.and_then(|object| value(object)), digits)
+            };
             let cell = |value: fn(&Object) -> Option<f64>, digits: Digits| {
-                let known = object.and_then(value);
+                let known = object.and_then(|object| value(object));
                 let is_best = known.is_some_and(|known| known <= least(name, value) * (1.0 + EQUAL));
-                Cell::number(known, digits).best(is_best)
+                number(value, digits).best(is_best)
             };
             row.push(cell(|object| object.error.map(|told| told.quantiles.median), Fixed(places)));
-            let interval = object.and_then(|object| object.error).map(|told| told.interval);
-            row.push(interval.map_or(Cell::from("-"), |i| format!("{:.places$}..{:.places$}", i.low, i.high).into()));
-            row.push(cell(|object| object.seconds.map(|seconds| 1e6 * seconds), Significant(3)));
+            if has_interval {
+                row.push(number(|object| Some(object.error?.interval?.low), Fixed(places)));
+                row.push(number(|object| Some(object.error?.interval?.high), Fixed(places)));
+            }
+            row.extend(is_timed.then(|| cell(|object| object.seconds.map(|seconds| 1e6 * seconds), Significant(3))));
         }
         row
     };
-    let title = "Each fit on each object: the median error over all cases with its interval, and the median time";
-    Table::new("objects", title, columns, fits.iter().map(row))
+    let (name, times) = match is_first {
+        true => ("objects".to_string(), if is_timed { ", and the median time" } else { "" }),
+        false => (format!("objects-{quantity}"), ""),
+    };
+    let interval = if has_interval { " with its interval of 95 %" } else { "" };
+    let title = format!("Each fit on each object: the median {heading} over all cases{interval}{times}");
+    Table::new(&name, title, columns, fits.iter().map(row))
 }
 
 /// The keys of cases, in the order of tables.
@@ -151,6 +180,8 @@ fn cases(summary: &Summary) -> Table {
         .iter()
         .filter(|(name, ..)| methods().any(|m| m.figures.get(*name).is_some_and(Option::is_some)))
         .collect();
+    let has_interval =
+        |quantity: &str| methods().any(|m| m.values.get(quantity).is_some_and(|told| told.interval.is_some()));
     let has_negative = methods().any(|m| m.values.contains_key("negative"));
     let has_gap = methods().any(|m| m.values.contains_key("gap"));
     let is_copied = methods().any(|m| m.copied > 0);
@@ -163,7 +194,11 @@ fn cases(summary: &Summary) -> Table {
     }
     for told in &told {
         let column = |title| Column::numbers(title).unit(told.unit).group(told.heading);
-        columns.extend([column("median").priority(First), column("mean"), column("max")]);
+        columns.push(column("median").priority(First));
+        if has_interval(told.quantity) {
+            columns.extend(["from", "to"].map(|title| column(title).priority(First)));
+        }
+        columns.extend([column("mean"), column("max")]);
     }
     columns.extend(has_gap.then(|| Column::numbers("gap max")));
     columns.extend(has_negative.then(|| Column::numbers("k < 0").unit("%").priority(First)));
@@ -197,6 +232,11 @@ fn cases(summary: &Summary) -> Table {
                 let told = method.values.get(*quantity);
                 let cell = |value: fn(&Told) -> f64| Cell::number(told.map(value), Fixed(*places));
                 row.push(cell(|told| told.quantiles.median).best(best.is(quantity, told)));
+                if has_interval(quantity) {
+                    let ends = told.and_then(|told| told.interval);
+                    let ends = [ends.map(|ends| ends.low), ends.map(|ends| ends.high)];
+                    row.extend(ends.map(|end| Cell::number(end, Fixed(*places))));
+                }
                 row.extend([cell(|told| told.quantiles.mean), cell(|told| told.quantiles.largest)]);
             }
             if has_gap {
@@ -239,10 +279,22 @@ fn title(summary: &Summary, varied: &[&str]) -> String {
     cases.into_iter().chain(shared).collect::<Vec<_>>().join(", ")
 }
 
-fn notes(summary: &Summary) -> Option<String> {
-    let is_timed = summary.cases.iter().flat_map(|case| &case.methods).any(|method| !method.times.is_empty());
-    let words = "Times are processor times of one thread for each element that is fitted, in passes that take turns.";
-    is_timed.then(|| words.into())
+fn notes(summary: &Summary) -> Vec<String> {
+    let methods = || summary.cases.iter().flat_map(|case| &case.methods);
+    let interval = "From and to are the ends of the bootstrap interval of the median, 95 %.";
+    let times = "Times are processor times of one thread for each element that is fitted, in passes that take turns.";
+    let second = "A simulated second is one of explicit steps half as long as the longest stable one, and of a fit with an engine one of the steps of that \
+                  engine, made by this program on one thread.";
+    let has_second = methods().any(|method| method.times.contains_key("simulated-second"));
+    let notes = [
+        (
+            methods().any(|m| TOLD.iter().any(|t| m.values.get(t.quantity).is_some_and(|t| t.interval.is_some()))),
+            interval,
+        ),
+        (methods().any(|method| !method.times.is_empty()), times),
+        (has_second, second),
+    ];
+    notes.into_iter().filter(|(is_told, _)| *is_told).map(|(_, words)| words.to_string()).collect()
 }
 
 /// The least medians of a case.

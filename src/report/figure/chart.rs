@@ -9,6 +9,7 @@ use crate::text::{printable, xml};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
 /// How the points of a series are shown.
@@ -22,11 +23,11 @@ pub enum Shape {
     Line,
     /// The points are shown as a line with marks.
     Curve,
-    /// The points are shown as a thin grey line with its name at its last point, for comparison; no place is made for it.
+    /// The points are shown as a thin grey line with its name at its last point, for comparison; no place is made for it. One point has the name alone, above.
     Guide,
     /// The points are shown as bars of this width.
     Bars(f64),
-    /// The points are shown as small dots.
+    /// The points are shown as small marks.
     Dots,
     /// Each two points are the ends of a thin line in the colour of the series before.
     Whiskers,
@@ -200,8 +201,14 @@ impl Chart {
             let color = COLORS[i % COLORS.len()];
             match series.shape {
                 Shape::Dots => {
-                    let dot = |point: &(f64, f64)| Circle::new(*point, DOT, color.mix(0.7).filled());
-                    chart.draw_series(series.points.iter().map(dot))?;
+                    let points = || series.points.iter().copied();
+                    let (full, line) = (color.mix(0.7).filled(), color.mix(0.8).stroke_width(THIN / 2));
+                    match i % DOTS {
+                        0 => chart.draw_series(points().map(|at| Circle::new(at, DOT, full)))?,
+                        1 => chart.draw_series(points().map(|at| TriangleMarker::new(at, DOT + FINE / 2, full)))?,
+                        2 => chart.draw_series(points().map(|at| Cross::new(at, DOT, line)))?,
+                        _ => chart.draw_series(points().map(|at| Circle::new(at, DOT, line)))?,
+                    };
                 }
                 Shape::Whiskers => {
                     for ends in series.points.chunks_exact(2) {
@@ -237,8 +244,11 @@ impl Chart {
                         REFERENCE.stroke_width(THIN),
                     ))?;
                     let at = series.points.last().copied().into_iter();
-                    let name =
-                        |at| Text::new(series.name.clone(), at, ("sans-serif", FONT - FINE).into_font().color(&GUIDE));
+                    let font = ("sans-serif", FONT - FINE).into_font().color(&GUIDE);
+                    // A name without a line stands on its point.
+                    let side = if series.points.len() == 1 { VPos::Bottom } else { VPos::Top };
+                    let font = font.pos(Pos::new(HPos::Left, side));
+                    let name = |at| Text::new(series.name.clone(), at, font.clone());
                     chart.draw_series(at.map(name))?;
                 }
                 Shape::Marks | Shape::Below => {}
@@ -301,19 +311,22 @@ impl Chart {
                 color.filled(),
             ))?,
             Shape::Line | Shape::Curve | Shape::Guide => match DASHES[i % DASHES.len()] {
-                [] => {
-                    area.draw(&PathElement::new([(left, at.1), (left + 18 * FINE, at.1)], color.stroke_width(THICK)))?
-                }
-                _ => {
-                    for from in [left, left + 7 * FINE, left + 14 * FINE] {
-                        area.draw(&PathElement::new(
-                            [(from, at.1), (from + 4 * FINE, at.1)],
-                            color.stroke_width(THICK),
-                        ))?;
+                [] => area
+                    .draw(&PathElement::new([(left, at.1), (left + SAMPLE * FINE, at.1)], color.stroke_width(THICK)))?,
+                dashes => {
+                    let (on, both) = (dashes[0], dashes[0] + dashes[1]);
+                    for from in (0..SAMPLE).step_by(both as usize) {
+                        let ends = [from, (from + on).min(SAMPLE)].map(|x| (left + x * FINE, at.1));
+                        area.draw(&PathElement::new(ends, color.stroke_width(THICK)))?;
                     }
                 }
             },
-            Shape::Dots => area.draw(&Circle::new(at, 2 * DOT, color.filled()))?,
+            Shape::Dots => match i % DOTS {
+                0 => area.draw(&Circle::new(at, 2 * DOT, color.filled()))?,
+                1 => area.draw(&TriangleMarker::new(at, 2 * DOT + FINE / 2, color.filled()))?,
+                2 => area.draw(&Cross::new(at, 2 * DOT, color.stroke_width(THIN)))?,
+                _ => area.draw(&Circle::new(at, 2 * DOT, color.stroke_width(THIN)))?,
+            },
             Shape::Marks | Shape::Below | Shape::Whiskers => {}
         }
         if matches!(series.shape, Shape::Marks | Shape::Below | Shape::Curve) {
@@ -340,6 +353,10 @@ fn legend_name(name: &str, width: i32) -> String {
     cut(&printable(name), f64::from(width / FINE - 8 - 24 - 4))
 }
 
+/// Small marks that differ in form.
+const DOTS: usize = 4;
+/// The length of a line in the legend, pixels.
+const SAMPLE: i32 = 18;
 /// The names of guides have this colour.
 const GUIDE: RGBColor = RGBColor(110, 110, 110);
 

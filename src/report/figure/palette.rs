@@ -16,7 +16,7 @@ pub const COLORS: [RGBColor; 8] = [
 /// What others are compared with has this colour.
 pub const REFERENCE: RGBColor = RGBColor(175, 175, 175);
 /// The dashes of lines, pixels; none of a solid line.
-pub const DASHES: [&[i32]; 5] = [&[], &[8, 3], &[3, 3], &[12, 3, 3, 3], &[1, 2]];
+pub const DASHES: [&[i32]; 6] = [&[], &[8, 3], &[3, 3], &[12, 3, 3, 3], &[1, 2], &[3, 7]];
 /// Brewer's YlGnBu without its darkest step, on which edges would not be seen; each is darker in grey than the one before.
 const RAMP: [[f64; 3]; 5] =
     [[255.0, 255.0, 217.0], [199.0, 233.0, 180.0], [127.0, 205.0, 187.0], [65.0, 182.0, 196.0], [34.0, 130.0, 184.0]];

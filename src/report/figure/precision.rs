@@ -23,6 +23,8 @@ pub enum Cost {
     ExplicitStep,
     /// The time of an implicit step
     ImplicitStep,
+    /// The time of a second of motion: in explicit steps, and of a network for an engine in the steps of that engine
+    Second,
 }
 
 impl Cost {
@@ -32,6 +34,7 @@ impl Cost {
             Cost::Fit => ("µs per element", 1e6),
             Cost::Solve | Cost::ImplicitStep => ("ms", 1e3),
             Cost::ExplicitStep => ("µs", 1e6),
+            Cost::Second => ("s", 1.0),
         }
     }
 
@@ -42,6 +45,7 @@ impl Cost {
             Cost::Solve => "solve",
             Cost::ExplicitStep => "explicit-step",
             Cost::ImplicitStep => "implicit-step",
+            Cost::Second => "simulated-second",
         };
         let (unit, per_second) = self.unit();
         (kind, unit, per_second)
@@ -54,6 +58,7 @@ impl Cost {
             Cost::Solve => "of a solution",
             Cost::ExplicitStep => "of an explicit step",
             Cost::ImplicitStep => "of an implicit step",
+            Cost::Second => "of a simulated second",
         }
     }
 
@@ -64,6 +69,7 @@ impl Cost {
             Cost::Solve => times.solve.as_ref(),
             Cost::ExplicitStep => times.explicit_step.as_ref(),
             Cost::ImplicitStep => times.implicit_step.as_ref(),
+            Cost::Second => times.simulated_second.as_ref(),
         };
         Some(times?.median)
     }

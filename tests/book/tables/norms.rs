@@ -15,7 +15,8 @@ pub fn table() -> String {
     let cell = |fit: &str, name: &str| {
         let object = summary.objects.iter().find(|object| object.fit == fit && object.name == name).unwrap();
         let told = object.error.unwrap();
-        format!("{:.3} ({:.3} to {:.3})", told.quantiles.median, told.interval.low, told.interval.high)
+        let interval = told.interval.unwrap();
+        format!("{:.3} ({:.3} to {:.3})", told.quantiles.median, interval.low, interval.high)
     };
     let row = |fit: &&str| {
         let cells = names.iter().map(|name| cell(fit, name));

@@ -25,12 +25,14 @@
 //! | `vibration` | natural vibrations in an engine |
 //! | `krylov` | solutions by GMRES, in memory that grows like the springs |
 //! | `ceiling` | the largest stiffness that a setting reaches |
+//! | `frames` | the steps of an engine, with the geometry as it moves |
 //!
 //! Theory: page *Networks in engines* of the book.
 
 mod ceiling;
 mod constraints;
 mod descents;
+mod frames;
 mod growth;
 mod history;
 mod jolt;
@@ -44,6 +46,7 @@ mod truncated;
 mod vibration;
 
 pub use ceiling::{Ceiling, least_substeps};
+pub use frames::Frames;
 pub use model::TruncatedModel;
 pub use order::{colours, point_colours};
 pub use sequence::Sequence;

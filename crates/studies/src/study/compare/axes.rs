@@ -93,6 +93,17 @@ fn words(key: &str, value: &serde_json::Value) -> String {
         serde_json::Value::Bool(true) => key.into(),
         serde_json::Value::Bool(false) => format!("not {key}"),
         serde_json::Value::String(text) => format!("{key} {text}"),
+        // Of a table, such as that of an engine, the method speaks for itself.
+        serde_json::Value::Object(table) => {
+            let (of_method, others): (Vec<_>, Vec<_>) = table.iter().partition(|(name, _)| *name == "method");
+            let method = of_method.iter().filter_map(|(_, value)| value.as_str()).map(String::from);
+            let all = method.chain(others.into_iter().map(|(name, value)| words(name, value)));
+            format!("{key} {}", all.collect::<Vec<_>>().join(" "))
+        }
+        serde_json::Value::Array(list) => {
+            let all: Vec<String> = list.iter().map(|one| one.as_str().map_or(one.to_string(), String::from)).collect();
+            format!("{key} {}", all.join(" + "))
+        }
         value => format!("{key} {value}"),
     }
 }

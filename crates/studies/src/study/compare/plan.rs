@@ -35,6 +35,8 @@ pub struct Comparing {
     /// The table, as it identifies the comparison on disk.
     text: String,
     folder: PathBuf,
+    /// The file and its text, if the comparison is in one.
+    source: Option<(PathBuf, String)>,
     pub(super) cases: Vec<Case>,
     /// The fits that are listed; none if all that are usual are compared.
     pub(super) fits: Vec<VariedFit>,
@@ -81,7 +83,8 @@ impl Comparing {
             let table: toml::Table = text.parse().map_err(|e| Error::new(format!("is not TOML: {e}")))?;
             let folder = path.parent().unwrap_or(Path::new(""));
             let comparing = Comparing::of(&file.compare, table.get("compare"), (folder, &[]));
-            Ok(Comparing { title: file.title, ..comparing.map_err(|e| e.placed(|e| e.under("compare")))? })
+            let source = Some((path.into(), text.into()));
+            Ok(Comparing { title: file.title, source, ..comparing.map_err(|e| e.placed(|e| e.under("compare")))? })
         };
         read().map_err(|e: Error| e.placed(|e| file::on_line_of_key(e, text).in_file(path)))
     }
@@ -134,6 +137,7 @@ impl Comparing {
             title: None,
             text,
             folder: folder.into(),
+            source: None,
             cases,
             fits,
             iterations,
@@ -163,6 +167,18 @@ impl Comparing {
         all.sort();
         all.dedup();
         all
+    }
+
+    /// An error of a fit in a scene as one of the fits of the comparison, which stand in place of those of the scene.
+    pub(super) fn of_fit(&self, error: Error) -> Error {
+        let Some(key) = error.key().filter(|key| key.starts_with("fit[") && !self.fits.is_empty()) else {
+            return error;
+        };
+        let own = Error::at(format!("compare.{key}"), error.problem()).of_kind(error.kind());
+        match &self.source {
+            Some((path, text)) => own.placed(|e| file::on_line_of_key(e, text).in_file(path)),
+            None => Error::at(format!("--{key}"), error.problem()).of_kind(error.kind()),
+        }
     }
 
     /// A sum of all that a case depends on: its settings, the fits, the files that it names and the version of the program.

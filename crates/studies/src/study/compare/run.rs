@@ -71,7 +71,7 @@ impl Comparing {
                 };
                 scene.output_mut().time = self.is_timed;
                 let fits: Vec<VariedFit> = listed(scene.fits().to_vec());
-                let outcome = run_with(&scene, &Controls::default(), progress)?;
+                let outcome = run_with(&scene, &Controls::default(), progress).map_err(|e| self.of_fit(e))?;
                 let of_fit = |(fit, found): (&VariedFit, &FitOutcome)| of_scene(begun(fit), found, &outcome);
                 let mut records: Vec<MethodRecord> = fits.iter().zip(&outcome.fits).map(of_fit).collect();
                 records.push(of_body(&outcome));
@@ -182,6 +182,7 @@ fn of_scene(record: MethodRecord, found: &FitOutcome, outcome: &Outcome) -> Meth
             ("solve", model.and_then(|model| model.solve.as_ref())),
             ("explicit-step", model.and_then(|model| model.explicit_step.as_ref())),
             ("implicit-step", model.and_then(|model| model.implicit_step.as_ref())),
+            ("simulated-second", model.and_then(|model| model.simulated_second.as_ref())),
         ]),
         refused: (!stands).then(|| format!("the network is {}", found.status())),
         ..record
@@ -206,6 +207,7 @@ fn of_body(outcome: &Outcome) -> MethodRecord {
             ("solve", model.and_then(|model| model.solve.as_ref())),
             ("explicit-step", model.and_then(|model| model.explicit_step.as_ref())),
             ("implicit-step", model.and_then(|model| model.implicit_step.as_ref()).filter(|_| turns)),
+            ("simulated-second", model.and_then(|model| model.simulated_second.as_ref())),
         ]),
         ..MethodRecord::default()
     }

@@ -155,8 +155,9 @@ impl Solved {
         });
         let prepared: Vec<_> = fits.iter().map(|fit| fit.network.prepared()).collect();
         let points = &mesh.points;
-        let costed = |model, linear, masses, statics| Costed { model, linear, points, support, masses, statics };
-        let mut models = vec![costed(model, is_linear, &masses[..], of_body)];
+        let costed =
+            |model, linear, masses, statics, engine| Costed { model, linear, points, support, masses, statics, engine };
+        let mut models = vec![costed(model, is_linear, &masses[..], of_body, None)];
         for (fit, prepared) in fits.iter().zip(&prepared) {
             let network = &fit.network;
             let of_network = case.map(|case| -> Statics {
@@ -165,7 +166,8 @@ impl Solved {
                     None => Box::new(move || seconds_of_network(mesh, network, case, solver)),
                 }
             });
-            models.push(costed(prepared, false, fit.masses().unwrap_or(&masses), of_network));
+            let engine = fit.fit.engine.map(|setting| (network, setting));
+            models.push(costed(prepared, false, fit.masses().unwrap_or(&masses), of_network, engine));
         }
         model_times(&models, self.masses.is_some())
     }

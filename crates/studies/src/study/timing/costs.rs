@@ -30,6 +30,10 @@ pub struct ModelTimes {
     /// A linearised step of implicit Euler of 1/60 s takes this time: forces, matrix, factor and solution. The matrix of linear finite
     /// elements, which do not turn, is factorised before the first step.
     pub implicit_step: Option<Times>,
+    /// A second of motion takes this time: in explicit steps half as long as the longest one that is stable, and of a network whose constants
+    /// are for an engine in steps of that engine at these settings, which this program makes on the processor. It is null where the scene gives no
+    /// density, and where the network is not stable.
+    pub simulated_second: Option<Times>,
     /// The longest explicit step that is stable is this long, s. It is null where the scene gives no density: steps are then timed with that
     /// of water.
     pub longest_step: Option<f64>,

@@ -4,8 +4,9 @@ use super::costs::ModelTimes;
 use super::repeats::{TimedWork, interleaved};
 use crate::clock::Clock;
 use crate::dynamics::{Integrator, LinearSolver, Motion, Options, Simulation};
+use crate::engine::{Frames, Setting, TruncatedModel};
 use crate::error::{Error, Result};
-use crate::model::{Elastic, Support};
+use crate::model::{Elastic, Network, Support};
 
 /// The time step of the implicit method, s: that of pictures that move.
 const IMPLICIT_STEP: f64 = 1.0 / 60.0;
@@ -31,12 +32,14 @@ pub struct Costed<'a> {
     /// `[points]`, kg.
     pub masses: &'a [f64],
     pub statics: Option<Statics<'a>>,
+    /// The engine that the constants of a network are for.
+    pub engine: Option<(&'a Network, Setting)>,
 }
 
 impl<'a> Costed<'a> {
     /// A solution, and a step of each kind, as works that are timed; `None` of those that the model does not have. The explicit step depends
     /// on the longest one.
-    fn works(&'a self, longest: Option<f64>) -> Result<[Option<TimedWork<'a>>; 3]> {
+    fn works(&'a self, longest: Option<f64>) -> Result<[Option<TimedWork<'a>>; 4]> {
         let solve = match &self.statics {
             Some(statics) => statics()?.map(|_| {
                 let lost = || Error::new("a solution was found once, and then not");
@@ -46,7 +49,36 @@ impl<'a> Costed<'a> {
         };
         let explicit = longest.map(|longest| self.options(Integrator::SymplecticEuler, SHARE * longest));
         let explicit = explicit.map(|options| self.steps(options)).transpose()?.flatten();
-        Ok([solve, explicit, self.steps(self.options(Integrator::ImplicitEuler, IMPLICIT_STEP))?])
+        let implicit = self.steps(self.options(Integrator::ImplicitEuler, IMPLICIT_STEP))?;
+        Ok([solve, explicit, implicit, self.frames()?])
+    }
+
+    /// Steps of the engine, a second of them.
+    fn frames(&self) -> Result<Option<TimedWork<'a>>> {
+        let Some((network, setting)) = self.engine else { return Ok(None) };
+        let model = TruncatedModel { network, points: self.points, masses: self.masses };
+        let mut frames = Frames::new(model, self.support, &setting)?;
+        let displacement = self.moved();
+        let still = vec![0.0; displacement.len()];
+        let mut count = 1;
+        Ok(Some(Box::new(move || {
+            frames.start(&displacement);
+            let clock = Clock::start();
+            for _ in 0..count {
+                frames.step(&still);
+            }
+            let each = clock.seconds() / count as f64;
+            count = ((PASS / each.max(1e-12)) as usize).clamp(1, MOST_STEPS);
+            Ok(each / setting.step)
+        })))
+    }
+
+    /// A small displacement of the free points that is in no symmetry of the body, so that no force is zero.
+    fn moved(&self) -> Vec<f64> {
+        let extent = self.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
+        let held = |dof: usize| self.support.prescribed[dof].is_some();
+        let moved = |dof: usize| if held(dof) { 0.0 } else { DISPLACED * extent * (1.0 + dof as f64).sin() };
+        (0..self.points.len()).map(moved).collect()
     }
 
     fn motion(&self) -> Motion<'a> {
@@ -68,11 +100,7 @@ impl<'a> Costed<'a> {
     /// Steps from a shape near rest; `None` if the model has no such motion.
     fn steps(&self, options: Options) -> Result<Option<TimedWork<'a>>> {
         let Ok(mut simulation) = Simulation::new(self.motion(), options) else { return Ok(None) };
-        let extent = self.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
-        let held = |dof: usize| self.support.prescribed[dof].is_some();
-        // A shape that is in no symmetry of the body.
-        let moved = |dof: usize| if held(dof) { 0.0 } else { DISPLACED * extent * (1.0 + dof as f64).sin() };
-        let displacement: Vec<f64> = (0..self.points.len()).map(moved).collect();
+        let displacement = self.moved();
         let still = vec![0.0; displacement.len()];
         if simulation.start(&displacement, &still).is_err() {
             return Ok(None);
@@ -102,13 +130,17 @@ pub fn model_times(models: &[Costed], has_density: bool) -> Result<Vec<ModelTime
         let step = model.longest_step();
         let own = model.works(step)?;
         longest.push(step.filter(|_| has_density));
-        has.push(own.each_ref().map(Option::is_some));
+        let stands = model.statics.is_none() || own[0].is_some();
+        has.push((own.each_ref().map(Option::is_some), stands));
         works.extend(own.into_iter().flatten());
     }
     let mut found = interleaved(&mut works)?.into_iter();
-    let times = longest.into_iter().zip(has).map(|(longest_step, has)| {
-        let [solve, explicit_step, implicit_step] = has.map(|has| if has { found.next() } else { None });
-        ModelTimes { solve, explicit_step, implicit_step, longest_step }
+    let times = longest.into_iter().zip(has).map(|(longest_step, (has, stands))| {
+        let [solve, explicit_step, implicit_step, frames] = has.map(|has| if has { found.next() } else { None });
+        // A network for an engine is moved by it alone: its explicit steps are of a body that is stiffer than the engine's.
+        let explicit_second = || Some(explicit_step.as_ref()?.scaled(1.0 / (SHARE * longest_step?))).filter(|_| stands);
+        let simulated_second = frames.or_else(explicit_second);
+        ModelTimes { solve, explicit_step, implicit_step, simulated_second, longest_step }
     });
     Ok(times.collect())
 }
