@@ -13,6 +13,7 @@ Blender's soft bodies have one stiffness for all edges, and its cloth bends by f
 do not balance, so that neither takes these attributes: this script moves the network by symplectic Euler at half the longest stable
 step, with the springs on volumes and areas and the hinges, and all objects get the motion as shape keys, one for each frame. Geometry
 nodes read the attributes by their names. Blender counts in 32 bits.
+Stress that relaxes is that of the class Memory below.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -21,6 +22,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from memory import Memory
 from settle import judge, keep_rest, seconds, settle, taken
 
 folder = Path(__file__).parent
@@ -32,6 +34,15 @@ hinges, k_hinge, rest_hinge = (net.get(name, np.empty(0)) for name in ["hinges",
 step = 0.5 * float(net["dt_max"])  # s
 free = np.isnan(net["held"])
 rate = 24  # frames per second
+memory = None  # of a body whose stress relaxes
+
+
+def remember(h):
+    """Begins a motion in steps of h, s; with None all that relaxes has relaxed."""
+    global memory, k, k_volume, rest_volume
+    if "relaxation_time" in net:
+        memory = Memory(net, h)
+        k, k_volume, rest_volume = memory.k, memory.k_volume, memory.rest_volume
 
 
 def gathered(corners, forces):
@@ -59,19 +70,24 @@ def turns(x):
 
 
 def force(x, v, applied=0.0):
-    """The force on each point, N: `applied`, springs with dampers, springs on volumes and areas, hinges, weight, and damping of the masses."""
+    """The force on each point, N: `applied`, springs with dampers and what they remember, springs on volumes and areas, hinges, weight, and damping of the masses."""
     i, j = springs.T
     r = x[j] - x[i]
     length = np.maximum(np.linalg.norm(r, axis=1), 1e-300)
     along = np.sum(r * (v[j] - v[i]), axis=1) / length
-    pull = ((k * (length - rest) + damper * along) / length)[:, None] * r
+    longer, larger, constants = memory.step(x) if memory else (0.0, 0.0, ())
+    pull = ((k * (length - rest - longer) + damper * along) / length)[:, None] * r
     total = applied + gathered(i, pull) - gathered(j, pull) + masses[:, None] * (net["gravity"] - float(net["damping"]) * v)
+    if len(constants):
+        i, j = memory.edges.T
+        pull = constants[:, None] * (x[j] - x[i])
+        total += gathered(i, pull) - gathered(j, pull)
     if len(volumes):
         edges = (x[volumes[:, 1:]] - x[volumes[:, :1]]).transpose(0, 2, 1)
         volume = np.linalg.det(edges) / 6
         slopes = volume[:, None, None] * np.linalg.inv(edges)
         slopes = np.concatenate([-slopes.sum(1, keepdims=True), slopes], axis=1)
-        pull = (k_volume * (volume - rest_volume))[:, None, None] * slopes
+        pull = (k_volume * (volume - rest_volume - larger))[:, None, None] * slopes
         for a in range(4):
             total -= gathered(volumes[:, a], pull[:, a])
     if len(areas):
@@ -95,6 +111,7 @@ def advance(x, v, applied=0.0):
 
 def move(duration, applied=0.0):
     """The positions at each frame."""
+    remember(step)
     x, v = points, np.zeros_like(points)
     frames, count = [points], 0
     for frame in range(1, round(duration * rate) + 1):
@@ -109,6 +126,7 @@ def move(duration, applied=0.0):
 
 def come_to_rest(applied=0.0):
     """Positions at rest."""
+    remember(None)
     body = {"x": points, "v": np.zeros_like(points)}
 
     def step_on():

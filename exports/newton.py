@@ -16,6 +16,7 @@ modulus, and gets a millionth of k_lambda.
 A hinge of constant k is an edge with edge_ke = k/L, L its length at rest, for Newton's energy is 1/2 ke L (theta - rest)^2; its angles have
 the other sign. Networks with hinges are moved by SolverVBD, in 10 iterations of twice the longest explicit step: the bending forces of the
 explicit solver and of SolverXPBD lack a factor and do not balance.
+Where stress relaxes, the script sets constants, rest lengths and activations of tetrahedra before each step, as the class Memory below says.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -24,6 +25,7 @@ from pathlib import Path
 
 import newton
 import numpy as np
+from memory import Memory
 from settle import judge, keep_rest, seconds, settle, taken
 
 folder = Path(__file__).parent
@@ -36,7 +38,7 @@ has_hinges = "hinges" in net
 step = setting["step"] / setting["substeps"] if setting else (2 if has_hinges else 0.5) * float(net["dt_max"])  # s
 
 
-def build(material=None):
+def build(material=None, memory=None):
     """The model, to which more may be added; or Newton's own finite elements of the same tetrahedra, of material (E, nu)."""
     builder = newton.ModelBuilder(gravity=tuple(net["gravity"].tolist()))
     mass = masses.copy()
@@ -49,12 +51,16 @@ def build(material=None):
         for corners in net["tets"].tolist():
             builder.add_tetrahedron(*corners, mu, lam, 0.0)
         return builder
-    builder.spring_indices.extend(springs.ravel().tolist())
-    builder.spring_rest_length.extend(rest.tolist())
-    builder.spring_stiffness.extend(k.tolist())
-    builder.spring_damping.extend([0.0] * len(springs) if setting else net["damper"].tolist())
-    builder.spring_control.extend([0.0] * len(springs))
-    for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
+    # What a body remembers has springs of rest length zero beside its own, and constants of its own.
+    branch = memory.edges.tolist() if memory else []
+    more = [0.0] * len(branch)
+    builder.spring_indices.extend(springs.ravel().tolist() + sum(branch, []))
+    builder.spring_rest_length.extend(rest.tolist() + more)
+    builder.spring_stiffness.extend((memory.k if memory else k).tolist() + more)
+    builder.spring_damping.extend(([0.0] * len(springs) if setting else net["damper"].tolist()) + more)
+    builder.spring_control.extend([0.0] * (len(springs) + len(branch)))
+    of_volumes = (memory.k_volume, memory.rest_volume) if memory else (k_volume, rest_volume)
+    for corners, constant, at_rest in zip(volumes, *of_volumes):
         x = points[corners]
         edges = (x[1:] - x[0]).T
         scale = (at_rest / (np.linalg.det(edges) / 6)) ** (1 / 3)
@@ -85,21 +91,33 @@ def solver_of(model, material=None):
 
 
 class Motion:
-    """The body in motion under forces on its points, [points, 3], N, by the solver of the network, elements by the explicit one."""
+    """The body in motion under forces on its points, [points, 3], N, by the solver of the network, elements by the explicit one. One that
+    has relaxed keeps the stiffness that is left."""
 
-    def __init__(self, material=None, forces=None):
+    def __init__(self, material=None, forces=None, has_relaxed=False):
         self.forces = forces
         self.step = 0.5 * float(net["dt_max"]) if material else step
-        model = build(material).finalize()
-        self.solver, self.control = solver_of(model, material), model.control()
+        forgets = "relaxation_time" in net and not material
+        self.memory = Memory(net, None if has_relaxed else self.step) if forgets else None
+        model = build(material, self.memory).finalize()
+        self.model, self.solver, self.control = model, solver_of(model, material), model.control()
         self.now, self.after = model.state(), model.state()
 
     def advance(self):
         self.now.clear_forces()
         if self.forces is not None:
             self.now.particle_f.assign(self.forces)
+        if self.memory and not self.memory.is_relaxed:
+            self.remember()
         self.solver.step(self.now, self.after, self.control, None, self.step)
         self.now, self.after = self.after, self.now
+
+    def remember(self):
+        longer, larger, constants = self.memory.step(self.positions())
+        self.model.spring_rest_length.assign(np.float32(np.concatenate([rest + longer, np.zeros_like(constants)])))
+        self.model.spring_stiffness.assign(np.float32(np.concatenate([self.memory.k, constants])))
+        if len(volumes):
+            self.control.tet_activations.assign(np.float32(-larger / self.memory.rest_volume))
 
     def positions(self):
         return self.now.particle_q.numpy().astype(float)
@@ -110,7 +128,7 @@ class Motion:
 
 def come_to_rest(material=None, forces=None):
     """Positions at rest."""
-    body = Motion(material, forces)
+    body = Motion(material, forces, has_relaxed=True)
     weight = masses.copy()
     weight[net["fixed"]] = 0.0
     energy = lambda: float(weight @ np.sum(body.velocities() ** 2, axis=1))

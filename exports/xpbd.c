@@ -9,7 +9,8 @@
 
    With -DREAL=float it counts in single precision. The loop is above the line of stars, for an engine of your own; below it, network.json
    is read. What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area, a volume or the angle of a
-   hinge with the rest measure of the spring. Points are in m, masses in kg, times in s; in the plane z is zero. */
+   hinge with the rest measure of the spring. Where stress relaxes, a spring has dashpots in series, one for each term of the share g and the
+   time tau, which has lengthened by w: it pulls as k (C - sum of g w). Points are in m, masses in kg, times in s; in the plane z is zero. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -26,7 +27,14 @@ typedef struct {
     int spatial;             /* whether an area is that of a triangle in space, and whether four points are a hinge */
     REAL compliance, rest;   /* 1/k, and the measure at which the spring does not pull */
     REAL multiplier;         /* the sum of the corrections in this substep */
+    REAL last, shift;        /* how far it was stretched before this substep, and what its rest measure is longer by in it */
+    REAL *creep;             /* w of each term */
 } Constraint;
+
+typedef struct {
+    REAL share, time;        /* of the stress, s */
+    REAL decay, mean;        /* exp(-h/time), and its mean over a substep */
+} Term;
 
 typedef struct {
     int points, constraints; /* how many */
@@ -36,6 +44,9 @@ typedef struct {
     Vector *old, *seen;      /* positions before the substep, and before a sweep of Jacobi */
     Constraint *constraint;  /* in the order of a sweep */
     REAL h, relaxation;      /* length of a substep, factor of each correction */
+    Term *term;              /* in which stress relaxes */
+    int terms;
+    REAL left;               /* share of the constants in a substep: what relaxes in it makes springs softer */
     int iterations, jacobi;  /* sweeps of a substep; whether they correct all constraints at once */
 } Body;
 
@@ -102,8 +113,8 @@ static void sweep(Body *b)
     Vector *x = b->x, g[4];
     if (b->jacobi) x = memcpy(b->seen, b->x, (size_t)b->points * sizeof(Vector));
     for (Constraint *c = b->constraint; c < b->constraint + b->constraints; c++) {
-        REAL violation = measure(c, x, g) - c->rest;
-        REAL softness = c->compliance / (b->h * b->h), stiffness = 0;
+        REAL violation = measure(c, x, g) - c->rest - c->shift;
+        REAL softness = c->compliance / (b->left * b->h * b->h), stiffness = 0;
         for (int i = 0; i < c->count; i++)
             for (int k = 0; k < 3; k++) stiffness += b->w[c->points[i]][k] * g[i][k] * g[i][k];
         /* The step of Newton's method for violation + softness * multiplier = 0. */
@@ -112,6 +123,39 @@ static void sweep(Body *b)
         for (int i = 0; i < c->count; i++)
             for (int k = 0; k < 3; k++) b->x[c->points[i]][k] += b->w[c->points[i]][k] * g[i][k] * step;
     }
+}
+
+/* What relaxes in each substep, by the exponential rule, which takes stretches to change evenly. */
+static void begin(Body *b)
+{
+    b->left = 1;
+    for (Term *t = b->term; t < b->term + b->terms; t++) {
+        t->decay = (REAL)exp(-b->h / t->time);
+        t->mean = (REAL)(-expm1(-b->h / t->time) * t->time / b->h);
+        b->left -= t->share * (1 - t->mean);
+    }
+}
+
+/* The rest measure of a substep: at its end w will be decay w + (mean - decay) C_before + (1 - mean) C. The last part is in `left`. */
+static void recall(const Body *b, Constraint *c)
+{
+    c->shift = 0;
+    for (int i = 0; i < b->terms; i++) {
+        const Term *t = b->term + i;
+        c->shift += t->share * (t->decay * c->creep[i] + (t->mean - t->decay) * c->last) / b->left;
+    }
+}
+
+/* Dashpots give way in a substep that ends here. */
+static void forget(const Body *b, Constraint *c)
+{
+    Vector g[4];
+    REAL stretch = measure(c, b->x, g) - c->rest;
+    for (int i = 0; i < b->terms; i++) {
+        const Term *t = b->term + i;
+        c->creep[i] = t->decay * c->creep[i] + (t->mean - t->decay) * c->last + (1 - t->mean) * stretch;
+    }
+    c->last = stretch;
 }
 
 /* A substep: points fly under the forces, the sweeps correct where they are, and velocities follow from where they have come. */
@@ -125,9 +169,11 @@ static void substep(Body *b)
             b->x[p][k] += b->h * b->v[p][k];
         }
     for (int i = 0; i < b->constraints; i++) b->constraint[i].multiplier = 0;
+    for (int i = 0; b->terms && i < b->constraints; i++) recall(b, b->constraint + i);
     for (int i = 0; i < b->iterations; i++) sweep(b);
     for (int p = 0; p < b->points; p++)
         for (int k = 0; k < 3; k++) b->v[p][k] = (b->x[p][k] - b->old[p][k]) / b->h;
+    for (int i = 0; b->terms && i < b->constraints; i++) forget(b, b->constraint + i);
 }
 
 /******************************************************************************************************************************/
@@ -142,6 +188,15 @@ static double kinetic(const Body *b, int of_digits)
             if (b->w[p][k] > 0) sum += v * v / b->w[p][k] / 2;
         }
     return sum;
+}
+
+/* Leaves what is left when all that relaxes has relaxed, or nothing. */
+static int relax(Body *b)
+{
+    b->left = 1;
+    for (int i = 0; i < b->terms; i++) b->left -= b->term[i].share;
+    b->terms = 0;
+    return b->left > (REAL)1e-6;
 }
 
 /* Comes to rest: whenever the kinetic energy has passed a maximum, the body is stopped. Returns the number of substeps, or 0. */
@@ -375,7 +430,22 @@ static Body read_body(const Asked *asked)
         if (!(c->compliance > 0)) refuse("compliances above zero");
         expect("\"rest\""), c->rest = (REAL)number(), expect("\"colour\""), number();
     }
-    expect("]"), expect("}");
+    expect("]");
+    if (take("\"relaxation\"")) {
+        expect("[");
+        for (; take("["); b.terms++, expect("]")) {
+            b.term = grown(b.term, b.terms, sizeof(Term));
+            b.term[b.terms].share = (REAL)number(), b.term[b.terms].time = (REAL)number();
+            if (!(b.term[b.terms].time > 0)) refuse("times above zero");
+        }
+        expect("]");
+    }
+    expect("}");
+    for (int i = 0; b.terms && i < b.constraints; i++) {
+        b.constraint[i].creep = calloc((size_t)b.terms, sizeof(REAL));
+        if (!b.constraint[i].creep) fprintf(stderr, "the memory is full\n"), exit(2);
+    }
+    begin(&b);
     return b;
 }
 
@@ -408,6 +478,7 @@ int main(int count, char **words)
         i++;
     }
     Body b = read_body(&asked);
+    if (asked.rest && !relax(&b)) misuse("--rest", "a body of which some stress remains", "one that relaxes wholly");
     Vector *start = memcpy(table(b.points), b.x, (size_t)b.points * sizeof(Vector));
     double steps = asked.rest ? settle(&b) : floor(asked.seconds / b.h + 0.5);
     if (asked.rest && !steps) return fprintf(stderr, "the body has not come to rest\n"), 1;

@@ -49,12 +49,18 @@ def test_the_loop_in_numpy_moves_as_the_program(tmp_path):
     assert np.allclose((found - points)[top].mean(0), expected, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("program", ["newton", "mujoco", "lammps", "sofa", "xpbd", "blender"])
+@pytest.mark.parametrize("program", ["mujoco", "lammps", "sofa", "jolt", "phystwin"])
 def test_other_programs_are_refused(tmp_path, program):
     (tmp_path / "bar.toml").write_text(SCENE)
     refused = springfit("export", "bar.toml", "--to", program, "--out", "out", cwd=tmp_path)
     assert refused.returncode == 2 and "relaxes in 2 terms" in refused.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_constraints_do_not_hold_shear_alone(tmp_path):
+    (tmp_path / "bar.toml").write_text(SCENE)
+    refused = springfit("export", "bar.toml", "--to", "xpbd", "--out", "out", cwd=tmp_path)
+    assert refused.returncode == 2 and "shares of shear and bulk that are alike, found shear = 0.5, bulk = 0" in refused.stderr
 
 
 def test_the_loop_says_what_it_does_not_serve(tmp_path):

@@ -3,6 +3,7 @@
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -29,7 +30,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[],
-    relaxes: false,
+    relaxes: Relaxes::Branches,
     stands: Stands::Network,
     write,
 };

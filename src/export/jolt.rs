@@ -3,6 +3,7 @@
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting};
 use crate::error::Result;
@@ -32,7 +33,9 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::Jolt],
-    relaxes: false,
+    relaxes: Relaxes::Not(
+        "Jolt takes rest lengths and compliances of a soft body when it is made, and no others while it moves",
+    ),
     stands: Stands::Network,
     write,
 };

@@ -2,6 +2,7 @@
 
 use super::hinges::{FLAT, Hinges};
 use super::job::{Holds, Job, Tension};
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::Result;
 use crate::report::{HingePart, NetworkRecord};
@@ -29,7 +30,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: &[],
-    relaxes: false,
+    relaxes: Relaxes::Not("the constants of bonds in LAMMPS stay as they are during a run"),
     stands: Stands::Network,
     write,
 };

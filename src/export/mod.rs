@@ -18,6 +18,7 @@ mod newton;
 mod npz;
 mod phystwin;
 mod prepared;
+mod relaxes;
 mod rest;
 mod sofa;
 mod target;

@@ -3,6 +3,7 @@
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, script};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -29,7 +30,9 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: false,
     engines: &[],
-    relaxes: false,
+    relaxes: Relaxes::Not(
+        "MuJoCo reads the elasticity of tetrahedra once, and has no rest lengths that change in a motion",
+    ),
     stands: Stands::SquaredLengths,
     write,
 };

@@ -4,6 +4,7 @@ use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
 use super::names::named;
 use super::npz::arrays_with;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, dampers, mass_damping, script};
 use crate::engine::{Engine, Setting, point_colours};
 use crate::error::{Error, ErrorKind, Result};
@@ -36,7 +37,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::NewtonXpbd, Engine::NewtonVbd],
-    relaxes: false,
+    relaxes: Relaxes::Branches,
     stands: Stands::Network,
     write,
 };

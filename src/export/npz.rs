@@ -2,7 +2,8 @@
 
 use super::extent::check_parts;
 use super::job::{Job, spatial};
-use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, content_dampers};
+use super::relaxes::Relaxes;
+use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, content_dampers, script};
 use crate::error::Result;
 use crate::report::{ArrayFile, NetworkRecord, Parts, network_npz, network_npz_with};
 use std::io::Cursor;
@@ -16,7 +17,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: EVERY_ENGINE,
-    relaxes: true,
+    relaxes: Relaxes::Passed,
     stands: Stands::Network,
     write,
 };
@@ -30,7 +31,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
     network_npz(&network, &parts, &mut bytes).expect("a Vec grows");
     let mut files = vec![("network.npz", Content::Bytes(bytes.into_inner()))];
     if network.motion.as_ref().is_some_and(|motion| !motion.relaxation.is_empty()) {
-        files.push(("run.py", Content::Bytes(include_bytes!("../../exports/relaxing.py").to_vec())));
+        files.push(("run.py", script(include_str!("../../exports/relaxing.py"))));
     }
     Ok(files)
 }

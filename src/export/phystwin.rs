@@ -3,6 +3,7 @@
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
 use super::names::named;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use crate::error::{Error, ErrorKind, Result};
 use crate::report::{ArrayFile, LengthPart, NetworkRecord};
@@ -30,7 +31,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: &[],
-    relaxes: false,
+    relaxes: Relaxes::Not("PhysTwin has one force law, without memory, for all its springs"),
     stands: Stands::Network,
     write,
 };

@@ -2,6 +2,7 @@
 
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, mass_damping};
 use crate::error::Result;
 use crate::report::NetworkRecord;
@@ -29,7 +30,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: &[],
-    relaxes: false,
+    relaxes: Relaxes::Not("SOFA reads constants and rest lengths of its springs from a file, once"),
     stands: Stands::Network,
     write,
 };

@@ -1,6 +1,7 @@
 //! What an export is: a row for each program, and its files.
 
 use super::extent::check_numbers;
+use super::relaxes::Relaxes;
 use crate::engine::{Engine, Setting};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::write_whole;
@@ -41,14 +42,18 @@ pub fn write_files(files: &[NamedFile], folder: &Path, inputs: &[PathBuf]) -> Re
     edition.publish()
 }
 
-/// What a script in Python says where it takes in how bodies are loaded, come to rest and are judged, and that text.
-const SETTLING: [&str; 2] =
-    ["from settle import judge, keep_rest, seconds, settle, taken\n", include_str!("../../exports/settle.py")];
+/// What a script in Python says where it takes in what scripts have in common, and that text: how bodies are loaded, come to rest and are judged;
+/// and what a body remembers whose stress relaxes.
+const COMMON: [[&str; 2]; 2] = [
+    ["from settle import judge, keep_rest, seconds, settle, taken\n", include_str!("../../exports/settle.py")],
+    ["from memory import Memory\n", include_str!("../../exports/memory.py")],
+];
 
 /// A script in Python, which stands alone: what scripts have in common is put where it is imported.
 pub(super) fn script(text: &str) -> Content {
-    let [import, rule] = SETTLING;
-    Content::Bytes(text.replacen(import, &format!("\n\n{}\n\n", rule.trim_end()), 1).into_bytes())
+    let taken_in =
+        |text: String, [import, rule]: [&str; 2]| text.replacen(import, &format!("\n\n{}\n\n", rule.trim_end()), 1);
+    Content::Bytes(COMMON.into_iter().fold(text.to_string(), taken_in).into_bytes())
 }
 
 /// How a line that is not read begins, by the ending of a script.
@@ -102,8 +107,8 @@ pub struct Target {
     pub(super) divides: bool,
     /// The engines whose constants it takes. Those of solved equations go to each program.
     pub(super) engines: &'static [Engine],
-    /// Whether stress that relaxes is in its files, or nothing moves in them.
-    pub(super) relaxes: bool,
+    /// What it does with stress that relaxes.
+    pub(super) relaxes: Relaxes,
     /// Up to which deformation it moves the network.
     pub(super) stands: Stands,
     pub(super) write: Writer,
@@ -118,7 +123,7 @@ impl Target {
     pub fn files(&self, network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
         gravity.map_or(Ok(()), |asked| self.check_gravity(network, asked))?;
         self.check_engine(network)?;
-        self.check_relaxation(network)?;
+        self.relaxes.check(network)?;
         check_numbers(network, gravity)?;
         (self.write)(network, gravity)
     }
@@ -133,19 +138,6 @@ impl Target {
             return Err(Error::expected("--gravity", expected, asked.len()));
         }
         Ok(())
-    }
-
-    /// That stress which relaxes goes where it is held: anywhere else the body would keep the stiffness that it has against a sudden strain.
-    fn check_relaxation(&self, network: &NetworkRecord) -> Result<()> {
-        let terms = network.motion.as_ref().map_or(0, |motion| motion.relaxation.len());
-        if self.relaxes || terms == 0 {
-            return Ok(());
-        }
-        let expected = "a network whose stress does not relax (npz holds one, and springfit generate --relaxing writes a step of it)";
-        let found = format!(
-            "one that relaxes in {terms} terms; without [material.relaxation] it keeps the stiffness against a sudden strain"
-        );
-        Err(Error::expected("motion.relaxation", expected, found).of_kind(ErrorKind::Unsupported))
     }
 
     /// That constants which belong to the settings of an engine go to this engine: anywhere else the body has another stiffness.

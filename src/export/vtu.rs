@@ -1,5 +1,6 @@
 //! VTU: a picture of the network for ParaView.
 
+use super::relaxes::Relaxes;
 use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, nothing};
 use crate::error::{Error, Result};
 use crate::mesh::vtk::{Array, Grid};
@@ -17,7 +18,7 @@ pub const TARGET: Target = Target {
     has_loads: false,
     divides: false,
     engines: EVERY_ENGINE,
-    relaxes: true,
+    relaxes: Relaxes::Passed,
     stands: Stands::Still,
     write,
 };

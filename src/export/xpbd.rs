@@ -3,6 +3,7 @@
 use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
+use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
 use crate::engine::{Engine, Setting, colours};
 use crate::error::Result;
@@ -31,7 +32,7 @@ pub const TARGET: Target = Target {
     has_loads: true,
     divides: true,
     engines: &[Engine::Xpbd],
-    relaxes: false,
+    relaxes: Relaxes::Springs,
     stands: Stands::Truncated,
     write,
 };
@@ -60,6 +61,9 @@ struct Body<'a> {
     surface: &'a [[usize; 3]],
     loads: Vec<Load<'a>>,
     constraints: Vec<Constraint>,
+    /// Shares of the stress that relax, and their times in s.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    relaxation: Vec<[f64; 2]>,
 }
 
 #[derive(Serialize)]
@@ -100,6 +104,7 @@ fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
 fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFile>> {
     let job = Job::new(network, gravity, "XPBD", &HOLDS)?;
     let setting = network.engine.unwrap_or(Setting::usual(Engine::Xpbd));
+    let terms = network.motion.iter().flat_map(|motion| &motion.relaxation);
     let body = Body {
         format: FORMAT,
         version: VERSION,
@@ -114,6 +119,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
         surface: &network.surface,
         loads: Load::all(network),
         constraints: constraints(&job, &setting),
+        relaxation: terms.map(|term| [term.shear, term.time]).collect(),
     };
     let text = serde_json::to_vec(&body).expect("keys are text");
     let script = |bytes: &[u8]| Content::Bytes(bytes.to_vec());
