@@ -115,7 +115,7 @@ fn families_of_shapes_are_what_they_say() {
 fn a_file_has_its_files_and_goes_on() {
     let folder = folder_with(NORMS);
     let printed = prints(folder.path(), &["compare", "c.toml"]);
-    assert!(printed.starts_with("Norms\n") && printed.contains("Mean ranks over all cases"), "{printed}");
+    assert!(printed.starts_with("Norms\n") && printed.contains("Mean ranks over the cases"), "{printed}");
     let out = folder.path().join("out/compare-c");
     let records = cases(&out);
     assert_eq!(records.len(), 8);

@@ -52,8 +52,13 @@ fn record(outcome: &Outcome, engine: Option<Setting>) -> NetworkRecord {
 
 /// The files of a network without gravity, and the program.
 fn written(network: &NetworkRecord) -> TempDir {
+    written_under(network, &vec![0.0; network.dimension])
+}
+
+/// The files of a network under gravity, and the program.
+fn written_under(network: &NetworkRecord, gravity: &[f64]) -> TempDir {
     let folder = TempDir::new().unwrap();
-    let files = target_named("xpbd").unwrap().files(network, Some(&vec![0.0; network.dimension])).unwrap();
+    let files = target_named("xpbd").unwrap().files(network, Some(gravity)).unwrap();
     write_files(&files, folder.path(), &[]).unwrap();
     let strict = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1", "-o", "run", "run.c", "-lm"];
     let output = Command::new("cc").args(strict).current_dir(&folder).output().expect("the tests need a C compiler");
@@ -258,4 +263,38 @@ fn constants_of_an_engine_go_nowhere_else() {
     let wrong = record(&outcome, Some(Setting::usual(Engine::Xpbd).with_substeps(0)));
     let error = target_named("xpbd").unwrap().files(&wrong, None).err().unwrap();
     assert_eq!(error.key(), Some("engine.substeps"));
+}
+
+/// Stress relaxes in the loop as in the motion of the network by implicit Euler, whose equations a substep solves by many sweeps; at rest the share is left that
+/// no term has.
+#[test]
+fn the_loop_in_c_creeps_as_the_motion() {
+    let relaxing = SCENE.replace(
+        "density = 1000\n",
+        "density = 1000\nrelaxation = { terms = [{ shear = 0.5, bulk = 0.5, time = \"20 ms\" }, { shear = 0.2, bulk = 0.2, time = \"0.2 s\" }] }\n",
+    );
+    let size = "size = [1, 1, 1], cells = [2, 2, 2]";
+    let motion = "[motion]\nlinear = true\nduration = 0.1\nstep = 1e-3\nintegrator = \"implicit-euler\"\ngravity = [3e-4, 0, -9.81e-4]\n";
+    let text = relaxing.replace(size, "size = [0.1, 0.1, 0.2], cells = [2, 2, 4]").replace("[[load]]\n", "#\n");
+    let head = text.split('#').next().unwrap().to_string();
+    let outcome = outcome(&format!("{head}{motion}"));
+    let network = record(&outcome, None);
+    let gravity = [3e-4, 0.0, -9.81e-4];
+    let folder = written_under(&network, &gravity);
+    let moved = |folder: &TempDir| -> f64 {
+        let (code, printed) = ran(folder, &["0.1", "--step", "1e-3", "--substeps", "1", "--iterations", "200"]);
+        assert_eq!(code, Some(0), "{printed}");
+        printed.split("displacement is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
+    };
+    let found = moved(&folder);
+    let model = outcome.motion.as_ref().unwrap().models.iter().find(|model| model.fit.is_some()).unwrap();
+    // The body has not swung back before the end.
+    let largest = model.largest;
+    // Four digits are printed.
+    assert!((found / largest - 1.0).abs() < 2e-4, "{found} {largest}");
+    // The elastic body moves otherwise by far.
+    let mut elastic = network;
+    elastic.motion.as_mut().unwrap().relaxation.clear();
+    let elastic = moved(&written_under(&elastic, &gravity));
+    assert!((elastic / largest - 1.0).abs() > 0.1, "{elastic} {largest}");
 }

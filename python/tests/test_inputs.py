@@ -232,3 +232,32 @@ def test_files_have_the_density(tmp_path):
 def test_elements_are_named_by_paths():
     path = ROOT / "elements/tri3.toml"
     assert sf.Element(path) == sf.Element("tri3") == sf.Element(str(path))
+
+
+@pytest.mark.parametrize("kind", [int, np.uint8, list])
+def test_numbers_in_place_of_flags_are_refused(kind):
+    """Numbers 0 and 1 of all points would be the first two points, again and again."""
+    flags = MESH.points[:, 0] < 1e-9
+    numbers = flags.astype(int).tolist() if kind is list else flags.astype(kind)
+    net = sf.fit(MESH, MATERIAL, "exact")
+    calls = {
+        "fix": lambda: net.solve(numbers, {"xmax": [0, 1.0]}),
+        "groups.low": lambda: sf.Mesh(MESH.points, MESH.cells, {"low": numbers}),
+        "cell_groups.low": lambda: sf.Mesh(MESH.points, MESH.cells, cell_groups={"low": np.array([1, 0, 1, 0])}),
+    }
+    assert {key: key_of(call) for key, call in calls.items()} == {key: key for key in calls}
+    bool_answer = net.solve(flags, {"xmax": [0, 1.0]})
+    assert np.array_equal(bool_answer, net.solve(np.flatnonzero(flags), {"xmax": [0, 1.0]}))
+
+
+def test_two_displacements_of_one_point_are_refused():
+    net = sf.fit(MESH, MATERIAL, "exact")
+    held = MESH.points[:, 0] > -1
+    wrong = {"xmax": [1e-3, 0], "ymax": [0, 1e-3]}
+    assert key_of(lambda: net.solve(held, displacement=wrong)) == "displacement.ymax"
+    net.solve(held, displacement={"xmax": [1e-3, 0], "ymax": [1e-3, 0]})
+
+
+def test_masses_are_not_negative():
+    points, springs = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [[0, 1], [1, 2], [2, 0]]
+    assert key_of(lambda: sf.measure(points, springs, [1.0, 1.0, 1.0], masses=[1.0, 1.0, -1.0])) == "masses"

@@ -276,3 +276,61 @@ fn one_cell_across_is_too_stiff_with_a_law_and_without_loads() {
         assert!(printed.contains("too stiff"), "{printed}");
     }
 }
+
+/// A body whose support is moved as a whole is moved with it at large deformation, without forces.
+#[test]
+fn a_body_is_moved_as_a_whole_at_large_deformation() {
+    for (element, moved) in [("tet4", 0.01), ("hex8", 1e-6)] {
+        let load =
+            format!("[[load]]\nname = \"a\"\ngroup = \"xmin\"\ndisplacement = [{moved:e}, \"free\", \"free\"]\n");
+        let text = bar(element, [0.1, 0.02, 0.02], [5, 2, 2], &load)
+            .replace("density = 1000\n", "law = \"stable-neo-hookean\"\n")
+            .replace("group = \"xmin\"\n[[load]]", "group = \"xmin\"\naxes = [\"y\", \"z\"]\n[[load]]");
+        let folder = folder_with(&[("s.toml", text)]);
+        prints(folder.path(), &["run", "s.toml", "--out", "out"]);
+        let report: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap();
+        let fit = &report["fits"][0];
+        assert_eq!(fit["status"], "converged", "{fit}");
+        let largest = fit["loads"][0]["largest_displacement"].as_f64().unwrap();
+        assert!((largest / moved - 1.0).abs() < 1e-9, "{largest} {moved}");
+    }
+}
+
+/// The mean stress of a lattice whose springs pull is a tension: n springs of 10 N along each axis, each across 1 m.
+#[test]
+fn the_stress_of_a_pulled_lattice_is_a_tension() {
+    let points: String = (0..9).map(|p| format!("{},{}\n", p % 3, p / 3)).collect();
+    let mut springs = "i,j,k,rest\n".to_string();
+    for p in 0..9 {
+        let (x, y) = (p % 3, p / 3);
+        let [right, above] = [y * 3 + (x + 1) % 3, (y + 1) % 3 * 3 + x];
+        springs += &format!(
+            "{p},{right},100,0.9\n{p},{above},100,0.9\n{p},{},100,{}\n",
+            (y + 1) % 3 * 3 + (x + 1) % 3,
+            2f64.sqrt()
+        );
+    }
+    let folder = folder_with(&[("p.csv", format!("x,y\n{points}")), ("s.csv", springs)]);
+    let arguments = ["measure", "s.csv", "--points", "p.csv", "--cell", "3 0, 0 3", "--json"];
+    let found: serde_json::Value = serde_json::from_str(&prints(folder.path(), &arguments)).unwrap();
+    let stress: Vec<f64> = found["tension"]["stress"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).collect();
+    assert!((stress[0] - 10.0).abs() < 1e-9 && (stress[1] - 10.0).abs() < 1e-9 && stress[2].abs() < 1e-9, "{stress:?}");
+}
+
+/// Cells on the same side of what they share lie on each other, in whatever order their nodes are listed.
+#[test]
+fn cells_that_lie_on_each_other_are_refused() {
+    let text =
+        "[mesh]\nfile = \"m.vtk\"\nscale = 1\n[material]\nyoung = 1e5\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
+    for (second, is_refused) in [("0 1 3", true), ("1 0 3", true), ("1 3 2", false)] {
+        let vtk = format!(
+            "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n\
+             CELLS 2 8\n3 0 1 2\n3 {second}\nCELL_TYPES 2\n5\n5\n"
+        );
+        let folder = folder_with(&[("m.vtk", vtk), ("s.toml", text.to_string())]);
+        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
+        assert_eq!(output.status.code() == Some(2), is_refused, "{second}: {}", said(&output));
+        assert_eq!(said(&output).contains("folded over"), is_refused, "{second}: {}", said(&output));
+    }
+}

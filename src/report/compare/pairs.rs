@@ -40,8 +40,12 @@ pub struct Rank {
     pub quantity: String,
     /// The method.
     pub fit: String,
-    /// The mean of its ranks in all cases, by the median; absent where it has no figure in some case.
+    /// The mean of its ranks, by the median, in the cases in which all methods with figures have one; absent where there is no such case, or the method has none.
     pub rank: Option<f64>,
+    /// The number of these cases.
+    pub cases: usize,
+    /// The number of cases in which some method has a figure.
+    pub of: usize,
 }
 
 /// The names of the fits, in the order in which they appear.
@@ -112,15 +116,13 @@ fn of_values(records: &[CaseRecord], quantity: &str, (first, second): (&str, &st
     Paired::of(&a, &b)
 }
 
-/// The cases in groups that have the same shapes: those of one element that differ in Poisson's ratio alone. What is found on the same shape at
+/// The cases in groups that have the same shapes, loads or stretches: those that differ in Poisson's ratio alone. What is found on the same shape at
 /// several ratios is nearly the same, and no independent figure.
 pub fn of_same_shapes<'a>(records: impl IntoIterator<Item = &'a CaseRecord>) -> Vec<Vec<&'a CaseRecord>> {
     let mut groups: Vec<(BTreeMap<String, Value>, Vec<&CaseRecord>)> = Vec::new();
     for record in records {
         let mut settings = record.settings.clone();
-        if settings.contains_key("seed") {
-            settings.remove("poisson");
-        }
+        settings.remove("poisson");
         match groups.iter_mut().find(|(known, _)| *known == settings) {
             Some((_, group)) => group.push(record),
             None => groups.push((settings, vec![record])),
@@ -176,7 +178,7 @@ fn of_times(records: &[CaseRecord], kind: &str, (first, second): (&str, &str)) -
     Some(Pair { quantity, first: first.into(), second: second.into(), paired, adjusted: None, verdict })
 }
 
-/// The mean ranks by each figure of merit, over all cases.
+/// The mean ranks by each figure of merit, over the cases in which all methods can be ranked.
 pub fn ranks(records: &[CaseRecord]) -> Vec<Rank> {
     let names = fits(records);
     let mut all = Vec::new();
@@ -187,14 +189,21 @@ pub fn ranks(records: &[CaseRecord]) -> Vec<Rank> {
             let known: Vec<f64> = method(record, name)?.values.get(quantity)?.iter().copied().flatten().collect();
             Some(median(&known)).filter(|median| median.is_finite())
         };
+        let measured: Vec<&str> =
+            names.iter().copied().filter(|name| own.iter().any(|record| middle(record, name).is_some())).collect();
+        // A method without a figure where others fail would be ranked by the easy cases alone.
+        let is_complete = |record: &&&CaseRecord| measured.iter().all(|name| middle(record, name).is_some());
+        let cases: Vec<&CaseRecord> = own.iter().filter(is_complete).copied().collect();
         let figures: Vec<Vec<Option<f64>>> =
-            names.iter().map(|name| own.iter().map(|record| middle(record, name)).collect()).collect();
-        if own.is_empty() {
-            continue;
-        }
-        let found = names.iter().zip(mean_ranks(&figures));
-        let rank = |(name, rank): (&&str, Option<f64>)| Rank { quantity: quantity.into(), fit: name.to_string(), rank };
-        all.extend(found.map(rank));
+            measured.iter().map(|name| cases.iter().map(|record| middle(record, name)).collect()).collect();
+        let rank = |(name, rank): (&&str, Option<f64>)| Rank {
+            quantity: quantity.into(),
+            fit: name.to_string(),
+            rank,
+            cases: cases.len(),
+            of: own.len(),
+        };
+        all.extend(measured.iter().zip(mean_ranks(&figures)).map(rank));
     }
     all
 }

@@ -365,7 +365,8 @@ fn pairs(pairs: &[Pair]) -> Table {
 }
 
 fn ranks(summary: &Summary) -> Table {
-    let columns = vec![Column::words("quantity"), Column::words("fit"), Column::numbers("mean rank")];
+    let columns =
+        vec![Column::words("quantity"), Column::words("fit"), Column::numbers("mean rank"), Column::numbers("cases")];
     let mut sorted: Vec<_> = summary.ranks.iter().filter(|rank| rank.rank.is_some()).collect();
     sorted.sort_by(|a, b| {
         (&a.quantity, a.rank.unwrap_or(0.0))
@@ -373,8 +374,13 @@ fn ranks(summary: &Summary) -> Table {
             .unwrap_or(std::cmp::Ordering::Equal)
     });
     let row = |rank: &&super::pairs::Rank| {
-        vec![Cell::from(rank.quantity.as_str()), rank.fit.as_str().into(), Cell::number(rank.rank, Fixed(2))]
+        vec![
+            Cell::from(rank.quantity.as_str()),
+            rank.fit.as_str().into(),
+            Cell::number(rank.rank, Fixed(2)),
+            format!("{} of {}", rank.cases, rank.of).as_str().into(),
+        ]
     };
-    let title = "Mean ranks over all cases, by the median; 1 is the least error";
+    let title = "Mean ranks over the cases in which all have figures, by the median; 1 is the least error";
     Table::new("ranks", title, columns, sorted.iter().map(row))
 }

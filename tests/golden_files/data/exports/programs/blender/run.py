@@ -14,6 +14,7 @@ Blender's soft bodies have one stiffness for all edges, and its cloth bends by f
 do not balance, so that neither takes these attributes: this script moves the network by symplectic Euler at half the longest stable
 step, with the springs on volumes and areas and the hinges, and all objects get the motion as shape keys, one for each frame. Geometry
 nodes read the attributes by their names. Blender counts in 32 bits.
+Stress that relaxes is that of the class Memory below.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -22,6 +23,86 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+
+
+class Memory:
+    """What a body remembers whose stress relaxes, at the start of each explicit step of the length h, s; with h = None all that relaxes has relaxed.
+
+    Where shear alone relaxes, the body is an exact network of tetrahedra and each term a branch of springs of rest length zero, along `edges`, whose
+    constants S relax towards those of the present shape. With e = exp(-h/tau) and gamma = (1 - e) tau/h, a step has the forces of S and of
+    a content with the factor gamma, and then S <- e S + gamma (1 - e) J^(2/3) k(x). Where shear and bulk relax alike, each spring has a dashpot in
+    series for each term, which has lengthened by w, and the spring acts as if its rest measure were longer by the sum of g w.
+    Theory: page "Springs that forget" of the book of springfit.
+    """
+
+    def __init__(self, net, h):
+        start = net["points"]
+        self.springs, self.volumes = net["springs"], net["volumes"]
+        self.k, self.k_volume, self.rest_volume = net["k"], net["k_volume"], net["rest_volume"]
+        self.shares, times = net["relaxation_shear"], net["relaxation_time"]
+        self.has_branches = not np.any(net["relaxation_bulk"])
+        self.edges, self.is_relaxed = np.empty((0, 2), int), h is None
+        left = 1 - self.shares.sum()
+        if self.is_relaxed and not left > 1e-9:
+            sys.exit("all stress of the body relaxes, so that it does not come to rest")
+        if not self.is_relaxed:
+            self.decay = np.exp(-h / times)
+            self.mean = -np.expm1(-h / times) * times / h
+        if self.has_branches:
+            self.v0 = self.shape(start)[1]
+            # A spring on a content at rest has k (rest - V) = mu and k V = lambda + mu. What is left of mu is beside the same bulk modulus.
+            self.mu = self.k_volume * (self.rest_volume - self.v0)
+            bulk = self.k_volume * self.v0 - self.mu / 3
+            self.k, self.k_volume = left * self.k, (bulk + left * self.mu / 3) / self.v0
+            self.rest_volume = self.v0 + left * self.mu / self.k_volume
+            pairs = np.sort(self.volumes[:, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]], axis=2).reshape(-1, 2)
+            self.edges, self.edge_of = np.unique(pairs, axis=0, return_inverse=True)
+            if not self.is_relaxed:
+                self.state = np.outer(self.shares * self.mean, self.constants(*self.shape(start)))
+        elif self.is_relaxed:
+            self.k, self.k_volume = left * self.k, left * self.k_volume
+        else:
+            self.start = self.measures(start)
+            self.last, self.creep = np.zeros_like(self.start), np.zeros((len(times), len(self.start)))
+
+    def shape(self, x):
+        """The gradients of the shape functions of the tetrahedra at x, [cells, 4, 3], and their volumes."""
+        e = x[self.volumes[:, 1:]] - x[self.volumes[:, :1]]
+        n = np.cross(np.roll(e, -1, 1), np.roll(e, -2, 1))
+        v = np.einsum("ck,ck->c", e[:, 0], n[:, 0]) / 6
+        n = n / (6 * v)[:, None, None]
+        return np.concatenate([-n.sum(1, keepdims=True), n], axis=1), v
+
+    def constants(self, n, v):
+        """The constants along the edges of springs that have relaxed to this shape."""
+        of_pairs = -np.einsum("cak,cbk->cab", n, n)[:, [0, 0, 0, 1, 1, 2], [1, 2, 3, 2, 3, 3]]
+        own = (self.mu * self.v0 * (v / self.v0) ** (2 / 3))[:, None] * of_pairs
+        return np.bincount(self.edge_of.ravel(), own.ravel(), len(self.edges))
+
+    def measures(self, x):
+        """The lengths of the springs and the volumes."""
+        e = x[self.volumes[:, 1:]] - x[self.volumes[:, :1]] if len(self.volumes) else np.empty((0, 3, 3))
+        return np.concatenate([np.linalg.norm(x[self.springs[:, 1]] - x[self.springs[:, 0]], axis=1), np.linalg.det(e) / 6])
+
+    def step(self, x):
+        """At the end of a step, at x: by how much the rest lengths and rest volumes are longer, and the constants of the springs along `edges`. The
+        next call is that of the next step."""
+        count = len(self.springs)
+        if self.is_relaxed:
+            return np.zeros(count), np.zeros(len(self.volumes)), np.zeros(len(self.edges))
+        if self.has_branches:
+            n, v = self.shape(x)
+            push = self.shares @ self.mean * self.mu * self.v0 * (v / self.v0) ** (2 / 3) / v
+            now = self.state.sum(axis=0)
+            self.state = self.decay[:, None] * self.state + np.outer(self.shares * self.mean * (1 - self.decay), self.constants(n, v))
+            return np.zeros(count), push / self.k_volume, now
+        c = self.measures(x) - self.start
+        decay = self.decay[:, None]
+        self.creep = decay * self.creep + (1 - decay) * self.last + np.outer(1 - self.mean, c - self.last)
+        self.last = c
+        longer = self.shares @ self.creep
+        return longer[:count], longer[count:], np.empty(0)
+
 
 
 def settle(advance, energy, damp, periods):
@@ -111,6 +192,15 @@ hinges, k_hinge, rest_hinge = (net.get(name, np.empty(0)) for name in ["hinges",
 step = 0.5 * float(net["dt_max"])  # s
 free = np.isnan(net["held"])
 rate = 24  # frames per second
+memory = None  # of a body whose stress relaxes
+
+
+def remember(h):
+    """Begins a motion in steps of h, s; with None all that relaxes has relaxed."""
+    global memory, k, k_volume, rest_volume
+    if "relaxation_time" in net:
+        memory = Memory(net, h)
+        k, k_volume, rest_volume = memory.k, memory.k_volume, memory.rest_volume
 
 
 def gathered(corners, forces):
@@ -138,19 +228,24 @@ def turns(x):
 
 
 def force(x, v, applied=0.0):
-    """The force on each point, N: `applied`, springs with dampers, springs on volumes and areas, hinges, weight, and damping of the masses."""
+    """The force on each point, N: `applied`, springs with dampers and what they remember, springs on volumes and areas, hinges, weight, and damping of the masses."""
     i, j = springs.T
     r = x[j] - x[i]
     length = np.maximum(np.linalg.norm(r, axis=1), 1e-300)
     along = np.sum(r * (v[j] - v[i]), axis=1) / length
-    pull = ((k * (length - rest) + damper * along) / length)[:, None] * r
+    longer, larger, constants = memory.step(x) if memory else (0.0, 0.0, ())
+    pull = ((k * (length - rest - longer) + damper * along) / length)[:, None] * r
     total = applied + gathered(i, pull) - gathered(j, pull) + masses[:, None] * (net["gravity"] - float(net["damping"]) * v)
+    if len(constants):
+        i, j = memory.edges.T
+        pull = constants[:, None] * (x[j] - x[i])
+        total += gathered(i, pull) - gathered(j, pull)
     if len(volumes):
         edges = (x[volumes[:, 1:]] - x[volumes[:, :1]]).transpose(0, 2, 1)
         volume = np.linalg.det(edges) / 6
         slopes = volume[:, None, None] * np.linalg.inv(edges)
         slopes = np.concatenate([-slopes.sum(1, keepdims=True), slopes], axis=1)
-        pull = (k_volume * (volume - rest_volume))[:, None, None] * slopes
+        pull = (k_volume * (volume - rest_volume - larger))[:, None, None] * slopes
         for a in range(4):
             total -= gathered(volumes[:, a], pull[:, a])
     if len(areas):
@@ -174,6 +269,7 @@ def advance(x, v, applied=0.0):
 
 def move(duration, applied=0.0):
     """The positions at each frame."""
+    remember(step)
     x, v = points, np.zeros_like(points)
     frames, count = [points], 0
     for frame in range(1, round(duration * rate) + 1):
@@ -188,6 +284,7 @@ def move(duration, applied=0.0):
 
 def come_to_rest(applied=0.0):
     """Positions at rest."""
+    remember(None)
     body = {"x": points, "v": np.zeros_like(points)}
 
     def step_on():

@@ -17,6 +17,7 @@ modulus, and gets a millionth of k_lambda.
 A hinge of constant k is an edge with edge_ke = k/L, L its length at rest, for Newton's energy is 1/2 ke L (theta - rest)^2; its angles have
 the other sign. Networks with hinges are moved by SolverVBD, in 10 iterations of twice the longest explicit step: the bending forces of the
 explicit solver and of SolverXPBD lack a factor and do not balance.
+Where stress relaxes, the script sets constants, rest lengths and activations of tetrahedra before each step, as the class Memory below says.
 Cells that are inside out at the end are counted and printed; the program then ends with 1, as it does where the body does not come
 to rest.
 """
@@ -25,6 +26,86 @@ from pathlib import Path
 
 import newton
 import numpy as np
+
+
+class Memory:
+    """What a body remembers whose stress relaxes, at the start of each explicit step of the length h, s; with h = None all that relaxes has relaxed.
+
+    Where shear alone relaxes, the body is an exact network of tetrahedra and each term a branch of springs of rest length zero, along `edges`, whose
+    constants S relax towards those of the present shape. With e = exp(-h/tau) and gamma = (1 - e) tau/h, a step has the forces of S and of
+    a content with the factor gamma, and then S <- e S + gamma (1 - e) J^(2/3) k(x). Where shear and bulk relax alike, each spring has a dashpot in
+    series for each term, which has lengthened by w, and the spring acts as if its rest measure were longer by the sum of g w.
+    Theory: page "Springs that forget" of the book of springfit.
+    """
+
+    def __init__(self, net, h):
+        start = net["points"]
+        self.springs, self.volumes = net["springs"], net["volumes"]
+        self.k, self.k_volume, self.rest_volume = net["k"], net["k_volume"], net["rest_volume"]
+        self.shares, times = net["relaxation_shear"], net["relaxation_time"]
+        self.has_branches = not np.any(net["relaxation_bulk"])
+        self.edges, self.is_relaxed = np.empty((0, 2), int), h is None
+        left = 1 - self.shares.sum()
+        if self.is_relaxed and not left > 1e-9:
+            sys.exit("all stress of the body relaxes, so that it does not come to rest")
+        if not self.is_relaxed:
+            self.decay = np.exp(-h / times)
+            self.mean = -np.expm1(-h / times) * times / h
+        if self.has_branches:
+            self.v0 = self.shape(start)[1]
+            # A spring on a content at rest has k (rest - V) = mu and k V = lambda + mu. What is left of mu is beside the same bulk modulus.
+            self.mu = self.k_volume * (self.rest_volume - self.v0)
+            bulk = self.k_volume * self.v0 - self.mu / 3
+            self.k, self.k_volume = left * self.k, (bulk + left * self.mu / 3) / self.v0
+            self.rest_volume = self.v0 + left * self.mu / self.k_volume
+            pairs = np.sort(self.volumes[:, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]], axis=2).reshape(-1, 2)
+            self.edges, self.edge_of = np.unique(pairs, axis=0, return_inverse=True)
+            if not self.is_relaxed:
+                self.state = np.outer(self.shares * self.mean, self.constants(*self.shape(start)))
+        elif self.is_relaxed:
+            self.k, self.k_volume = left * self.k, left * self.k_volume
+        else:
+            self.start = self.measures(start)
+            self.last, self.creep = np.zeros_like(self.start), np.zeros((len(times), len(self.start)))
+
+    def shape(self, x):
+        """The gradients of the shape functions of the tetrahedra at x, [cells, 4, 3], and their volumes."""
+        e = x[self.volumes[:, 1:]] - x[self.volumes[:, :1]]
+        n = np.cross(np.roll(e, -1, 1), np.roll(e, -2, 1))
+        v = np.einsum("ck,ck->c", e[:, 0], n[:, 0]) / 6
+        n = n / (6 * v)[:, None, None]
+        return np.concatenate([-n.sum(1, keepdims=True), n], axis=1), v
+
+    def constants(self, n, v):
+        """The constants along the edges of springs that have relaxed to this shape."""
+        of_pairs = -np.einsum("cak,cbk->cab", n, n)[:, [0, 0, 0, 1, 1, 2], [1, 2, 3, 2, 3, 3]]
+        own = (self.mu * self.v0 * (v / self.v0) ** (2 / 3))[:, None] * of_pairs
+        return np.bincount(self.edge_of.ravel(), own.ravel(), len(self.edges))
+
+    def measures(self, x):
+        """The lengths of the springs and the volumes."""
+        e = x[self.volumes[:, 1:]] - x[self.volumes[:, :1]] if len(self.volumes) else np.empty((0, 3, 3))
+        return np.concatenate([np.linalg.norm(x[self.springs[:, 1]] - x[self.springs[:, 0]], axis=1), np.linalg.det(e) / 6])
+
+    def step(self, x):
+        """At the end of a step, at x: by how much the rest lengths and rest volumes are longer, and the constants of the springs along `edges`. The
+        next call is that of the next step."""
+        count = len(self.springs)
+        if self.is_relaxed:
+            return np.zeros(count), np.zeros(len(self.volumes)), np.zeros(len(self.edges))
+        if self.has_branches:
+            n, v = self.shape(x)
+            push = self.shares @ self.mean * self.mu * self.v0 * (v / self.v0) ** (2 / 3) / v
+            now = self.state.sum(axis=0)
+            self.state = self.decay[:, None] * self.state + np.outer(self.shares * self.mean * (1 - self.decay), self.constants(n, v))
+            return np.zeros(count), push / self.k_volume, now
+        c = self.measures(x) - self.start
+        decay = self.decay[:, None]
+        self.creep = decay * self.creep + (1 - decay) * self.last + np.outer(1 - self.mean, c - self.last)
+        self.last = c
+        longer = self.shares @ self.creep
+        return longer[:count], longer[count:], np.empty(0)
+
 
 
 def settle(advance, energy, damp, periods):
@@ -115,7 +196,7 @@ has_hinges = "hinges" in net
 step = setting["step"] / setting["substeps"] if setting else (2 if has_hinges else 0.5) * float(net["dt_max"])  # s
 
 
-def build(material=None):
+def build(material=None, memory=None):
     """The model, to which more may be added; or Newton's own finite elements of the same tetrahedra, of material (E, nu)."""
     builder = newton.ModelBuilder(gravity=tuple(net["gravity"].tolist()))
     mass = masses.copy()
@@ -128,12 +209,16 @@ def build(material=None):
         for corners in net["tets"].tolist():
             builder.add_tetrahedron(*corners, mu, lam, 0.0)
         return builder
-    builder.spring_indices.extend(springs.ravel().tolist())
-    builder.spring_rest_length.extend(rest.tolist())
-    builder.spring_stiffness.extend(k.tolist())
-    builder.spring_damping.extend([0.0] * len(springs) if setting else net["damper"].tolist())
-    builder.spring_control.extend([0.0] * len(springs))
-    for corners, constant, at_rest in zip(volumes, k_volume, rest_volume):
+    # What a body remembers has springs of rest length zero beside its own, and constants of its own.
+    branch = memory.edges.tolist() if memory else []
+    more = [0.0] * len(branch)
+    builder.spring_indices.extend(springs.ravel().tolist() + sum(branch, []))
+    builder.spring_rest_length.extend(rest.tolist() + more)
+    builder.spring_stiffness.extend((memory.k if memory else k).tolist() + more)
+    builder.spring_damping.extend(([0.0] * len(springs) if setting else net["damper"].tolist()) + more)
+    builder.spring_control.extend([0.0] * (len(springs) + len(branch)))
+    of_volumes = (memory.k_volume, memory.rest_volume) if memory else (k_volume, rest_volume)
+    for corners, constant, at_rest in zip(volumes, *of_volumes):
         x = points[corners]
         edges = (x[1:] - x[0]).T
         scale = (at_rest / (np.linalg.det(edges) / 6)) ** (1 / 3)
@@ -164,21 +249,33 @@ def solver_of(model, material=None):
 
 
 class Motion:
-    """The body in motion under forces on its points, [points, 3], N, by the solver of the network, elements by the explicit one."""
+    """The body in motion under forces on its points, [points, 3], N, by the solver of the network, elements by the explicit one. One that
+    has relaxed keeps the stiffness that is left."""
 
-    def __init__(self, material=None, forces=None):
+    def __init__(self, material=None, forces=None, has_relaxed=False):
         self.forces = forces
         self.step = 0.5 * float(net["dt_max"]) if material else step
-        model = build(material).finalize()
-        self.solver, self.control = solver_of(model, material), model.control()
+        forgets = "relaxation_time" in net and not material
+        self.memory = Memory(net, None if has_relaxed else self.step) if forgets else None
+        model = build(material, self.memory).finalize()
+        self.model, self.solver, self.control = model, solver_of(model, material), model.control()
         self.now, self.after = model.state(), model.state()
 
     def advance(self):
         self.now.clear_forces()
         if self.forces is not None:
             self.now.particle_f.assign(self.forces)
+        if self.memory and not self.memory.is_relaxed:
+            self.remember()
         self.solver.step(self.now, self.after, self.control, None, self.step)
         self.now, self.after = self.after, self.now
+
+    def remember(self):
+        longer, larger, constants = self.memory.step(self.positions())
+        self.model.spring_rest_length.assign(np.float32(np.concatenate([rest + longer, np.zeros_like(constants)])))
+        self.model.spring_stiffness.assign(np.float32(np.concatenate([self.memory.k, constants])))
+        if len(volumes):
+            self.control.tet_activations.assign(np.float32(-larger / self.memory.rest_volume))
 
     def positions(self):
         return self.now.particle_q.numpy().astype(float)
@@ -189,7 +286,7 @@ class Motion:
 
 def come_to_rest(material=None, forces=None):
     """Positions at rest."""
-    body = Motion(material, forces)
+    body = Motion(material, forces, has_relaxed=True)
     weight = masses.copy()
     weight[net["fixed"]] = 0.0
     energy = lambda: float(weight @ np.sum(body.velocities() ** 2, axis=1))

@@ -9,7 +9,8 @@
     --substeps N, --iterations N, --step S   in place of the setting in network.json; --single counts in single precision
 
 What was converted: a spring of constant k is a constraint of compliance 1/k on a length, an area, a volume or the angle of a hinge with
-the rest measure of the spring. Constraints that follow each other and share no point are corrected at once, which changes nothing.
+the rest measure of the spring. Where stress relaxes, a spring has dashpots in series, one for each term of the share g and the
+time tau, which has lengthened by w: it pulls as k (C - sum of g w). Constraints that follow each other and share no point are corrected at once, which changes nothing.
 """
 import argparse
 import json
@@ -59,7 +60,7 @@ def measures(kind, x):
 
 
 class Body:
-    def __init__(self, net, setting, forces, real):
+    def __init__(self, net, setting, forces, real, is_relaxed=False):
         self.h = real(setting["step"] / setting["substeps"])
         self.iterations, self.relaxation = setting["iterations"], real(setting["relaxation"])
         self.is_jacobi = setting["sweep"] == "jacobi"
@@ -70,6 +71,18 @@ class Body:
             self.w[point, axis] = 0
         self.pull = np.where(self.w > 0, np.array(net["gravity"], real) + self.w * np.asarray(forces, real), 0)
         self.batches = list(batches(net["constraints"], real))
+        self.share, time = np.array(net.get("relaxation", []), real).reshape(-1, 2).T
+        if is_relaxed:
+            self.left, self.share = 1 - self.share.sum(), self.share[:0]
+            if not self.left > 1e-6:
+                misuse('--rest: expected "a body of which some stress remains", found "one that relaxes wholly"')
+        else:
+            # The exponential rule: exact for stretches that change evenly over a substep. What relaxes in it makes springs softer.
+            self.decay = np.exp(-self.h / time)
+            self.mean = -np.expm1(-self.h / time) * time / self.h
+            self.left = 1 - self.share @ (1 - self.mean)
+        self.last = [np.zeros_like(rest) for *_, rest in self.batches]
+        self.creep = [np.zeros((len(self.share), len(rest)), real) for *_, rest in self.batches]
 
     def substep(self):
         """Points fly under the forces, the sweeps correct where they are, and velocities follow from where they have come."""
@@ -77,18 +90,26 @@ class Body:
         self.v += self.h * self.pull
         self.x += self.h * self.v
         multipliers = [np.zeros_like(rest) for *_, rest in self.batches]
+        # At the end of the substep w is what is kept here, and (1 - mean) C.
+        kept = self.creep
+        if len(self.share):
+            kept = [self.decay[:, None] * w + np.outer(self.mean - self.decay, last) for w, last in zip(self.creep, self.last)]
+        shifts = [self.share @ w / self.left for w in kept]
         for _ in range(self.iterations):
-            self.sweep(multipliers)
+            self.sweep(multipliers, shifts)
         self.v = (self.x - old) / self.h
+        if len(self.share):
+            self.last = [measures(kind, self.x[points])[0] - rest for kind, points, _, rest in self.batches]
+            self.creep = [w + np.outer(1 - self.mean, last) for w, last in zip(kept, self.last)]
 
-    def sweep(self, multipliers):
+    def sweep(self, multipliers, shifts):
         """Corrects each constraint once. Gauss-Seidel sees what the constraints before have moved, Jacobi the positions before the sweep."""
         x = self.x.copy() if self.is_jacobi else self.x
-        for (kind, points, compliance, rest), multiplier in zip(self.batches, multipliers):
+        for (kind, points, compliance, rest), multiplier, shift in zip(self.batches, multipliers, shifts):
             w = self.w[points]
             measure, g = measures(kind, x[points])
-            violation = measure - rest
-            softness = compliance / self.h**2
+            violation = measure - rest - shift
+            softness = compliance / (self.left * self.h**2)
             stiffness = np.sum(w * g * g, axis=(1, 2))
             # The step of Newton's method for violation + softness * multiplier = 0.
             step = -self.relaxation * (violation + softness * multiplier) / (stiffness + softness)
@@ -185,7 +206,7 @@ if __name__ == "__main__":
     arguments.add_argument("--single", action="store_true")
     given = arguments.parse_args()
     net = read(Path(__file__).parent / "network.json")
-    body = Body(net, setting_of(net, given), forces_of(net, given.load), np.float32 if given.single else np.float64)
+    body = Body(net, setting_of(net, given), forces_of(net, given.load), np.float32 if given.single else np.float64, bool(given.rest))
     start, steps = body.x.copy(), round(given.seconds / body.h)
     if given.rest:
         steps = body.settle()
