@@ -78,8 +78,9 @@ class Mesh:
             is in ``groups`` as well has these cells and those points.
         elements: Element files, or elements, that names of ``cells`` mean before the shipped ones.
         below: What becomes of cells whose quality is below ``least``: "warn" (the default) gives a warning with the worst of them, "refuse"
-            an error, and "skip" leaves them out. Cells that are flat or tangled, repeat another or are folded over their neighbours are
-            left out with "skip" and an error otherwise.
+            an error, and "skip" leaves them out. Cells that are flat or tangled, repeat another or, where some cells are numbered in
+            reverse, are folded over their neighbours are left out with "skip" and an error otherwise. Cells that lie on each other and
+            are numbered alike are not looked for.
         least: The least quality, from 0 for flat to 1 for right angles; 1e-4 if None.
 
     A warning tells when points belong to no cell that is left, as the others are numbered anew without them.

@@ -317,20 +317,3 @@ fn the_stress_of_a_pulled_lattice_is_a_tension() {
     let stress: Vec<f64> = found["tension"]["stress"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).collect();
     assert!((stress[0] - 10.0).abs() < 1e-9 && (stress[1] - 10.0).abs() < 1e-9 && stress[2].abs() < 1e-9, "{stress:?}");
 }
-
-/// Cells on the same side of what they share lie on each other, in whatever order their nodes are listed.
-#[test]
-fn cells_that_lie_on_each_other_are_refused() {
-    let text =
-        "[mesh]\nfile = \"m.vtk\"\nscale = 1\n[material]\nyoung = 1e5\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
-    for (second, is_refused) in [("0 1 3", true), ("1 0 3", true), ("1 3 2", false)] {
-        let vtk = format!(
-            "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n\
-             CELLS 2 8\n3 0 1 2\n3 {second}\nCELL_TYPES 2\n5\n5\n"
-        );
-        let folder = folder_with(&[("m.vtk", vtk), ("s.toml", text.to_string())]);
-        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
-        assert_eq!(output.status.code() == Some(2), is_refused, "{second}: {}", said(&output));
-        assert_eq!(said(&output).contains("folded over"), is_refused, "{second}: {}", said(&output));
-    }
-}

@@ -306,8 +306,9 @@ impl<'a> Statics<'a> {
                 return Ok((history, ForceBalance::Exact));
             }
             let hidden = is_hidden(&now, &rest);
-            // A body that is moved as a whole has no forces: all that is left of them is their rounding.
-            let has_no_forces = form == Form::Displacement && acting <= RIGID * now.rounding;
+            // A body without a load that is moved as a whole has no forces: all that is left of them is their rounding.
+            let is_unloaded = norm(&applied) == 0.0 && norm(tension) == 0.0;
+            let has_no_forces = is_unloaded && form == Form::Displacement && acting <= RIGID * now.rounding;
             let rounded = match hidden && (has_no_forces || now.rounding <= ROUGHEST * acting) {
                 true => ForceBalance::Rounded,
                 false => ForceBalance::None,

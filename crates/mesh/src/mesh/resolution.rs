@@ -14,9 +14,6 @@ use crate::stiffness::{Fault, Geometry, Placement};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
-/// Neighbours of all cells are compared in meshes of so many cells: it takes some milliseconds. More rarely lie on each other where all are numbered alike.
-const ALWAYS_LOOKED_AT: usize = 20_000;
-
 impl Mesh {
     /// Gives each cell of a file its element: one of `own` if it serves the cell type, otherwise a shipped one.
     /// Coordinates are multiplied by `scale`, in metres per mesh unit. Cells of poor quality, points at the same
@@ -204,20 +201,17 @@ impl Mesh {
         }
     }
 
-    /// Reverses reversed cells. Cells that are folded over their neighbours are refused or removed, in larger meshes only if some cells are reversed and
-    /// others are not.
+    /// Reverses reversed cells. If only some cells are reversed, those that are folded over their neighbours are
+    /// refused or removed.
     fn settle_orientation(&mut self, skip: bool) -> Result<()> {
         let turned = self.orient(skip)?;
         let of_body: usize = self.body_blocks().map(|(_, block)| block.cells().len()).sum();
-        let is_mixed = !turned.is_empty() && turned.len() < of_body;
-        // The middle of a curved cell may be beyond the plane of its side.
-        let is_linear = || self.blocks.iter().all(|block| block.element.has_corners_alone());
-        if !is_mixed && (self.cell_count() > ALWAYS_LOOKED_AT || !is_linear()) {
+        if turned.is_empty() || turned.len() == of_body {
             return Ok(());
         }
         let folded = self.folded();
         if folded.is_empty() {
-            self.quality.turned = is_mixed.then(|| self.named(&turned));
+            self.quality.turned = Some(self.named(&turned));
             return Ok(());
         }
         if !skip {
