@@ -387,7 +387,7 @@ fn scenes_have_rods_that_bend() {
         let u = answer("density = 1000\nbending = \"rod\"", &load).unwrap();
         agree(&tip(&u), &[0.0, 0.0, -weight / (8.0 * bend)], 1e-9, "weight");
     }
-    // Of a moment on a joint that is clamped nothing is left.
+    // A joint that is clamped takes no part of a moment.
     let on_foot = format!("{CLAMPED}[[load]]\nname = \"m\"\nwhere = \"x < 0.2\"\nmoment = [0, -1e-3, 0]\n");
     let outcome = run(&scene(folder.path(), "bending = \"rod\"", &on_foot).unwrap(), &mut |_| {}).unwrap();
     let told = outcome.of_loads.iter().any(|note| note.starts_with("50 % of the moment of m acts on joints"));

@@ -179,7 +179,7 @@ fn a_density_of_no_solid_is_told() {
     }
 }
 
-/// Triangles of a clamped plate that are too large are told of, with about the error that they have.
+/// A note tells of triangles of a clamped plate that are too large, with about the error that they cause.
 #[test]
 fn large_triangles_of_a_sheet_are_told() {
     // Clamped and pressed: 0.00126 q a⁴/D in the middle (Timoshenko and Woinowsky-Krieger, table 35, for ν = 0.3).
@@ -223,7 +223,7 @@ fn large_triangles_of_a_sheet_are_told() {
     }
 }
 
-/// A condition of a material or of a weight that ends within cells is told of, and one that ends between them is not.
+/// A note tells of a condition of a material or of a weight that ends within cells, and of none that ends between cells.
 #[test]
 fn conditions_that_cut_cells_of_a_material_are_told() {
     for (at, is_told) in [(0.03, false), (0.0325, true)] {

@@ -136,7 +136,7 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
         Action::Force(force) => {
             let weights = match part.carrier(mesh)? {
                 Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),
-                Carrier::Cells(cells) if RodLoad::of(mesh).is_some() => {
+                Carrier::Cells(cells) if RodLoad::is_of(mesh) => {
                     let total: f64 = contents_of(mesh, &cells, thickness).iter().sum();
                     let even: Vec<Component> = force.iter().map(|f| Component::Constant(f / total)).collect();
                     return Ok(body_forces(mesh, &cells, &Values::of(&even), thickness));

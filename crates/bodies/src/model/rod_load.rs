@@ -21,10 +21,14 @@ pub(super) struct RodLoad<'a> {
 }
 
 impl<'a> RodLoad<'a> {
+    /// Whether the lines of a mesh are rods that bend.
+    pub fn is_of(mesh: &Mesh) -> bool {
+        mesh.directors.is_some() && mesh.cell_dimension() == 1
+    }
+
     /// No load, on a mesh whose lines are rods that bend; `None` on any other.
     pub fn of(mesh: &'a Mesh) -> Option<RodLoad<'a>> {
-        let bends = mesh.directors.is_some() && mesh.cell_dimension() == 1;
-        bends.then(|| RodLoad {
+        RodLoad::is_of(mesh).then(|| RodLoad {
             mesh,
             forces: vec![0.0; mesh.points.len()],
             moments: vec![[0.0; 3]; mesh.node_count()],

@@ -309,13 +309,11 @@ impl<'a> Statics<'a> {
             // A body without a load that is moved as a whole has no forces: all that is left of them is their rounding.
             let is_unloaded = norm(&applied) == 0.0 && norm(tension) == 0.0;
             let has_no_forces = is_unloaded && form == Form::Displacement && acting <= RIGID * now.rounding;
-            let rounded = match hidden && (has_no_forces || now.rounding <= ROUGHEST * acting) {
-                true => ForceBalance::Rounded,
-                false => ForceBalance::None,
-            };
-            if has_no_forces && rounded == ForceBalance::Rounded {
-                return Ok((history, rounded));
+            if hidden && has_no_forces {
+                return Ok((history, ForceBalance::Rounded));
             }
+            let rounded =
+                if hidden && now.rounding <= ROUGHEST * acting { ForceBalance::Rounded } else { ForceBalance::None };
             let following = forces.stiffness(model.points, u, load);
             let Some((step, shift)) = direction(&now.response.tangent, &following, moves, &rest, known)? else {
                 return Ok((history, rounded));

@@ -1,7 +1,7 @@
 //! Whether the triangles of a sheet that bends are small enough for its loads.
 
 use super::case::Case;
-use super::truth::{Level, affordable};
+use super::truth::{Allowance, Level};
 use crate::analysis::metrics::displacement_error;
 use crate::mesh::Mesh;
 use crate::study::outcome::Standard;
@@ -10,7 +10,7 @@ use crate::study::scene::Scene;
 
 /// What triangles of half the size leave of the error: they are of second order.
 const LEFT: f64 = 0.25;
-/// An error that is told, in percent of the largest displacement.
+/// A note says so from this error on, in percent of the largest displacement.
 const TOLD: f64 = 5.0;
 
 /// Says under which loads the finite elements of a sheet differ much from those on halved triangles, as far as these take no longer than a reference may.
@@ -29,7 +29,7 @@ pub fn judge_sheet<'a>(
         return None;
     }
     // A sheet whose triangles cannot be halved has no other note: its own answers are there.
-    let finer = affordable(scene, mesh, (cases.len(), 1), || scene.build_refined()).ok().flatten()?;
+    let finer = Allowance::of(scene, mesh, cases.len()).afford(1, || scene.build_refined()).ok().flatten()?;
     let level = Level::solve(scene, &finer, Standard::FinerBody, "halved triangles", progress).ok()?;
     let nodes = mesh.node_count() * mesh.dimension;
     let apart = |(own, finer): (&Vec<f64>, &[f64])| {

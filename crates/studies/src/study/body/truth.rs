@@ -78,9 +78,9 @@ pub fn judge_by_truth(
         );
         (!is_told).then_some(words)
     };
-    let loads = cases.len();
+    let allowance = Allowance::of(scene, mesh, cases.len());
     let mut level = |halvings: u32, finer: &dyn Fn() -> Result<Mesh>, standard: Standard| -> Result<Option<Level>> {
-        let finer = affordable(scene, mesh, (loads, halvings), finer)?;
+        let finer = allowance.afford(halvings, finer)?;
         finer.map(|finer| Level::solve(scene, &finer, standard, "quadratic elements", progress)).transpose()
     };
     let first = level(1, &|| mesh.elevated(), Standard::Quadratic);
@@ -127,23 +127,37 @@ pub fn judge_by_truth(
     notes
 }
 
-/// A finer mesh of the body, with about as many points as this one has after so many halvings, if its answers to the loads take at most what a reference may.
-///
-/// # Errors
-/// The finer mesh cannot be made.
-pub(super) fn affordable(
-    scene: &Scene,
-    mesh: &Mesh,
-    (loads, halvings): (usize, u32),
-    finer: impl FnOnce() -> Result<Mesh>,
-) -> Result<Option<Mesh>> {
-    let growth = 1usize << (mesh.cell_dimension() as u32 * halvings);
-    if growth * mesh.point_count() > MOST_POINTS {
-        return Ok(None);
+/// What the answers of a finer mesh of a body may take.
+pub(super) struct Allowance {
+    /// The points of the mesh that is to be compared, and the factor by which a halving of its cells multiplies them.
+    points: usize,
+    growth: usize,
+    loads: usize,
+    /// Operations; none are counted where even a mesh of halved cells has too many points.
+    operations: f64,
+}
+
+impl Allowance {
+    /// The allowance of this number of loads on a mesh, for comparing it.
+    pub(super) fn of(scene: &Scene, mesh: &Mesh, loads: usize) -> Allowance {
+        let (points, growth, networks) = (mesh.point_count(), 1 << mesh.cell_dimension(), scene.fits().len());
+        let operations = match growth * points > MOST_POINTS {
+            true => 0.0,
+            false => UNNOTICED.max(DEAREST * work(mesh, 1 + networks, loads, networks)),
+        };
+        Allowance { points, growth, loads, operations }
     }
-    let networks = scene.fits().len();
-    let allowed = UNNOTICED.max(DEAREST * work(mesh, 1 + networks, loads, networks));
-    Ok(Some(finer()?).filter(|finer| work(finer, 1, loads, 0) <= allowed))
+
+    /// A finer mesh, with about as many points as the mesh has after so many halvings, if its answers take no more.
+    ///
+    /// # Errors
+    /// The finer mesh cannot be made.
+    pub(super) fn afford(&self, halvings: u32, finer: impl FnOnce() -> Result<Mesh>) -> Result<Option<Mesh>> {
+        if self.growth.pow(halvings) * self.points > MOST_POINTS {
+            return Ok(None);
+        }
+        Ok(Some(finer()?).filter(|finer| work(finer, 1, self.loads, 0) <= self.operations))
+    }
 }
 
 /// Makes the errors of a load unknown.

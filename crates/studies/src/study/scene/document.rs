@@ -274,17 +274,20 @@ impl Scene {
     /// # Errors
     /// The file or an element is wrong, or a cell has no volume; or a mesh that is to bend is no surface of triangles.
     pub fn build_mesh(&self) -> Result<Mesh> {
-        let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
-        self.bent(mesh)
+        self.bent(self.unbent()?)
     }
 
     /// Reads or generates the mesh with halved cells, whose first points are those of [`Self::build_mesh`].
     ///
     /// # Errors
-    /// Those of [`Self::build_mesh`], or a cell cannot be divided.
+    /// The mesh is wrong as in [`Self::build_mesh`], or a cell cannot be divided.
     pub fn build_refined(&self) -> Result<Mesh> {
-        let mesh = self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))?;
-        self.bent(mesh.refined()?)
+        self.bent(self.unbent()?.refined()?)
+    }
+
+    /// The mesh of the file or the generated one, without the directors by which sheets and rods bend.
+    fn unbent(&self) -> Result<Mesh> {
+        self.mesh.build(self.path(), &|mesh| self.choose(mesh)).map_err(|e| self.with_line(e))
     }
 
     /// The names of the regions of a material map of this scene, in their order.
