@@ -82,6 +82,14 @@ SHEETS = [
 # The angular momentum that one step of a bent hinge makes in each solver of Newton, of the largest of its four points: below this bound it balances, above the
 # second it does not. VBD ends its sweeps early.
 BALANCES, SPINS = 0.1, 0.3
+# Bodies whose stress relaxes, in motion in explicit steps: program, network and bound. Newton counts in 32 bits.
+RELAXING = [
+    ("npz", "exact", 1e-8),
+    ("newton", "exact", 1e-3),
+    ("blender", "exact", 1e-8),
+    ("newton", "classical", 1e-3),
+    ("blender", "classical", 1e-8),
+]
 # What programs do not hold, and a word of the line that says so.
 REFUSED = [
     ("lammps", "exact", "between two points"),
@@ -451,6 +459,86 @@ def sheets(given, missing):
     return rows, wrong
 
 
+# Moves the body of a script in steps of its own, and writes where it is.
+MOVES = {
+    "newton": """
+import runpy, sys, numpy as np
+body = runpy.run_path("run.py", run_name="springfit")["Motion"]()
+for _ in range(int(sys.argv[1])):
+    body.advance()
+np.save("positions.npy", body.positions())
+""",
+    "blender": """
+import runpy, sys, numpy as np
+made = runpy.run_path("run.py", run_name="springfit")
+made["remember"](made["step"])
+x, v = made["points"], np.zeros_like(made["points"])
+for _ in range(int(sys.argv[1])):
+    x, v = made["advance"](x, v)
+np.save("positions.npy", x)
+""",
+}
+# Seconds of motion: more than the times of both terms.
+MOVES_FOR = 0.3
+
+
+def relaxing(given, missing):
+    """The table of bodies whose stress relaxes, and what is wrong. The reference of the exact network is the motion of the program, by the mean of
+    the points that it watches; that of classical springs, which the program moves with small displacements alone, is the loop in NumPy."""
+    rows = ["| program | version | network | steps | error, % | bound, % |", "|---|---|---|---|---|---|"]
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        scene = (Path(__file__).parent / "creep.toml").read_text()
+        (folder / "exact.toml").write_text(scene)
+        springs = scene.replace('"exact"', '"offdiag"\nnonnegative = true').replace("law ", "# ").replace("duration ", "linear = true\nduration ")
+        for share in ["0.5", "0.2"]:
+            springs = springs.replace(f"shear = {share},", f"shear = {share}, bulk = {share},")
+        (folder / "classical.toml").write_text(springs)
+        nets, found = {}, {}
+        # The classical network gives way under the whole weight.
+        for name, gravity in [("exact", "3 0 -9.81"), ("classical", "0.3 0 -1")]:
+            run([given.springfit, "run", folder / f"{name}.toml", "--out", folder / name])
+            [path] = [path for path in (folder / name).glob("*.json") if path.stem != "report"]
+            nets[name] = equilibrium.read(path)
+            step = 0.5 * nets[name]["largest_step"]
+            count = round(MOVES_FOR / step)
+            for target in ["npz", "newton", "blender"]:
+                run([given.springfit, "export", path, "--to", target, "--gravity", gravity, "--out", folder / name / target])
+            run([sys.executable, "run.py", "--time", repr(count * step), "--step", repr(step)], folder / name / "npz")
+            found[name] = np.load(folder / name / "npz" / "positions.npy")
+            if name == "exact":
+                setting = ["--set", f"motion.step={step!r}", "--set", f"motion.duration={count * step!r}", "--set", f"motion.every={count * step!r}"]
+                run([given.springfit, "run", folder / "exact.toml", *setting, "--out", folder / "moved"])
+                motion = json.loads((folder / "moved" / "report.json").read_text())["motion"]
+                moved = np.array(next(model for model in motion if model["name"] == "exact")["watched"][-1])
+        for target, name, bound in RELAXING:
+            number = "" if target == "npz" else version(target, given.blender)
+            if number is None:
+                missing.append(f"{target} with stress that relaxes, {name}")
+                continue
+            net, points = nets[name], np.array(nets[name]["points"])
+            count = round(MOVES_FOR / (0.5 * net["largest_step"]))
+            if target != "npz":
+                python = given.blender if target == "blender" else sys.executable
+                try:
+                    run([python, "-c", MOVES[target], count], folder / name / target)
+                except RuntimeError as error:
+                    wrong.append(f"{target} with stress that relaxes, {name}: {error}")
+                    continue
+            own = np.load(folder / name / target / "positions.npy")
+            if name == "exact":
+                top = points[:, 2] > points[:, 2].max() - 1e-9
+                error = 100 * np.linalg.norm((own - points)[top].mean(axis=0) - moved) / np.linalg.norm(moved)
+            else:
+                error = percent(own, found[name], net)
+            rows.append(f"| {target} | {number} | {name} | {count} | {error:#.2g} | {bound:g} |")
+            print(rows[-1], flush=True)
+            if not error <= bound:
+                wrong.append(f"{target} with stress that relaxes, {name}: {error:.2g} % is more than {bound:g} %")
+    return rows, wrong
+
+
 # A hinge of two unequal triangles, bent by 0.2 rad, that nothing holds, in one step of 0.01 s of a solver of Newton.
 HINGE = """
 import json, sys, numpy as np, newton
@@ -557,6 +645,8 @@ def main():
     failed.extend(wrong)
     hinged, wrong = sheets(given, missing)
     failed.extend(wrong)
+    creeping, wrong = relaxing(given, missing)
+    failed.extend(wrong)
     spins, wrong = balance(missing, given)
     failed.extend(wrong)
     beside = ["| body | largest displacement, um |", "|---|---|"]
@@ -577,7 +667,7 @@ def main():
         made = subprocess.run([str(word) for word in words], capture_output=True, text=True)
         if made.returncode != 2 or word not in made.stderr or Path("refused").exists():
             failed.append(f"{target} with {name} is not refused: {made.stderr}")
-    tables = "\n".join([*rows, "", *organs, "", *engines, "", *hinged, "", *spins, "", *beside]) + "\n"
+    tables = "\n".join([*rows, "", *organs, "", *engines, "", *hinged, "", *creeping, "", *spins, "", *beside]) + "\n"
     print("\n" + tables)
     if given.table:
         given.table.write_text(tables)

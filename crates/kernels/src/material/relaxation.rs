@@ -168,11 +168,14 @@ pub fn expect_strains(material: &MaterialMap) -> Result<()> {
     Ok(())
 }
 
-/// A solid, or a plane in plane strain, with these multiples of the shear modulus and of the bulk modulus.
+/// A solid, or a plane in plane strain, with these multiples of the shear modulus and of the bulk modulus; in any state, if they are alike.
 ///
 /// # Errors
 /// There is no such material.
 pub fn with_moduli(material: Material, shear: f64, bulk: f64) -> Result<Material> {
+    if shear == bulk {
+        return Material::new(shear * material.young(), material.poisson(), material.state());
+    }
     let Moduli { lambda, mu } = material.moduli();
     let thickness = material.thickness();
     let (k, mu) = ((lambda + mu * 2.0 / 3.0) / thickness * bulk, mu / thickness * shear);

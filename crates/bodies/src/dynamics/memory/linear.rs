@@ -22,7 +22,9 @@ impl RelaxingPart {
     /// # Errors
     /// The matrix does not fit into memory.
     pub fn new(entries: &Entries, dofs: usize, shares: Vec<f64>) -> Result<RelaxingPart> {
-        let lower: Vec<_> = entries.iter().map(|e| Triplet::new(e.row.max(e.col), e.row.min(e.col), e.val)).collect();
+        // Cells of other regions have zeros.
+        let own = entries.iter().filter(|e| e.val != 0.0);
+        let lower: Vec<_> = own.map(|e| Triplet::new(e.row.max(e.col), e.row.min(e.col), e.val)).collect();
         let matrix = SparseColMat::try_new_from_triplets(dofs, dofs, &lower).map_err(|e| {
             Error::new(format!("the stiffness matrix cannot be built: {e:?}")).of_kind(ErrorKind::Limit)
         })?;

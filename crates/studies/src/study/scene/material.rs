@@ -108,8 +108,8 @@ pub struct MaterialEntry {
     #[serde(default, deserialize_with = "distribution::optional_density")]
     #[schemars(schema_with = "distribution::density_schema")]
     pub density: Option<Distribution>,
-    /// Stress relaxes in a `[motion]`: the moduli are those against a sudden strain, and `relaxation` says what becomes of them. Without
-    /// a law it is the same in every entry of `[[material]]`.
+    /// Stress relaxes in a `[motion]`: the moduli are those against a sudden strain, and `relaxation` says what becomes of them. Entries of
+    /// `[[material]]` may relax unlike, or not at all.
     pub relaxation: Option<RelaxationEntry>,
     /// Loads are solved at large deformation with this law: the name of a shipped one, or a path relative to the scene that ends in
     /// `.toml`. It is there in every entry of `[[material]]` or in none.

@@ -84,7 +84,6 @@ impl MaterialEntries {
                 ("flexural", entry.flexural == first.flexural),
                 ("torsional", entry.torsional == first.torsional),
                 ("rest", entry.rest == first.rest),
-                ("relaxation", entry.law.is_some() || entry.relaxation == first.relaxation),
             ];
             if let Some((key, _)) = alike.into_iter().find(|(_, is_same)| !is_same) {
                 let expected = format!("that of {}", self.key(0));

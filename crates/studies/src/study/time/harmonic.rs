@@ -3,7 +3,7 @@
 //! Theory: page *Springs that forget* of the book.
 
 use super::motion::Planned;
-use super::relaxing::{HarmonicPart, Relaxing, Share};
+use super::relaxing::{Relaxing, RelaxingStiffness, Share};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, Hooke, Material, Moduli, State};
 use crate::mesh::Mesh;
@@ -44,7 +44,7 @@ pub(super) fn dynamic_moduli(
         return Err(Error::expected("dynamic_moduli", expected, found).of_kind(ErrorKind::Unsupported));
     }
     let recipe = planned.map(|planned| &planned.recipe);
-    let uniform = |entries: Entries| vec![HarmonicPart { entries, share: Share::Elastic }];
+    let uniform = |entries: Entries| vec![RelaxingStiffness { entries, share: Share::Elastic }];
     let stress = Stresses::of(mesh, outcome);
     let mut models = Vec::new();
     let count = outcome.fits.len() + 1;
@@ -97,9 +97,9 @@ fn coefficient(share: Share, relaxing: Option<&Relaxing>, beta: f64, w: f64) -> 
     relaxing.map_or(Complex::new(1.0, w * beta), |relaxing| relaxing.harmonic(share, beta, w))
 }
 
-fn damped(parts: Vec<HarmonicPart>, relaxing: Option<&Relaxing>, recipe: Option<&MotionRecipe>) -> Parts {
+fn damped(parts: Vec<RelaxingStiffness>, relaxing: Option<&Relaxing>, recipe: Option<&MotionRecipe>) -> Parts {
     let beta = beta(recipe);
-    let part = |HarmonicPart { entries, share }: HarmonicPart| {
+    let part = |RelaxingStiffness { entries, share }: RelaxingStiffness| {
         let relaxing = relaxing.cloned();
         let of: Coefficient = Box::new(move |w| coefficient(share, relaxing.as_ref(), beta, w));
         (entries, of)

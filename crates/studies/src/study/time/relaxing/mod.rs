@@ -1,0 +1,196 @@
+//! The models of a body whose stress relaxes: what is left of them, and what they remember.
+//!
+//! Theory: page *Springs that forget* of the book.
+
+mod parts;
+
+pub use parts::{RelaxingStiffness, Share};
+
+use crate::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, LinearMemory, Memory, RelaxingPart};
+use crate::error::{Error, ErrorKind, Result};
+use crate::fit::{ExactEnergy, ShearSprings};
+use crate::material::{
+    EnergyMap, Material, MaterialMap, Relaxation, RelaxationTerm, expect_strains, relaxed_material, with_moduli,
+};
+use crate::mesh::Mesh;
+use crate::model::{MaterialPoints, Network, check_body, exact_network};
+use crate::study::fits::{ExactRecipe, NamedFit, Recipe};
+
+/// A body that relaxes.
+#[derive(Debug, Clone)]
+pub struct Relaxing {
+    /// The series of each region.
+    series: Vec<Option<Relaxation>>,
+    material: MaterialMap,
+    /// The material and the laws in which all that relaxes has relaxed, at large deformation.
+    rest: Option<(MaterialMap, EnergyMap)>,
+    /// Whether each point is held in all directions under every load.
+    held: Vec<bool>,
+}
+
+impl Relaxing {
+    /// A body of this material, with these laws at large deformation.
+    ///
+    /// # Errors
+    /// The material or a law does not relax so, or a fit does not serve it. Keys are those of `[material.relaxation]`.
+    pub fn new(
+        series: Vec<Option<Relaxation>>,
+        material: &MaterialMap,
+        laws: Option<&EnergyMap>,
+        fits: &[NamedFit],
+        held: Vec<bool>,
+    ) -> Result<Relaxing> {
+        let rest = laws.map(|laws| rest_of(&series, material, laws)).transpose()?;
+        let relaxing = Relaxing { series, material: material.clone(), rest, held };
+        if relaxing.rest.is_none() {
+            relaxing.expect_linear_terms()?;
+        }
+        for fit in fits {
+            let (serves, expected) = match (&fit.recipe, relaxing.rest.is_some()) {
+                (Recipe::Exact(recipe), true) => {
+                    let energy = recipe.energy.unwrap_or_default();
+                    let serves = energy == ExactEnergy::StableNeoHookean && recipe.positive.is_none();
+                    (serves, "exact networks of the stable neo-Hookean energy at large deformation")
+                }
+                (_, true) => (false, "exact networks of the stable neo-Hookean energy at large deformation"),
+                (Recipe::Sampled(_) | Recipe::Whole(_), false) => (
+                    relaxing.is_uniform() && relaxing.first().is_alike(),
+                    "one series of the whole body, whose shares of shear and bulk are alike, for fits to shapes or to the whole object",
+                ),
+                (Recipe::Stiffness(_) | Recipe::Published(_) | Recipe::Exact(_), false) => (true, ""),
+            };
+            if !serves || fit.engine.is_some() {
+                let expected = if serves { "fits without an engine" } else { expected };
+                let found = format!("the fit \"{}\"", fit.name);
+                return Err(Error::expected("terms", expected, found).of_kind(ErrorKind::Unsupported));
+            }
+        }
+        Ok(relaxing)
+    }
+
+    /// Checks that terms of a body without a law are linear, and that its stiffness can be divided into the parts that relax unlike.
+    fn expect_linear_terms(&self) -> Result<()> {
+        for series in self.series.iter().flatten() {
+            if let Some(term) = series.first_yield() {
+                let expected = "a material with a law: a branch that yields is not linear";
+                let error = Error::expected(format!("terms[{term}].yield"), expected, "none");
+                return Err(error.of_kind(ErrorKind::Unsupported));
+            }
+            if !series.is_alike() {
+                expect_strains(&self.material)?;
+            }
+        }
+        if !self.is_uniform() && self.material.materials().is_err() {
+            let expected = "isotropic materials where regions relax unlike";
+            return Err(Error::expected("terms", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported));
+        }
+        Ok(())
+    }
+
+    /// The series of the first region that relaxes.
+    fn first(&self) -> &Relaxation {
+        self.series.iter().flatten().next().expect("a body that relaxes has a series")
+    }
+
+    /// Whether all regions relax alike.
+    pub fn is_uniform(&self) -> bool {
+        self.series.windows(2).all(|pair| pair[0] == pair[1])
+    }
+
+    /// The terms, each with its region if regions relax unlike.
+    pub fn terms(&self) -> Vec<(Option<usize>, RelaxationTerm)> {
+        if self.is_uniform() {
+            return self.first().terms().iter().map(|term| (None, *term)).collect();
+        }
+        let of = |(region, series): (usize, &Option<Relaxation>)| -> Vec<(Option<usize>, RelaxationTerm)> {
+            series.iter().flat_map(Relaxation::terms).map(|term| (Some(region), *term)).collect()
+        };
+        self.series.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// The shortest relaxation time, s.
+    pub fn shortest(&self) -> f64 {
+        self.series.iter().flatten().map(Relaxation::shortest).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The laws of the finite elements in which all that relaxes has relaxed, at large deformation.
+    pub fn laws(&self) -> Option<&EnergyMap> {
+        self.rest.as_ref().map(|(_, laws)| laws)
+    }
+
+    /// What the finite elements remember, beside those of [`Relaxing::laws`] at large deformation.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory, or the mesh is a surface or a curve in space.
+    pub fn of_body(&self, mesh: &Mesh) -> Result<Memory> {
+        if self.rest.is_some() {
+            return self.branches(mesh, ShearSprings::Cells, BranchForm::Tensors);
+        }
+        check_body(mesh)?;
+        self.remembered(mesh, self.split_body(mesh)?)
+    }
+
+    /// What a network remembers, and at large deformation the network of what is left when all that relaxes has relaxed, which takes its place.
+    ///
+    /// # Errors
+    /// Its springs are not linear in the moduli, and shear and bulk do not relax alike; or the equations do not fit into memory.
+    pub fn of_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<(Option<Network>, Memory)> {
+        if let (Some((material, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
+            let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
+            let rest = exact_network(mesh, material, &exact, &self.held)?;
+            return Ok((Some(rest), self.branches(mesh, exact.shear, BranchForm::Edges)?));
+        }
+        Ok((None, self.remembered(mesh, self.split_network(mesh, fit, network)?)?))
+    }
+
+    fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
+        let points = MaterialPoints::of(mesh, &self.material, shear)?;
+        if !self.is_uniform() || self.first().first_yield().is_some() {
+            let terms = BranchTerm::of(&self.series);
+            return Ok(Memory::Flow(Box::new(FlowMemory::new(points, &mesh.points, &terms)?)));
+        }
+        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, self.first())?)))
+    }
+
+    /// What a linear model remembers: one state of the body for each relaxation time, whatever the regions that have it.
+    fn remembered(&self, mesh: &Mesh, parts: Vec<RelaxingStiffness>) -> Result<Memory> {
+        let mut times: Vec<f64> = Vec::new();
+        for term in self.series.iter().flatten().flat_map(Relaxation::terms) {
+            if !times.contains(&term.time) {
+                times.push(term.time);
+            }
+        }
+        let relaxing = |RelaxingStiffness { entries, share }| {
+            let (region, place) = share.place()?;
+            let terms = self.series[region].as_ref()?.terms();
+            let of_time = |time: &f64| {
+                terms.iter().filter(|term| term.time == *time).map(|term| [term.shear, term.bulk][place]).sum()
+            };
+            Some(RelaxingPart::new(&entries, mesh.points.len(), times.iter().map(of_time).collect()))
+        };
+        let parts: Result<Vec<RelaxingPart>> = parts.into_iter().filter_map(relaxing).collect();
+        let (parts, dofs) = (parts?, mesh.points.len());
+        Ok(Memory::Linear(LinearMemory::new(times, parts, dofs)?))
+    }
+}
+
+/// The material and the laws in which all that relaxes has relaxed.
+fn rest_of(
+    series: &[Option<Relaxation>],
+    material: &MaterialMap,
+    laws: &EnergyMap,
+) -> Result<(MaterialMap, EnergyMap)> {
+    let rest = relaxed_material(material, series)?;
+    let laws = laws.try_map_in(material.region(), |region, law, state| {
+        let Some(relaxation) = series.get(region).and_then(Option::as_ref) else { return Ok(law.clone()) };
+        let left = 1.0 - relaxation.sums()[0];
+        if law.has_fibres() || ExactEnergy::of_law(law) != Some(ExactEnergy::StableNeoHookean) {
+            let expected = "the law \"stable-neo-hookean\" in a material that relaxes";
+            return Err(
+                Error::expected("terms", expected, format!("\"{}\"", law.name())).of_kind(ErrorKind::Unsupported)
+            );
+        }
+        law.of(with_moduli(Material::new(law.young(), law.poisson(), state)?, left, 1.0)?, &[], None)
+    })?;
+    Ok((rest, laws))
+}
