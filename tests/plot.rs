@@ -240,6 +240,38 @@ fn an_exact_network_has_the_modulus_of_the_material_in_all_directions() {
     assert_eq!(plane.planes.len(), 1);
 }
 
+/// Storage and loss of each model and of the material; both are those of a standard linear solid, whose loss is largest at ω = 1/τ.
+#[test]
+fn moduli_over_frequency_are_curves_of_each_model() {
+    let text = r#"
+[mesh]
+box = { element = "tet4", size = [0.02, 0.02, 0.04], cells = [1, 1, 2] }
+[material]
+young = 10e3
+poisson = 0.3
+relaxation = { terms = [{ shear = 0.6, bulk = 0.6, time = 1 }] }
+[[fit]]
+objective = "exact"
+[output]
+dynamic_moduli = { frequency = [0.01, 0.15915494309189535, 10] }
+"#;
+    let run = folder_of(&Scene::parse(text, Path::new("scene.toml")).unwrap());
+    let chart = chart_of(Figure::DynamicModuli, &RunFolder::at(run.path()), None);
+    let names: Vec<&str> = chart.series.iter().map(|series| &*series.name).collect();
+    let expected =
+        ["finite elements", "exact", "material"].map(|name| [format!("{name}, storage"), format!("{name}, loss")]);
+    assert_eq!(names, expected.concat());
+    for pair in chart.series.chunks(2) {
+        for (i, frequency) in [0.01, 1.0 / std::f64::consts::TAU, 10.0].into_iter().enumerate() {
+            let x = (std::f64::consts::TAU * frequency).powi(2);
+            let [storage, loss] = [1.0 - 0.6 / (1.0 + x), 0.6 * x.sqrt() / (1.0 + x)].map(|share| 1e4 * share);
+            assert!((pair[0].points[i].1 / storage - 1.0).abs() < 1e-9, "{}", pair[0].name);
+            assert!((pair[1].points[i].1 / loss - 1.0).abs() < 1e-9, "{}", pair[1].name);
+        }
+    }
+    assert!(chart.svg(Columns::One).unwrap().contains("exact, loss"));
+}
+
 fn deformation(run: &RunFolder, of: &str, load: &str) -> Deformation {
     match Figure::Deformation.picture(run, Some(of), Some(load), None).unwrap() {
         Picture::Deformation(deformation) => *deformation,

@@ -395,6 +395,10 @@ fn wrong_settings_are_one_line() {
         ("{ method = \"xpbd\", sweeps = 3 }", "engine.sweeps: unknown field"),
         ("{ method = \"xpbd\", substeps = 1 }", "engine.substeps: expected at least"),
         ("{ method = \"newton-xpbd\", substeps = 1 }", "engine.substeps: expected"),
+        (
+            "{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.2 }",
+            "engine: expected sweeps with which a body that is let go comes to rest",
+        ),
         ("\"unity\"", "engine.method: expected one of xpbd, vbd, jolt"),
         ("3", "engine: invalid type: integer \"3\", expected a name such as"),
     ];

@@ -3,7 +3,7 @@
 //! Theory: page *Networks in engines* of the book.
 
 use super::model::TruncatedModel;
-use super::setting::{Setting, Sweep};
+use super::setting::Setting;
 use super::truncated::Truncated;
 use crate::error::Result;
 use crate::model::Support;
@@ -20,13 +20,13 @@ pub struct Ceiling {
 type Load<'a> = (&'a Support, &'a [f64], &'a [f64]);
 
 impl Ceiling {
-    /// The ceiling over these loads; `None` if the method has none (sweeps over points, or sweeps that take all springs at once,
-    /// which grow instead), some motion has no stiffness, or no load moves anything.
+    /// The ceiling over these loads; `None` if the method has none (sweeps over points, or sweeps that take all springs at once and
+    /// grow without compliance), some motion has no stiffness, or no load moves anything.
     ///
     /// # Errors
     /// The engine does not hold the network.
     pub fn of(model: TruncatedModel, loads: &[Load], setting: &Setting) -> Result<Option<Ceiling>> {
-        if setting.is_by_points() || setting.sweep == Sweep::Jacobi {
+        if setting.is_by_points() {
             return Ok(None);
         }
         let mut logarithms = Vec::new();

@@ -4,7 +4,7 @@
 
 use super::constraints::Constraints;
 use super::descents::Descents;
-use super::growth::check_growth;
+use super::growth::{check_growth, ends, motion_growth};
 use super::history::History;
 use super::krylov::gmres;
 use super::lanes::{Block, LANES, block, vectors};
@@ -70,8 +70,8 @@ impl Truncated {
         Truncated::prepare(model, support, setting, (false, 0))
     }
 
-    /// The largest effective stiffness of a setting, that of springs without compliance; `None` if some motion has no stiffness. Vertex block
-    /// descent has none.
+    /// The largest effective stiffness of a setting, that of springs without compliance; `None` if some motion has no stiffness, or sweeps that take
+    /// all such springs at once grow without bound. Vertex block descent has none.
     ///
     /// # Errors
     /// Those of [`Truncated::new`].
@@ -100,8 +100,12 @@ impl Truncated {
             true => Sweeps::Points(Descents::new(network, (points, &inverse), setting)?),
             false => {
                 let constraints = Constraints::new(network, (points, &inverse), setting, is_rigid);
-                if setting.sweep == Sweep::Jacobi && !is_rigid {
-                    check_growth(&constraints, (network, points, &inverse), setting)?;
+                if setting.sweep == Sweep::Jacobi {
+                    match is_rigid {
+                        true if !ends(&constraints, points.len()) => return Ok(None),
+                        true => {}
+                        false => check_growth(&constraints, (network, points, &inverse), setting)?,
+                    }
                 }
                 Sweeps::Springs(constraints)
             }
@@ -260,6 +264,12 @@ impl Truncated {
             total.iter_mut().zip(part).for_each(|(t, own)| *t -= own);
         }
         Ok(total)
+    }
+
+    /// The factor by which the motion of the body grows in each substep where nothing pushes it; `None` if it does not grow. Sweeps that take springs one
+    /// after the other, and do not correct more than they find, never let it grow.
+    pub fn growth(&self) -> Option<f64> {
+        motion_growth(|y| self.apply(y, false), &self.inverse, self.substep)
     }
 
     /// The lowest natural vibration in the engine, found by inverse iteration; `None` if it is not found.

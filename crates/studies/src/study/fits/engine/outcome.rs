@@ -29,12 +29,12 @@ pub struct EngineOutcome {
 pub struct EngineLimit {
     /// The constants are for these settings.
     pub setting: Setting,
-    /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd` and of `jacobi`, which reaches any
-    /// stiffness.
+    /// Springs without compliance make a body with this many times the modulus of this one; it is null of `vbd`, which reaches any stiffness, and of `jacobi`
+    /// where sweeps without compliance grow without bound.
     pub ceiling: Option<f64>,
     /// The largest Young's modulus is this in Pa; it is null where `ceiling` is, and of a body with several.
     pub modulus: Option<f64>,
-    /// The body can be represented with this number of substeps or more; it is null of `vbd` and of `jacobi`.
+    /// The body can be represented with this number of substeps or more; it is null where `ceiling` is.
     pub least_substeps: Option<usize>,
 }
 

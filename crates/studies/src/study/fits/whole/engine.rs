@@ -5,7 +5,7 @@
 use super::body::WholeBody;
 use super::entry::FEW;
 use super::recipe::{ValidationRecipe, WholeRecipe};
-use crate::engine::{Ceiling, Setting, Truncated, TruncatedModel, least_substeps};
+use crate::engine::{Ceiling, Setting, Sweep, Truncated, TruncatedModel, least_substeps};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::CellFits;
 use crate::model::Network;
@@ -133,6 +133,14 @@ impl WholeBody<'_> {
         };
         let model = TruncatedModel { network: &fitted.network, points: &self.mesh.points, masses };
         let truncated = Truncated::new(model, self.support, &setting)?.ok_or_else(unknown)?;
+        // Sweeps that take springs one after the other, and do not correct more than they find, damp all motions.
+        let may_grow = setting.sweep == Sweep::Jacobi || setting.relaxation > 1.0;
+        if let Some(growth) = may_grow.then(|| truncated.growth()).flatten() {
+            let expected = "sweeps with which a body that is let go comes to rest";
+            let found = format!("{}, with which each substep multiplies its motion by {growth:.2}", setting.words());
+            let advice = "; more substeps, less relaxation, or \"gauss-seidel\" without relaxation damp it";
+            return Err(Error::expected("engine", expected, found).followed_by(advice).of_kind(ErrorKind::Unsupported));
+        }
         let vibration = match truncated.lowest_vibration() {
             // The fit is not lost where its first vibration is not found.
             Err(error) if error.kind() == ErrorKind::Limit => None,
