@@ -24,6 +24,35 @@ fn all_elements_pass() {
     }
 }
 
+/// Elements of one dimension with many nodes, whose springs are more than the equations of their nodes, are fitted as those of the plane are.
+#[test]
+fn rods_of_many_nodes_pass() {
+    for count in [4, 5, 6] {
+        let at: Vec<f64> = (0..count).map(|i| -1.0 + 2.0 * i as f64 / (count - 1) as f64).collect();
+        let node = |i: usize| {
+            let others = at.iter().enumerate().filter(|(j, _)| *j != i);
+            let shape: Vec<String> = others.map(|(_, x)| format!("(s - ({x:?}))/({:?})", at[i] - x)).collect();
+            format!("    {{ at = [{:?}], shape = \"{}\" }},\n", at[i], shape.join("*"))
+        };
+        // Ends come first.
+        let order = [0, count - 1].into_iter().chain(1..count - 1);
+        let text = format!(
+            "name = \"bar\"\ncell = \"interval\"\ncoordinates = [\"s\"]\nnodes = [\n{}]\n[quadrature]\nrule = \"gauss-legendre\"\npoints = {count}\n\
+             [[springs]]\ngroup = \"all\"\nkind = \"length\"\nnodes = \"complete\"\n",
+            order.map(node).collect::<String>()
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("bar.toml");
+        std::fs::write(&file, text).unwrap();
+        let file = file.to_str().unwrap();
+        let inspection = inspect(file, Element::load(file));
+        for property in &inspection.properties {
+            assert!(property.mark != Mark::Fails, "{count}: {}: {}", property.name, property.finding);
+        }
+        assert!(inspection.properties.len() > 10, "{count}");
+    }
+}
+
 /// What fails in each file of `tests/wrong`.
 const WRONG: [(&str, &str, &str); 19] = [
     (

@@ -499,9 +499,9 @@ fn classical_fits_relax_by_linearity() {
 
 /// A column of three regions of 10 mm that cannot move across and is pulled by 0.02 N, quasi-static, with the keys of each region.
 fn layers(keys: [&str; 3], fits: &str, motion: &str) -> String {
-    let region =
-        |(at, keys): (usize, &str)| format!("[[material]]\nwhere = \"x < {}\"\n{keys}\n", 0.01 * (at + 1) as f64);
-    let regions: String = keys.into_iter().enumerate().map(region).collect();
+    let places = ["where = \"x < 0.01\"", "where = \"x > 0.01 && x < 0.02\"", ""];
+    let regions = places.into_iter().zip(keys).map(|(place, keys)| format!("[[material]]\n{place}\n{keys}\n"));
+    let regions: String = regions.collect();
     format!(
         r#"
 [mesh]

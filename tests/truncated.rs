@@ -395,8 +395,9 @@ fn wrong_settings_are_one_line() {
         ("{ method = \"xpbd\", sweeps = 3 }", "engine.sweeps: unknown field"),
         ("{ method = \"xpbd\", substeps = 1 }", "engine.substeps: expected at least"),
         ("{ method = \"newton-xpbd\", substeps = 1 }", "engine.substeps: expected"),
+        ("{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.2 }", "engine.substeps: expected at least"),
         (
-            "{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.2 }",
+            "{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.25, substeps = 20 }",
             "engine: expected sweeps with which a body that is let go comes to rest",
         ),
         ("\"unity\"", "engine.method: expected one of xpbd, vbd, jolt"),

@@ -1,7 +1,7 @@
 //! What would be done, with estimates of time and memory.
 
 use super::table::{Column, Table};
-use crate::study::Forecast;
+use crate::study::{EngineLimit, Forecast};
 use crate::text::{memory_in_words, printable, time_in_words};
 
 /// The sizes of the body, the stages with their estimates, and what is left out.
@@ -21,7 +21,7 @@ pub fn forecast_text(title: &str, forecast: &Forecast, stages: &[(String, Option
         };
     }
     for limit in &forecast.engines {
-        let words = limit.limit.words().unwrap_or("the method reaches any stiffness".into());
+        let words = limit.limit.words("the body").unwrap_or(EngineLimit::NONE.into());
         text += &format!("engine    {}: {words}\n", printable(&limit.fit));
     }
     let columns = vec![Column::words("expected"), Column::numbers("time"), Column::numbers("memory")];

@@ -37,8 +37,11 @@ impl<T> Default for Nodal<T> {
     }
 }
 
-/// Whether the equations of the nodes are fewer than those of the springs.
+/// Whether the equations of the nodes are fewer than those of the springs, in the plane or in space.
 pub fn is_shorter(springs: &Springs) -> bool {
+    if springs.dimension < 2 {
+        return false;
+    }
     let small = springs.nodes * springs.dimension * (springs.dimension + 1) / 2;
     !springs.need_matrix() && springs.parallel.is_empty() && 5 * small < 4 * springs.pairs.len()
 }

@@ -8,7 +8,7 @@ use super::recipe::Recipe;
 use super::sampled::{FitFunctions, SampledEntry};
 use super::stiffness::StiffnessEntry;
 use super::whole::{Start, WholeEntry, starts};
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::fit::Objective;
 use crate::fit::published::Method;
@@ -146,6 +146,11 @@ impl FitEntry {
     pub fn check(&self) -> Result<()> {
         // An unknown objective is reported when its kind is needed.
         let Ok(kind) = Kind::of(&self.objective) else { return Ok(()) };
+        // Fits of elements have these keys from elsewhere, or not at all.
+        if let Some(key) = COMMON.iter().find(|key| self.keys.contains_key(**key)) {
+            let problem = "belongs to a fit of a scene, which has the body, its masses and how it is held; found in a fit of elements alone";
+            return Err(Error::at(*key, problem).of_kind(ErrorKind::Unsupported));
+        }
         let known = match self.keys.keys().find(|key| owners(key).next().is_none()) {
             Some(key) => Err(kind.unknown(key)),
             None => Ok(()),

@@ -15,6 +15,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, State};
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Specimen, content, lumped_masses};
+use crate::study::fits::EngineLimit;
 use hull::Hull;
 use motions::{Motions, parts};
 
@@ -119,8 +120,12 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
         Some(setting) => {
             let (limit, words) = engine::engine_limit(specimen, young, setting)?;
             notes.push(match &limit {
-                Some(limit) => format!("for {}, {words}: {}", setting.words(), limit.words().unwrap_or_default()),
-                None => format!("for {}: the method reaches any stiffness", setting.words()),
+                Some(limit) => format!(
+                    "for {}, {words}: {}",
+                    setting.words(),
+                    limit.words("the network, as solved equations have it,").unwrap_or_default()
+                ),
+                None => format!("for {}: {}", setting.words(), EngineLimit::NONE),
             });
             limit
         }

@@ -49,8 +49,11 @@ pub struct FitLimit {
 }
 
 impl EngineLimit {
-    /// The limit in a sentence; `None` of a method that reaches any stiffness.
-    pub fn words(&self) -> Option<String> {
+    /// What is said where there is no ceiling.
+    pub const NONE: &str = "no stiffness is too large for the method, or its sweeps do not end without compliance, so that it has no ceiling";
+
+    /// The limit in a sentence, with the name of what has the modulus; `None` where there is no ceiling.
+    pub fn words(&self, of: &str) -> Option<String> {
         let ceiling = self.ceiling?;
         let modulus = self.modulus.map_or(String::new(), |modulus| format!(", {modulus:.3e} Pa"));
         let least = match self.least_substeps {
@@ -59,7 +62,7 @@ impl EngineLimit {
             None => "thousands of substeps are not enough".to_string(),
         };
         Some(format!(
-            "springs without compliance reach {ceiling:.2} times the modulus of the body in this engine{modulus}; {least} for this body"
+            "springs without compliance reach {ceiling:.2} times the modulus of {of} in this engine{modulus}; {least} for it"
         ))
     }
 }
@@ -113,7 +116,12 @@ impl EngineOutcome {
             percent(self.after),
             percent(self.before)
         )];
-        notes.extend(self.limit.words());
+        notes.extend(self.limit.words("the body"));
+        notes.push(
+            "the constants are for the engine alone: equations that are solved to the end, such as those of frequencies and moduli, \
+             find the network stiffer than the body by what the engine loses"
+                .into(),
+        );
         if let Some(factors) = &self.factors {
             let kinds = ["lengths", "contents"].iter().zip(factors);
             let words: Vec<String> = kinds.map(|(kind, factor)| format!("on {kind} by {factor:.4}")).collect();

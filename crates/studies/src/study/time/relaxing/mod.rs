@@ -9,23 +9,19 @@ pub use parts::{RelaxingStiffness, Share};
 use crate::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, LinearMemory, Memory, RelaxingPart};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{ExactEnergy, ShearSprings};
-use crate::material::{
-    EnergyMap, Material, MaterialMap, Relaxation, RelaxationTerm, expect_strains, relaxed_material, with_moduli,
-};
+use crate::material::{EnergyMap, Material, MaterialMap, Relaxation, RelaxationTerm, relaxed_material, with_moduli};
 use crate::mesh::Mesh;
-use crate::model::{MaterialPoints, Network, check_body, exact_network};
+use crate::model::{MaterialPoints, Network, check_body, exact_network, finite_elements};
 use crate::study::fits::{ExactRecipe, NamedFit, Recipe};
+use nalgebra::Complex;
+use parts::RelaxingBody;
 
 /// A body that relaxes.
 #[derive(Debug, Clone)]
 pub struct Relaxing {
-    /// The series of each region.
-    series: Vec<Option<Relaxation>>,
-    material: MaterialMap,
+    body: RelaxingBody,
     /// The material and the laws in which all that relaxes has relaxed, at large deformation.
     rest: Option<(MaterialMap, EnergyMap)>,
-    /// Whether each point is held in all directions under every load.
-    held: Vec<bool>,
 }
 
 impl Relaxing {
@@ -41,12 +37,12 @@ impl Relaxing {
         held: Vec<bool>,
     ) -> Result<Relaxing> {
         let rest = laws.map(|laws| rest_of(&series, material, laws)).transpose()?;
-        let relaxing = Relaxing { series, material: material.clone(), rest, held };
-        if relaxing.rest.is_none() {
-            relaxing.expect_linear_terms()?;
+        let body = RelaxingBody { series, material: material.clone(), held, is_large: rest.is_some() };
+        if rest.is_none() {
+            body.expect_linear_terms()?;
         }
         for fit in fits {
-            let (serves, expected) = match (&fit.recipe, relaxing.rest.is_some()) {
+            let (serves, expected) = match (&fit.recipe, rest.is_some()) {
                 (Recipe::Exact(recipe), true) => {
                     let energy = recipe.energy.unwrap_or_default();
                     let serves = energy == ExactEnergy::StableNeoHookean && recipe.positive.is_none();
@@ -54,7 +50,7 @@ impl Relaxing {
                 }
                 (_, true) => (false, "exact networks of the stable neo-Hookean energy at large deformation"),
                 (Recipe::Sampled(_) | Recipe::Whole(_), false) => (
-                    relaxing.is_uniform() && relaxing.first().is_alike(),
+                    body.is_uniform() && body.first().is_alike(),
                     "one series of the whole body, whose shares of shear and bulk are alike, for fits to shapes or to the whole object",
                 ),
                 (Recipe::Stiffness(_) | Recipe::Published(_) | Recipe::Exact(_), false) => (true, ""),
@@ -65,52 +61,28 @@ impl Relaxing {
                 return Err(Error::expected("terms", expected, found).of_kind(ErrorKind::Unsupported));
             }
         }
-        Ok(relaxing)
-    }
-
-    /// Checks that terms of a body without a law are linear, and that its stiffness can be divided into the parts that relax unlike.
-    fn expect_linear_terms(&self) -> Result<()> {
-        for series in self.series.iter().flatten() {
-            if let Some(term) = series.first_yield() {
-                let expected = "a material with a law: a branch that yields is not linear";
-                let error = Error::expected(format!("terms[{term}].yield"), expected, "none");
-                return Err(error.of_kind(ErrorKind::Unsupported));
-            }
-            if !series.is_alike() {
-                expect_strains(&self.material)?;
-            }
-        }
-        if !self.is_uniform() && self.material.materials().is_err() {
-            let expected = "isotropic materials where regions relax unlike";
-            return Err(Error::expected("terms", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported));
-        }
-        Ok(())
-    }
-
-    /// The series of the first region that relaxes.
-    fn first(&self) -> &Relaxation {
-        self.series.iter().flatten().next().expect("a body that relaxes has a series")
+        Ok(Relaxing { body, rest })
     }
 
     /// Whether all regions relax alike.
     pub fn is_uniform(&self) -> bool {
-        self.series.windows(2).all(|pair| pair[0] == pair[1])
+        self.body.is_uniform()
     }
 
     /// The terms, each with its region if regions relax unlike.
     pub fn terms(&self) -> Vec<(Option<usize>, RelaxationTerm)> {
-        if self.is_uniform() {
-            return self.first().terms().iter().map(|term| (None, *term)).collect();
+        if self.body.is_uniform() {
+            return self.body.first().terms().iter().map(|term| (None, *term)).collect();
         }
         let of = |(region, series): (usize, &Option<Relaxation>)| -> Vec<(Option<usize>, RelaxationTerm)> {
             series.iter().flat_map(Relaxation::terms).map(|term| (Some(region), *term)).collect()
         };
-        self.series.iter().enumerate().flat_map(of).collect()
+        self.body.series.iter().enumerate().flat_map(of).collect()
     }
 
     /// The shortest relaxation time, s.
     pub fn shortest(&self) -> f64 {
-        self.series.iter().flatten().map(Relaxation::shortest).fold(f64::INFINITY, f64::min)
+        self.body.series.iter().flatten().map(Relaxation::shortest).fold(f64::INFINITY, f64::min)
     }
 
     /// The laws of the finite elements in which all that relaxes has relaxed, at large deformation.
@@ -127,7 +99,7 @@ impl Relaxing {
             return self.branches(mesh, ShearSprings::Cells, BranchForm::Tensors);
         }
         check_body(mesh)?;
-        self.remembered(mesh, self.split_body(mesh)?)
+        self.remembered(mesh, self.body.split_body(mesh)?)
     }
 
     /// What a network remembers, and at large deformation the network of what is left when all that relaxes has relaxed, which takes its place.
@@ -137,32 +109,70 @@ impl Relaxing {
     pub fn of_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<(Option<Network>, Memory)> {
         if let (Some((material, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
             let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
-            let rest = exact_network(mesh, material, &exact, &self.held)?;
+            let rest = exact_network(mesh, material, &exact, &self.body.held)?;
             return Ok((Some(rest), self.branches(mesh, exact.shear, BranchForm::Edges)?));
         }
-        Ok((None, self.remembered(mesh, self.split_network(mesh, fit, network)?)?))
+        Ok((None, self.remembered(mesh, self.body.split_network(mesh, fit, network)?)?))
+    }
+
+    /// The finite elements in parts that resist harmonic strains.
+    ///
+    /// # Errors
+    /// There is no material with a part of the moduli.
+    pub fn harmonic_of_body(&self, mesh: &Mesh) -> Result<Vec<RelaxingStiffness>> {
+        match self.rest {
+            Some(_) => self.body.split(&finite_elements(mesh, self.body.material.moduli()), &|material| {
+                Ok(finite_elements(mesh, material.moduli()))
+            }),
+            None => self.body.split_body(mesh),
+        }
+    }
+
+    /// A network in parts that resist harmonic strains.
+    ///
+    /// # Errors
+    /// It fails as [`Relaxing::of_network`] does.
+    pub fn harmonic_of_network(
+        &self,
+        mesh: &Mesh,
+        fit: &NamedFit,
+        network: &Network,
+    ) -> Result<Vec<RelaxingStiffness>> {
+        if let (Some((_, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
+            let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
+            let made = |material: &MaterialMap| {
+                Ok(exact_network(mesh, material, &exact, &self.body.held)?.stiffness(&mesh.points))
+            };
+            return self.body.split(&made(&self.body.material)?, &made);
+        }
+        self.body.split_network(mesh, fit, network)
+    }
+
+    /// The complex coefficient of a part under harmonic strains, see [`RelaxingBody::harmonic`].
+    pub fn harmonic(&self, share: Share, beta: f64, w: f64) -> Complex<f64> {
+        self.body.harmonic(share, beta, w)
     }
 
     fn branches(&self, mesh: &Mesh, shear: ShearSprings, form: BranchForm) -> Result<Memory> {
-        let points = MaterialPoints::of(mesh, &self.material, shear)?;
-        if !self.is_uniform() || self.first().first_yield().is_some() {
-            let terms = BranchTerm::of(&self.series);
+        let points = MaterialPoints::of(mesh, &self.body.material, shear)?;
+        if !self.body.is_uniform() || self.body.first().first_yield().is_some() {
+            let terms = BranchTerm::of(&self.body.series);
             return Ok(Memory::Flow(Box::new(FlowMemory::new(points, &mesh.points, &terms)?)));
         }
-        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, self.first())?)))
+        Ok(Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, self.body.first())?)))
     }
 
     /// What a linear model remembers: one state of the body for each relaxation time, whatever the regions that have it.
     fn remembered(&self, mesh: &Mesh, parts: Vec<RelaxingStiffness>) -> Result<Memory> {
         let mut times: Vec<f64> = Vec::new();
-        for term in self.series.iter().flatten().flat_map(Relaxation::terms) {
+        for term in self.body.series.iter().flatten().flat_map(Relaxation::terms) {
             if !times.contains(&term.time) {
                 times.push(term.time);
             }
         }
         let relaxing = |RelaxingStiffness { entries, share }| {
             let (region, place) = share.place()?;
-            let terms = self.series[region].as_ref()?.terms();
+            let terms = self.body.series[region].as_ref()?.terms();
             let of_time = |time: &f64| {
                 terms.iter().filter(|term| term.time == *time).map(|term| [term.shear, term.bulk][place]).sum()
             };

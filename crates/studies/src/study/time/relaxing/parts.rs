@@ -2,12 +2,11 @@
 //!
 //! Theory: page *Springs that forget* of the book.
 
-use super::Relaxing;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{Hooke, Material, MaterialMap, Moduli, Relaxation, with_moduli};
+use crate::material::{Hooke, Material, MaterialMap, Moduli, Relaxation, expect_strains, with_moduli};
 use crate::mesh::Mesh;
-use crate::model::{Elastic, Entries, LinearElastic, Network, exact_network, finite_elements};
-use crate::study::fits::{ExactRecipe, NamedFit, Recipe, Reference};
+use crate::model::{Elastic, Entries, LinearElastic, Network, finite_elements};
+use crate::study::fits::{NamedFit, Reference};
 use crate::study::fitting::fit_without_errors;
 use faer::sparse::Triplet;
 use nalgebra::Complex;
@@ -34,7 +33,7 @@ pub enum Share {
 
 impl Share {
     /// The region, and the place of the modulus among shear and bulk; `None` of what does not relax.
-    pub(super) fn place(self) -> Option<(usize, usize)> {
+    pub fn place(self) -> Option<(usize, usize)> {
         match self {
             Share::Shear(region) => Some((region, 0)),
             Share::Bulk(region) => Some((region, 1)),
@@ -51,9 +50,50 @@ pub struct RelaxingStiffness {
 }
 
 /// The stiffness of a model of this material.
-type Made<'a> = dyn Fn(&MaterialMap) -> Result<Entries> + 'a;
+pub type Made<'a> = dyn Fn(&MaterialMap) -> Result<Entries> + 'a;
 
-impl Relaxing {
+/// A body whose regions relax, each by its series.
+#[derive(Debug, Clone)]
+pub struct RelaxingBody {
+    /// The series of each region.
+    pub series: Vec<Option<Relaxation>>,
+    pub material: MaterialMap,
+    /// Whether each point is held in all directions under every load.
+    pub held: Vec<bool>,
+    /// Whether the body deforms by a law, so that bulk does not relax.
+    pub is_large: bool,
+}
+
+impl RelaxingBody {
+    /// The series of the first region that relaxes.
+    pub fn first(&self) -> &Relaxation {
+        self.series.iter().flatten().next().expect("a body that relaxes has a series")
+    }
+
+    /// Whether all regions relax alike.
+    pub fn is_uniform(&self) -> bool {
+        self.series.windows(2).all(|pair| pair[0] == pair[1])
+    }
+
+    /// Checks that terms of a body without a law are linear, and that its stiffness can be divided into the parts that relax unlike.
+    pub fn expect_linear_terms(&self) -> Result<()> {
+        for series in self.series.iter().flatten() {
+            if let Some(term) = series.first_yield() {
+                let expected = "a material with a law: a branch that yields is not linear";
+                let error = Error::expected(format!("terms[{term}].yield"), expected, "none");
+                return Err(error.of_kind(ErrorKind::Unsupported));
+            }
+            if !series.is_alike() {
+                expect_strains(&self.material)?;
+            }
+        }
+        if !self.is_uniform() && self.material.materials().is_err() {
+            let expected = "isotropic materials where regions relax unlike";
+            return Err(Error::expected("terms", expected, "an anisotropic one").of_kind(ErrorKind::Unsupported));
+        }
+        Ok(())
+    }
+
     /// The regions that relax, each of which is a part of a stiffness; the first alone, which then stands for all, where all relax alike.
     fn parts_of_body(&self) -> Vec<usize> {
         let relaxes = |&region: &usize| self.series[region].is_some();
@@ -66,7 +106,7 @@ impl Relaxing {
     }
 
     /// The finite elements in parts of shear and of bulk; one part for both where they relax alike.
-    pub(super) fn split_body(&self, mesh: &Mesh) -> Result<Vec<RelaxingStiffness>> {
+    pub fn split_body(&self, mesh: &Mesh) -> Result<Vec<RelaxingStiffness>> {
         let moduli = self.material.moduli();
         let of_part = |part: usize, share: Share| {
             let own = |hooke: &Hooke, region: usize| {
@@ -94,13 +134,13 @@ impl Relaxing {
 
     /// The parts of shear and of bulk of a part of the body, one where both relax alike; at large deformation bulk does not relax.
     fn shares(&self, part: usize) -> impl Iterator<Item = Share> + use<> {
-        let is_one = self.rest.is_some() || self.series[part].as_ref().is_some_and(Relaxation::is_alike);
+        let is_one = self.is_large || self.series[part].as_ref().is_some_and(Relaxation::is_alike);
         [Share::Shear(part), Share::Bulk(part)].into_iter().take(if is_one { 1 } else { 2 })
     }
 
     /// The parts and what does not relax, if there is such a part.
     fn with_rest(&self, own: &dyn Fn() -> Entries, mut parts: Vec<RelaxingStiffness>) -> Vec<RelaxingStiffness> {
-        if self.rest.is_some() || self.series.iter().any(Option::is_none) {
+        if self.is_large || self.series.iter().any(Option::is_none) {
             let own = own();
             let less = parts.iter().map(|part| (-1.0, &part.entries));
             let entries = combined(&std::iter::once((1.0, &own)).chain(less).collect::<Vec<_>>());
@@ -110,12 +150,7 @@ impl Relaxing {
     }
 
     /// A network in parts of shear and of bulk; one part for both where they relax alike.
-    pub(super) fn split_network(
-        &self,
-        mesh: &Mesh,
-        fit: &NamedFit,
-        network: &Network,
-    ) -> Result<Vec<RelaxingStiffness>> {
+    pub fn split_network(&self, mesh: &Mesh, fit: &NamedFit, network: &Network) -> Result<Vec<RelaxingStiffness>> {
         let own = network.stiffness(&mesh.points);
         if self.is_uniform() && self.first().is_alike() {
             return Ok(vec![RelaxingStiffness { entries: own, share: Share::Shear(0) }]);
@@ -138,7 +173,7 @@ impl Relaxing {
     }
 
     /// A stiffness that is linear in the moduli of each part of the body, `K(s) = K(1) − (1 − s) K_part` for the share s of a modulus.
-    fn split(&self, own: &Entries, made: &Made) -> Result<Vec<RelaxingStiffness>> {
+    pub fn split(&self, own: &Entries, made: &Made) -> Result<Vec<RelaxingStiffness>> {
         let slope = 1.0 / (1.0 - OTHER);
         let mut parts = Vec::new();
         for part in self.parts_of_body() {
@@ -154,7 +189,7 @@ impl Relaxing {
     /// The material of which a share of one modulus is left, in the part of the body that has it; or of both, where both relax alike.
     fn softened(&self, share: Share, left: f64) -> Result<MaterialMap> {
         let (part, moduli) = match share {
-            Share::Shear(part) if self.shares(part).count() == 1 && self.rest.is_none() => (part, [left, left]),
+            Share::Shear(part) if self.shares(part).count() == 1 && !self.is_large => (part, [left, left]),
             Share::Shear(part) => (part, [left, 1.0]),
             Share::Bulk(part) => (part, [1.0, left]),
             Share::Elastic => return Ok(self.material.clone()),
@@ -200,45 +235,13 @@ impl Relaxing {
         Some((1.0 - sums[place]).max(LEAST))
     }
 
-    /// The finite elements in parts that resist harmonic strains.
-    ///
-    /// # Errors
-    /// There is no material with a part of the moduli.
-    pub fn harmonic_of_body(&self, mesh: &Mesh) -> Result<Vec<RelaxingStiffness>> {
-        match self.rest {
-            Some(_) => self.split(&finite_elements(mesh, self.material.moduli()), &|material| {
-                Ok(finite_elements(mesh, material.moduli()))
-            }),
-            None => self.split_body(mesh),
-        }
-    }
-
-    /// A network in parts that resist harmonic strains.
-    ///
-    /// # Errors
-    /// It fails as [`Relaxing::of_network`] does.
-    pub fn harmonic_of_network(
-        &self,
-        mesh: &Mesh,
-        fit: &NamedFit,
-        network: &Network,
-    ) -> Result<Vec<RelaxingStiffness>> {
-        if let (Some((_, laws)), Recipe::Exact(recipe)) = (&self.rest, &fit.recipe) {
-            let exact = ExactRecipe::resolve_all(recipe, Some(laws))?;
-            let made =
-                |material: &MaterialMap| Ok(exact_network(mesh, material, &exact, &self.held)?.stiffness(&mesh.points));
-            return self.split(&made(&self.material)?, &made);
-        }
-        self.split_network(mesh, fit, network)
-    }
-
     /// The complex coefficient of a part under harmonic strains of the frequency ω, rad/s, with Rayleigh's β, s, times the stiffness of the model that
     /// moves: at large deformation that of what is left when all has relaxed.
     pub fn harmonic(&self, share: Share, beta: f64, w: f64) -> Complex<f64> {
         let Some((region, place)) = share.place() else { return Complex::new(1.0, w * beta) };
         let Some(series) = self.series.get(region).and_then(Option::as_ref) else { return Complex::new(1.0, w * beta) };
         let [real, imaginary] = series.harmonic(w)[place];
-        let left = if self.rest.is_some() { 1.0 - series.sums()[place] } else { 1.0 };
+        let left = if self.is_large { 1.0 - series.sums()[place] } else { 1.0 };
         Complex::new(real, imaginary + w * beta * left)
     }
 }
