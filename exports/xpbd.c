@@ -462,9 +462,11 @@ static double counted(const char *option, const char *given, int is_whole)
 int main(int count, char **words)
 {
     Asked asked = { NULL, NULL, 2, 0, 0, 0 };
+    int has_seconds = 0;
     for (int i = 1; i < count; i++) {
         const char *word = words[i], *next = i + 1 < count ? words[i + 1] : NULL;
         if (strncmp(word, "--", 2)) {
+            if (has_seconds++) misuse("SECONDS", "one time", word);
             asked.seconds = counted("SECONDS", word, 0);
             continue;
         }

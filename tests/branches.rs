@@ -447,6 +447,23 @@ fn wrong_yield_stresses_are_named() {
     }
 }
 
+/// A rule with a weight below zero would make energy in a branch.
+#[test]
+fn elements_with_negative_weights_do_not_relax() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("elements/quad4.toml")).unwrap();
+    let head = text.split("[quadrature]").next().unwrap();
+    let rest = text.split("[quadrature]").nth(1).unwrap();
+    let rest = &rest[rest.find("[[springs]]").unwrap()..];
+    let rule = "[quadrature]\nrule = \"explicit\"\npoints = [[0, 0], [\"1/2\", \"1/2\"], [\"-1/2\", \"1/2\"], [\"1/2\", \"-1/2\"], [\"-1/2\", \"-1/2\"]]\n\
+                weights = [\"-4/3\", \"4/3\", \"4/3\", \"4/3\", \"4/3\"]\n";
+    let element = Element::parse(&format!("{head}{rule}{rest}")).unwrap();
+    let mut mesh = grid("quad4", &[2, 1], &[0.02, 0.01]);
+    mesh.blocks[0].element = element.into();
+    let material = Material::new(1e4, 0.3, State::PlaneStrain { thickness: 0.5 }).unwrap();
+    let found = MaterialPoints::of(&mesh, &material.into(), ShearSprings::Cells).unwrap_err().to_string();
+    reads(&found, "mesh: …positive weights…found a weight below zero").unwrap();
+}
+
 /// Two regions, of which one relaxes: held for long, the body ends as the elastic one whose region has what is left of μ beside the whole bulk modulus; the
 /// network is the finite element, also in explicit steps.
 #[test]

@@ -349,6 +349,23 @@ fn methods_agree() {
 }
 
 /// With a law the finite elements are hyperelastic, and the springs turn and stretch.
+/// At small strain one iteration is the solution, also of an exact network, whose springs and contents pull at rest against each other.
+#[test]
+fn one_iteration_is_the_linearised_step() {
+    let text = BLOCK.replace("objective = \"modal\"\nsprings = [\"edge\", \"face diagonal\", \"body diagonal\", \"bulk\"]\nnonnegative = true", "objective = \"exact\"");
+    let text = text.split("[[motion.force]]").next().unwrap().to_string() + "gravity = [1e-3, 0, -0.01]\n";
+    let watched = |text: &str| -> Vec<Vec<f64>> {
+        let found = outcome(text).motion.unwrap();
+        found.models[1].records.iter().map(|record| record.watched.to_vec()).collect()
+    };
+    let linear = watched(&text);
+    let one = watched(&edited(&text, "linear = true\n", "iterations = 1\n"));
+    let size = linear.iter().flatten().fold(0.0f64, |size, u| size.max(u.abs()));
+    for (a, b) in one.iter().flatten().zip(linear.iter().flatten()) {
+        assert!((a - b).abs() < 1e-3 * size, "{one:?} {linear:?}");
+    }
+}
+
 #[test]
 fn bodies_with_a_law_move_at_large_deformation() {
     let text = edited(BLOCK, "density = 1000", "density = 1000\nlaw = \"neo-hookean\"");

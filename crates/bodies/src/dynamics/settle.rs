@@ -39,8 +39,8 @@ pub struct Step {
     /// The residual of the equations, relative to the forces that act; `None` if it was not computed: for linearised
     /// steps and linear models.
     pub residual: Option<f64>,
-    /// The number of iterations whose matrix was not positive definite and was modified. A linearised step uses a
-    /// definite matrix from the start.
+    /// The number of iterations whose matrix was not positive definite and was modified. A linearised step of a model that does not pull at rest uses
+    /// a definite matrix from the start.
     pub modified: usize,
     /// The total number of iterations of conjugate gradients.
     pub solver_iterations: usize,
@@ -68,6 +68,9 @@ pub(super) struct Target {
     pub external: Vec<f64>,
 }
 
+/// Entries of two tangents that are as near as this, relative to the largest, differ by rounding.
+const ALIKE: f64 = 1e-9;
+
 /// What is computed besides the forces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Tangent {
@@ -94,13 +97,36 @@ pub(super) struct Trial {
     u: Vec<f64>,
     step: Vec<f64>,
     tried: Vec<f64>,
+    /// Whether the definite tangent is the exact one at rest.
+    is_definite_at_rest: bool,
 }
 
 impl Trial {
     pub fn new(dofs: usize, free: usize, entries: usize) -> Trial {
         let [force, viscous, u, tried] = std::array::from_fn(|_| vec![0.0; dofs]);
         let [residual, step] = std::array::from_fn(|_| vec![0.0; free]);
-        Trial { force, tangent: vec![0.0; entries], viscous, residual, potential: 0.0, size: 0.0, u, step, tried }
+        Trial {
+            force,
+            tangent: vec![0.0; entries],
+            viscous,
+            residual,
+            potential: 0.0,
+            size: 0.0,
+            u,
+            step,
+            tried,
+            is_definite_at_rest: true,
+        }
+    }
+
+    /// Learns whether the definite tangent of a model is the exact one at rest, `values`. It is not where springs pull at rest: there the forces of
+    /// contents are a part of the stiffness, which it leaves out.
+    pub fn compare_tangents(&mut self, resistance: &mut Resistance, values: &[f64]) {
+        self.u.fill(0.0);
+        let is_known = resistance.refill(&self.u, &mut self.force, &mut self.tangent, true).is_some();
+        let largest = values.iter().fold(0.0f64, |largest, k| largest.max(k.abs()));
+        let is_alike = |(a, b): (&f64, &f64)| (a - b).abs() <= ALIKE * largest;
+        self.is_definite_at_rest = is_known && self.tangent.iter().zip(values).all(is_alike);
     }
 
     /// Evaluates the equations at the Δ of `target`, from displacements `start`; false if the model has no response.
@@ -220,8 +246,9 @@ impl Trial {
     ) -> Step {
         let mut made =
             Step { outcome: StepOutcome::Stalled, iterations: 0, residual: None, modified: 0, solver_iterations: 0 };
-        // A single step cannot be corrected: either tangent is accurate to first order.
-        let tangent = if iterations == 1 { Tangent::Definite } else { Tangent::Exact };
+        // A single step cannot be corrected. Of a model that does not pull at rest either tangent is accurate to first order in the strain.
+        let is_definite = iterations == 1 && self.is_definite_at_rest;
+        let tangent = if is_definite { Tangent::Definite } else { Tangent::Exact };
         if !self.evaluate(resistance, target, start, equations.order(), tangent) {
             return Step { outcome: StepOutcome::NoResponse, ..made };
         }

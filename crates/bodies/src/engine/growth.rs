@@ -73,8 +73,8 @@ pub(super) fn motion_growth(apply: impl Fn(&Block) -> Block, inverse: &[f64], su
     None
 }
 
-/// Substeps after which a motion that grows has grown, by a hundredth in each or more.
-const SUBSTEPS: usize = 1000;
+/// Substeps after which a motion that grows has grown, by three thousandths in each or more.
+const SUBSTEPS: usize = 3000;
 /// No motion that is damped becomes so much larger than it began.
 const GROWN: f64 = 1e3;
 /// The largest eigenvalue of `ω D⁻¹ A` with which sweeps end, below 2 by what the power method may miss.

@@ -71,6 +71,10 @@ impl Program {
             let found = format!("\"{}\"", recipe.name());
             return Err(Error::expected("relaxing", expected, found).of_kind(ErrorKind::Unsupported));
         }
+        if element.tabulation.weights.iter().any(|weight| *weight < 0.0) {
+            let expected = "an element whose quadrature has positive weights: with others a branch would make energy";
+            return Err(Error::expected("relaxing", expected, "a weight below zero").of_kind(ErrorKind::Unsupported));
+        }
         let springs = recipe.springs(element, None)?;
         let plan = Plan::of(element, &springs);
         let named = |end: &str| format!("{}_{end}", self.prefix);

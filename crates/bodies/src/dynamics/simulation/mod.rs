@@ -74,6 +74,10 @@ impl<'a> Simulation<'a> {
         let equations = if is_implicit { Some(resistance.equations(&motion, options.solver)?) } else { None };
         let free = equations.as_ref().map_or(0, |equations| equations.order().len());
         let mut trial = Trial::new(dofs, free, resistance.rest.values().len());
+        if options.iterations == 1 && is_implicit && !options.linear {
+            let values = resistance.rest.values().to_vec();
+            trial.compare_tangents(&mut resistance, &values);
+        }
         trial.tangent.copy_from_slice(resistance.rest.values());
         let zero = || vec![0.0; dofs];
         let [z, y, delta, velocity, external] = std::array::from_fn(|_| zero());

@@ -170,7 +170,8 @@ impl Planned {
     /// That a step is longer than the shortest relaxation time, if it is.
     fn long_step(&self, relaxing: &Relaxing) -> Option<String> {
         let (step, shortest) = (self.recipe.options.step, relaxing.shortest());
-        (step > shortest).then(|| {
+        // A step with an error is divided until it has no more than that.
+        (step > shortest && self.recipe.options.error.is_none()).then(|| {
             format!(
                 "a step of {step:?} s is {:.3} times the shortest relaxation time, {shortest:?} s: what relaxes within a step is known at its end \
                  alone, and only if the strain changes evenly over it",
