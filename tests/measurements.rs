@@ -2,6 +2,8 @@
 
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
+use springfit::calibration::clamped_order;
+use springfit::material::{Material, State};
 use springfit::report;
 use springfit::study::{FoundModuli, FoundModulus, ModuliSearch, Outcome, Scene, run};
 use std::collections::BTreeSet;
@@ -526,4 +528,21 @@ fn intervals_are_those_of_the_residuals_where_the_stated_noise_is_too_small() {
     for (right, wrong) in width(&right).into_iter().zip(width(&wrong)) {
         assert!((wrong / right - 1.0).abs() < 0.25, "{right} {wrong}");
     }
+}
+
+/// At the edge of a clamped face displacements grow with these powers of the distance, in plane strain (Williams 1952): 0.7112 at ν = 0.3 is known of
+/// the clamped cantilever, 0.5946 is the root of `sin²(λπ/2) = 1 − λ²` of an incompressible body.
+#[test]
+fn clamped_edges_have_their_order() {
+    for (poisson, exponent) in [(0.3, 0.7112), (0.499_999_9, 0.5946)] {
+        let state = State::PlaneStrain { thickness: 2.0 };
+        let order = clamped_order(&Material::new(3.0, poisson, state).unwrap().moduli());
+        assert!((order - 2.0 * exponent).abs() < 2e-4, "{poisson}: {order}");
+        let solid = clamped_order(&Material::new(7.0, poisson, State::Solid).unwrap().moduli());
+        assert!((order - solid).abs() < 1e-9);
+    }
+    // A rod of no lateral strain has bounded strains.
+    let plain = clamped_order(&Material::new(1.0, 0.0, State::Solid).unwrap().moduli());
+    assert!(plain > 1.6 && plain <= 2.0, "{plain}");
+    assert_eq!(clamped_order(&Material::new(1.0, -0.5, State::Solid).unwrap().moduli()), 2.0);
 }

@@ -21,6 +21,7 @@ class Products:
         pull: ``pull(*y, *w)``, the product ``Jᵀ w`` with weights of the results, as the inputs.
         turn: ``turn(*y, *w, *t)``, the derivative of ``Jᵀ w`` along t; None of a function whose second derivatives are not known.
         bend: ``bend(*y, *t, *s)``, the derivative of ``J t`` along s.
+        plain: The places of inputs in which no second derivatives are known.
     """
 
     value: Callable[..., Sequence[np.ndarray]]
@@ -28,6 +29,7 @@ class Products:
     pull: Callable[..., Sequence[np.ndarray]]
     turn: Callable[..., Sequence[np.ndarray]] | None = None
     bend: Callable[..., Sequence[np.ndarray]] | None = None
+    plain: Sequence[int] = ()
 
 
 def of_jax(name: str, products: Products, inputs: int, shapes: Sequence[tuple]) -> Callable[..., tuple]:
@@ -106,6 +108,8 @@ def of_jax(name: str, products: Products, inputs: int, shapes: Sequence[tuple]) 
             change = None
             for place, follow in zip(groups[own], parts):
                 if not all(map(is_zero, tangents[place])):
+                    if own is not value and place.start == 0 and not all(is_zero(tangents[plain]) for plain in products.plain):
+                        none()
                     change = total(change, follow(*(primals[place] for place in groups[own]), filled(tangents[place])))
             found = own.bind(*primals)
             return found, [ad.Zero.from_primal_value(array) for array in found] if change is None else change

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import array, failure, no_flags, shown, typed
+from ._arguments import array, failure, no_flags, shown, typed, warn
 
 if TYPE_CHECKING:
     from .springs import Network
@@ -96,6 +96,15 @@ def check_held(found: np.ndarray, held: np.ndarray) -> None:
     if loose.size:
         named = ", ".join(map(str, loose[:NAMED])) + (", …" if loose.size > NAMED else "")
         raise failure("displacement", "zero wherever fix does not hold", f"others at {loose.size} points: {named}")
+
+
+def check_acting(forces: np.ndarray, displacement: np.ndarray, held: np.ndarray) -> None:
+    """Warns of loads, (loads, points, dimension), all of whose forces act on what is held: supports bear them, and they move nothing."""
+    is_borne = (forces != 0).any(axis=(1, 2)) & ~((forces != 0) & ~held).any(axis=(1, 2)) & ~(displacement != 0).any(axis=(1, 2))
+    if is_borne.any():
+        load = f" of load {np.flatnonzero(is_borne)[0]}" if len(forces) > 1 else ""
+        warn(f"all forces{load} act on what is held, and move nothing")
+
 
 def vectors(key: str, values: Any, shape: "tuple[int, ...]") -> np.ndarray:
     """A vector for each point, (points, dimension), or several of these, (…, points, dimension)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections import OrderedDict
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,8 @@ import numpy as np
 from . import _core
 from ._arguments import array, failure, matrix, shown, typed, warn
 from ._jax import Products, of_jax
-from ._supports import check_held, held_flags, vectors
+from ._second import bend, turn
+from ._supports import check_acting, check_held, held_flags, vectors
 from ._torch import of_torch
 from .gradients import SpringConstants, SpringValues
 from .network import Network
@@ -208,7 +209,9 @@ class Statics:
         loads = np.broadcast_shapes(f.shape, u.shape)[:-2]
         if loads == (0,):
             raise failure("forces", "one load at least", "none")
-        each = zip(*(np.broadcast_to(own, (*(loads or (1,)), *x.shape)) for own in (f, u)))
+        stacks = [np.broadcast_to(own, (*(loads or (1,)), *x.shape)) for own in (f, u)]
+        check_acting(*stacks, held)
+        each = zip(*stacks)
         parts = []
         if self.large:
             start = None if guess is None else np.broadcast_to(vectors("guess", guess, x.shape), (*(loads or (1,)), *x.shape))
@@ -256,11 +259,15 @@ class Statics:
             known = self._known(given[:7])
             return [known.along(points=points, values=SpringValues(*values), forces=forces, displacement=displacement)]
 
-        return Products(lambda *given: [self._known(given).displacement], push, pull)
+        if self.large:
+            return Products(lambda *given: [self._known(given).displacement], push, pull)
+        turned, bent = partial(turn, self), partial(bend, self)
+        return Products(lambda *given: [self._known(given).displacement], push, pull, turned, bent, plain=(0,))
 
     def jax(self, points: Any, values: SpringValues, forces: Any = None, displacement: Any = None) -> Any:
         """The displacements as an array of JAX, in the shape of the loads, under ``jax.jit``, ``jax.grad``, ``jax.jvp``, ``jax.jacfwd``,
-        ``jax.jacrev`` and ``jax.vmap``; derivatives are of the first order. Of ``displacement`` what is not held is ignored."""
+        ``jax.jacrev`` and ``jax.vmap``; of small displacements under ``jax.hessian`` too, but in points. Of ``displacement`` what is not held is
+        ignored."""
         import jax.numpy as jnp
 
         points = jnp.asarray(points)

@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import warn
-from ._supports import displacement_of, forces_of
+from ._supports import check_acting, displacement_of, forces_of
 
 if TYPE_CHECKING:
     from .springs import Network
@@ -55,6 +55,7 @@ class Factorized:
         moved = displacement_of(self.network, displacement, self._held)
         shape = np.broadcast_shapes(acting.shape, moved.shape)
         stacked = [np.ascontiguousarray(np.broadcast_to(given, shape)).reshape(-1, *shape[-2:]) for given in (acting, moved)]
+        check_acting(*stacked, self._held)
         u, left, beyond = self._core.solve(*stacked)
         if not self.is_stable:
             warn("the network is indefinite with these supports: some motion releases energy")

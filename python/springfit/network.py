@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import failure, number, shown
+from ._arguments import failure, number, shown, warn
 from ._functions import separated, warn_of_rest
 from ._progress import listener
 from ._sparse import csr
@@ -61,7 +61,11 @@ def fit(
     if functions is not None and functions["energy"] is not None:
         warn_of_rest(material, *functions["energy"][1:])
     with listener(progress) as told:
-        return Network._of(_core.fit(mesh._core, material, entry, held, told, functions), mesh)
+        found = _core.fit(mesh._core, material, entry, held, told, functions)
+    unreached = (found.statistics(False) or {}).get("unreached_cells", 0)
+    if unreached:
+        warn(f"the search of {unreached} cells has ended before an optimum: their constants are not those that the objective asks for")
+    return Network._of(found, mesh)
 
 
 def sampled(

@@ -17,7 +17,7 @@ from ._lazy import Package
 from ._network_state import GIVEN, STATISTICS, frozen, lines, restored, state, table
 from ._npz import mesh_of, read_arrays
 from ._sparse import csr
-from ._supports import displacement_of, forces_of, held_flags, one_of_each, vectors
+from ._supports import check_acting, displacement_of, forces_of, held_flags, one_of_each, vectors
 from .factorized import Factorized
 from .mesh import Mesh
 from .motion import Motion, simulate
@@ -338,6 +338,7 @@ class Network:
         for key, given in (("forces", acting), ("displacement", moved)):
             if given.shape != shape:
                 raise failure(key, f"an array of shape {shape}", f"one of shape {given.shape}")
+        check_acting(acting[None], moved[None], held)
         start = None if x0 is None else one_of_each("x0", x0, shape)
         x, is_rounded, inverted = self._core.equilibrium(acting, held, moved, start)
         if inverted:

@@ -200,7 +200,38 @@ def test_jax_passes_through_solutions():
         many = jax.vmap(loss, (None, 0, None, None, None))(points, np.stack([young, 2 * young]), *given[2:])
         assert np.allclose(many, [loss(points, own, *given[2:]) for own in (young, 2 * young)], rtol=1e-12)
         with pytest.raises(sf.SpringfitError, match="first order"):
-            jax.hessian(loss, 1)(*given)
+            jax.hessian(loss, 1 if large else 0)(*given)
+
+
+@pytest.mark.parametrize("name, objective", [("tet4", "exact"), ("quad4", "exact"), ("hex8", "offdiag")])
+def test_jax_has_second_derivatives_of_small_displacements(name, objective):
+    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
+    jax.config.update("jax_enable_x64", True)
+    constants, points, _, held, displacement, forces, rng = case(name, objective)
+    statics = sf.Statics(constants, held)
+    shares = rng.normal(size=(3, len(constants.blocks[0].cells)))
+    scale = 1e-3 * np.abs(np.asarray(statics.jax(points, constants.jax(points, 1e4, 0.3), forces, displacement))).max()
+    stacked = np.stack([forces, 0.3 * forces[::-1]])
+
+    def loss(logs, poisson, forces, displacement):
+        u = statics.jax(points, constants.jax(points, 1e4 * jax.numpy.exp(logs @ shares), poisson), forces, displacement)
+        return ((u / scale) ** 2).sum() + (u / scale).sum()
+
+    given = (0.2 * rng.normal(size=3), 0.3, stacked, displacement)
+    change = [rng.normal(size=np.shape(own)) for own in given]
+    change[1], change[2], change[3] = 0.05, 0.3 * stacked, 0.3 * displacement
+    slopes = jax.grad(loss, (0, 1, 2, 3))
+    # The change of the gradient along a line, by differences of the gradient, which other tests compare with those of the values.
+    _, turned = jax.jvp(slopes, given, tuple(map(np.asarray, change)))
+    for place in range(4):
+        at = lambda h: np.asarray(slopes(*(own + h * c for own, c in zip(given, change)))[place])
+        wanted = slope(at, 1e-3)
+        assert np.allclose(turned[place], wanted, rtol=0, atol=1e-7 * np.abs(wanted).max()), place
+    # Both orders of directions, and the symmetry of the matrix.
+    of_logs = lambda logs: loss(logs, *given[1:])
+    matrix = np.asarray(jax.hessian(of_logs)(given[0]))
+    assert np.allclose(matrix, matrix.T, rtol=0, atol=1e-9 * np.abs(matrix).max())
+    assert np.allclose(jax.jacfwd(jax.jacfwd(of_logs))(given[0]), matrix, rtol=0, atol=1e-9 * np.abs(matrix).max())
 
 
 def test_torch_passes_through_solutions():

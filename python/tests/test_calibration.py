@@ -256,3 +256,37 @@ def test_progress_has_no_end_where_none_is_known():
     steps = [step for step in told if step[0] == "calibrate"]
     assert steps and all(total == 0 for _, _, total in steps)
     assert [done for _, done, _ in steps] == sorted(done for _, done, _ in steps)
+
+
+def test_measurements_that_do_not_belong_together_are_told_without_a_noise():
+    mesh, random = block(), np.random.default_rng(6)
+    given = dict(fix=FIX, loads=PULL, unknowns="moduli", refinements=0)
+    moved = mesh.points * STRAIN
+    right = sf.calibrate(mesh, sf.Material(2e4, 0.1), {"pull": moved}, **given)
+    assert right.is_trusted and right.record["explained"] == pytest.approx(1.0, abs=1e-9)
+    assert any("explains 100 % of what was measured" in note for note in right.notes)
+    mixed = sf.calibrate(mesh, sf.Material(2e4, 0.1), {"pull": moved[random.permutation(len(moved))]}, **given)
+    assert not mixed.is_trusted and mixed.notes[0].startswith("NOT TRUSTED: the body explains ")
+    # The same from the residuals that the report has; displacements have one weight under one load.
+    load = mixed.record["loads"][0]
+    assert mixed.record["explained"] == pytest.approx(1 - (load["residual"] / load["size"]) ** 2, abs=1e-9)
+
+
+@pytest.mark.parametrize("noise", [None, 1e-6])
+def test_measurements_of_what_is_held_are_compared_with_the_support(noise):
+    mesh = block()
+    given = dict(fix="zmin", loads=PULL, refinements=0, noise=noise)
+    moved = np.zeros(mesh.points.shape)
+    moved[:, 2] = 0.01 * mesh.points[:, 2]
+    on = mesh.points[:, 2] < 1e-9
+    for slip, is_trusted, words in ((0.0, True, None), (4e-4, True, "4.000e-4 m from where it is held"), (4e-3, False, "does [[fix]] hold")):
+        seen = moved + slip * on[:, None] * [0, 0, 1]
+        found = sf.calibrate(mesh, sf.Material(1e4, 0.0), {"pull": seen}, **given)
+        load = found.record["loads"][0]
+        assert load["held"] == 3 * on.sum() and load["held_residual"] == pytest.approx(slip)
+        told = [note for note in found.notes if "where it is held" in note]
+        assert found.is_trusted == is_trusted, found.notes
+        assert len(told) == (words is not None) and (words is None or words.split(" m ")[-1] in told[0]), found.notes
+    alone = np.where(on[:, None], moved, np.nan)
+    with pytest.raises(sf.SpringfitError, match="those of what is held alone"):
+        sf.calibrate(mesh, sf.Material(1e4, 0.0), {"pull": alone}, **given)

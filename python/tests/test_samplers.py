@@ -171,3 +171,29 @@ def test_learning_curves_have_common_shapes_held_out():
     with pytest.raises(sf.SpringfitError) as error:
         sf.learning_curve(box(), MATERIAL, "neo-hookean", counts=[5], shapes={"held_out": 0})
     assert error.value.key == "shapes.held_out"
+
+
+def test_norms_without_a_minimum_are_not_answered_by_the_start():
+    mesh = sf.Mesh.box("tet4", [1, 1, 1], [1, 1, 1])
+    given = dict(law="neo-hookean", shapes={"count": 40, "stretch": 0.2})
+    material = sf.Material(1e4, 0.3)
+
+    def fitted(value, slopes):
+        return sf.sampled(mesh, material, norm=lambda r: (float(value(r)), slopes(r)), **given)
+
+    squares = fitted(lambda r: np.sum(r * r), lambda r: 2 * r)
+    start = sf.sampled(mesh, material, **given)
+    assert np.allclose(squares.constants, start.constants, rtol=1e-9)
+    assert squares.statistics["unreached_cells"] == 0
+    # Least squares are the top of a function that falls without end: it has no minimum.
+    with pytest.warns(UserWarning, match="cells has ended before an optimum"):
+        fallen = fitted(lambda r: -np.sum(r * r), lambda r: -2 * r)
+    assert fallen.statistics["unreached_cells"] > 0
+
+    # A function whose top is at least squares, and whose minima are beside it: that of (S − 4 S0)², S being the sum of squares.
+    seen = []
+    fitted(lambda r: seen.append(np.sum(r * r)) or np.sum(r * r), lambda r: 2 * r)
+    wanted = 4 * max(seen)
+    beside = fitted(lambda r: (np.sum(r * r) / wanted - 1) ** 2, lambda r: 4 * r * (np.sum(r * r) / wanted - 1) / wanted)
+    assert beside.statistics["unreached_cells"] == 0
+    assert not np.allclose(beside.constants, start.constants, rtol=1e-3)

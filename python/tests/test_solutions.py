@@ -275,3 +275,27 @@ def test_the_examples_of_docstrings_run(name):
 
     found = doctest.testmod(importlib.import_module(f"springfit.{name}"))
     assert found.failed == 0 and (found.attempted > 0 or name != "springs")
+
+
+def test_forces_on_what_is_held_alone_are_warned_of():
+    mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[2, 2, 2])
+    net = sf.fit(mesh, sf.Material(1e6, 0.3))
+    force = np.zeros(mesh.points.shape)
+    force[mesh.groups["zmin"], 2] = 1.0
+    constants = sf.SpringConstants(mesh.cells)
+    statics = sf.Statics(constants, mesh.groups["zmin"])
+    for solve in (
+        lambda f: net.solve(fix="zmin", forces=f),
+        lambda f: net.equilibrium(fix="zmin", forces=f),
+        lambda f: statics(mesh.points, constants(mesh.points, 1e6, 0.3), forces=f),
+    ):
+        with pytest.warns(UserWarning, match="all forces act on what is held"):
+            solve(force)
+    with pytest.warns(UserWarning, match="all forces of load 1 act on what is held"):
+        net.solve(fix="zmin", forces=np.stack([np.flip(force, 0), force]))
+    moved = np.where(mesh.points[:, 2:] < 1e-9, 1e-3, 0.0) * [0, 0, 1.0]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        net.solve(fix="zmin")
+        net.solve(fix="zmin", forces=force, displacement=moved)
+        net.solve(fix="zmin", forces=force + np.flip(force, 0))

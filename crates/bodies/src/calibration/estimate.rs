@@ -133,7 +133,8 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     // The errors of meshes move all unknowns together.
     let mesh = now.rest.zip(changes.last()).map(|(rest, last)| {
         let before = |p: usize| changes.len().checked_sub(2).map_or(0.0, |before| changes[before][p]);
-        last.iter().enumerate().map(|(p, last)| rest.spread(*last, before(p))).collect()
+        let largest = last.iter().fold(0.0, |most: f64, last| most.max(last.abs()));
+        last.iter().enumerate().map(|(p, last)| rest.spread(*last, before(p)) + rest.hidden * largest).collect()
     });
     Ok(Estimate {
         theta,

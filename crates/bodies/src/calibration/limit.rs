@@ -6,6 +6,7 @@ use super::level::{Answer, Level};
 use super::sight::Observation;
 use super::unknowns::Unknowns;
 use crate::error::Result;
+use crate::material::Moduli;
 use crate::mesh::Mesh;
 use crate::whole::ninety_five;
 
@@ -13,26 +14,30 @@ use crate::whole::ninety_five;
 const LINEAR: f64 = 2.0;
 /// The order of displacements of quadratic elements where strains are bounded.
 const QUADRATIC: f64 = 4.0;
-/// The order where strains are singular, as at the edge of a clamped face: twice the exponent of 0.7 of the displacements there.
-const SINGULAR: f64 = 1.4;
 
-/// This is where between both orders the rest of an answer is on two refinements, as a share of the way from that of
-/// the element to that of an edge, and how far to either side 95 % of the rests are. The bench
-/// `python/benches/calibration.py` measures both numbers.
-const TWICE: (f64, f64) = (0.17, 0.3);
-/// These are the numbers of [`TWICE`] on one refinement: a first mesh is often coarser than any order holds for.
-const ONCE: (f64, f64) = (0.5, 0.7);
-/// Answers that change from mesh to mesh by a larger ratio have no order yet; their rest grows with it, and what is known of it as well.
-const ORDERLY: f64 = 0.4;
-/// The rest and what is known of it grow by this multiple of the excess over [`ORDERLY`].
-const GROWTH: f64 = 1.5;
-/// The largest ratio that is believed.
+/// On one refinement 95 % of the rests are within this share of that of a clamped edge, and this multiple of the largest change of an unknown:
+/// a first mesh is often coarser than any order holds for.
+const ONCE: (f64, f64) = (0.5, 0.5);
+/// Changes whose ratio is below this share of that of a clamped edge have the order that they show.
+const ORDERLY: f64 = 0.9;
+/// Where the ratio is that of an edge or more, the order is only known to be between that of an edge and that of the element: the rest is this
+/// share of the way from the latter.
+const PLACE: f64 = 0.55;
+/// The share of that way within which 95 % of the rests are.
+const REACH: f64 = 0.25;
+/// What is known of the rest, and of how changes go on, grows by these multiples of the excess of the ratio over that of an edge, which only meshes
+/// without an order have.
+const GROWTH: (f64, f64) = (1.7, 4.0);
+/// The largest ratio with which changes are compared.
 const SLOWEST: f64 = 0.6;
 /// The part of a change that is not that of the mesh before times the ratio goes on by this multiple, and how far to either side 95 % are.
-const CHANGE: (f64, f64) = (0.7, 0.2);
+const CHANGE: (f64, f64) = (0.55, 0.35);
+/// The rest of an unknown is known to this share of the largest change of all of them: one may hide in the other.
+const HIDDEN: f64 = 0.015;
 
 /// What is left of an answer beyond the finest mesh, from its last changes `c_1 = u_n − u_{n−1}` and `c_0 = u_{n−1} − u_{n−2}`:
-/// `w c_1 + κ (c_1 − r c_0)`, with the ratio r of all answers. w is `1/(2^p − 1)` of an order p.
+/// `w c_1 + κ (c_1 − r c_0)`, with the ratio r of all answers. w is `q/(1 − q)` of changes that go on with the ratio q. It is bounded by that
+/// of the element and by that of the edge of a clamped face, where strains are singular.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
     /// w.
@@ -41,36 +46,77 @@ pub struct Rest {
     pub deviation: f64,
     /// r; `None` with one refinement, which leaves κ out.
     pub ratio: Option<f64>,
+    /// The standard deviation of κ.
+    other: f64,
+    /// The standard deviation that an unknown has of the largest change of all of them.
+    pub hidden: f64,
 }
 
 impl Rest {
-    /// The limit of a body with these elements and this ratio of changes after this number of refinements; `None` without refinements.
-    fn of(mesh: &Mesh, refinements: usize, ratio: Option<f64>) -> Option<Rest> {
+    /// The limit of a body with these elements and this order at clamped edges, by the ratio of changes after this number of refinements;
+    /// `None` without refinements.
+    fn of(mesh: &Mesh, edge: f64, refinements: usize, ratio: Option<f64>) -> Option<Rest> {
         let is_linear = mesh.blocks.iter().all(|block| block.element.has_corners_alone());
-        let multiple = |order: f64| 1.0 / (order.exp2() - 1.0);
-        let (least, most) = (multiple(if is_linear { LINEAR } else { QUADRATIC }), multiple(SINGULAR));
-        let (place, reach) = match refinements {
+        let (order, goes_on) = (if is_linear { LINEAR } else { QUADRATIC }, |ratio: f64| ratio / (1.0 - ratio));
+        let (least, most) = ((-order).exp2(), (-edge.min(order)).exp2());
+        let deviation = |reach: f64| reach / ninety_five(None);
+        match refinements {
             0 => return None,
-            1 => ONCE,
-            _ => TWICE,
-        };
-        let (way, ratio) = (most - least, ratio.map(|ratio| ratio.min(SLOWEST)));
-        let excess = ratio.map_or(0.0, |ratio| (ratio - ORDERLY).max(0.0));
-        let share = least + place * way + GROWTH * excess;
-        Some(Rest { share, deviation: (reach * way + excess) / ninety_five(None), ratio })
+            1 => {
+                // First meshes of linear elements are coarse and go on like an edge, or slower; quadratic ones may have their order.
+                let share = if is_linear { goes_on(most) } else { 0.5 * (goes_on(least) + goes_on(most)) };
+                let reach = ONCE.0 * goes_on(most);
+                let hidden = deviation(ONCE.1);
+                return Some(Rest { share, deviation: deviation(reach), ratio, other: 0.0, hidden });
+            }
+            _ => {}
+        }
+        let met = ratio.unwrap_or(least);
+        let bound = met.clamp(least, most);
+        let doubt = ((met / most - ORDERLY) / (1.0 - ORDERLY)).clamp(0.0, 1.0);
+        let excess = (met - most).max(0.0);
+        let share = goes_on(least + (1.0 - (1.0 - PLACE) * doubt) * (bound - least));
+        let reach = REACH * (goes_on(bound) - goes_on(least)) + GROWTH.0 * excess;
+        Some(Rest {
+            share,
+            deviation: deviation(reach),
+            ratio,
+            other: deviation(CHANGE.1 + GROWTH.1 * excess),
+            hidden: deviation(HIDDEN),
+        })
+    }
+
+    /// The part of the last change that is not that of the mesh before times the ratio.
+    fn apart(&self, last: f64, before: f64) -> f64 {
+        self.ratio.map_or(0.0, |ratio| last - ratio.min(SLOWEST) * before)
     }
 
     /// What is left of an answer with these changes.
     pub fn of_changes(&self, last: f64, before: f64) -> f64 {
-        let other = self.ratio.map_or(0.0, |ratio| last - ratio * before);
-        self.share * last + CHANGE.0 * other
+        self.share * last + CHANGE.0 * self.apart(last, before)
     }
 
     /// The standard deviation of that.
     pub fn spread(&self, last: f64, before: f64) -> f64 {
-        let other = self.ratio.map_or(0.0, |ratio| last - ratio * before);
-        self.deviation * last.abs() + CHANGE.1 / ninety_five(None) * other.abs()
+        self.deviation * last.abs() + self.other * self.apart(last, before).abs()
     }
+}
+
+/// The order of displacements at the edge where a clamped face meets a free one at a right angle: twice the exponent of the displacements
+/// there, `sin²(λ π/2) = ((κ + 1)² − 4 λ²)/(4 κ)` with Kolosov's κ (Williams 1952).
+pub fn clamped_order(moduli: &Moduli) -> f64 {
+    let kappa = (moduli.lambda + 3.0 * moduli.mu) / (moduli.lambda + moduli.mu);
+    let beyond = |exponent: f64| {
+        let angle = (exponent * std::f64::consts::FRAC_PI_2).sin();
+        angle * angle > ((kappa + 1.0).powi(2) - 4.0 * exponent * exponent) / (4.0 * kappa)
+    };
+    // The left side grows and the right side falls; where they do not meet, strains are bounded. Fifty halvings are all digits.
+    let (mut low, mut high) = (0.5, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if beyond(middle) { high = middle } else { low = middle }
+    }
+    2.0 * high
 }
 
 /// Answers whose change is a smaller share of them agree.
@@ -133,8 +179,21 @@ impl Limit<'_> {
             }
         }
         let mut found = Limiting { answers, columns, rest: None };
-        found.rest = Rest::of(&self.levels[0].mesh, self.levels.len() - 1, self.ratio(&found));
+        let edge = self.edge(theta);
+        found.rest = Rest::of(&self.levels[0].mesh, edge, self.levels.len() - 1, self.ratio(&found));
         Ok(Some(found))
+    }
+
+    /// The least order at clamped edges of the materials at θ.
+    fn edge(&self, theta: &[f64]) -> f64 {
+        let Level { mesh, materials, owners, .. } = &self.levels[0];
+        // Materials beyond their range have no answers, and never come here.
+        let Ok(found) = self.unknowns.materials(mesh, materials, owners, theta) else { return LINEAR };
+        let cells =
+            (0..mesh.blocks.len()).flat_map(|block| (0..mesh.blocks[block].cells().len()).map(move |c| (block, c)));
+        let orders =
+            cells.filter_map(|(block, cell)| found.isotropic(block, cell)).map(|own| clamped_order(&own.moduli()));
+        orders.fold(LINEAR, f64::min)
     }
 
     /// The ratio of the last two changes of the answers, in units of σ; `None` with fewer than three meshes, or where they agree to rounding.

@@ -22,6 +22,6 @@ mod unknowns;
 pub use estimate::{Estimate, Fault, estimate};
 pub use field::{FieldEstimate, Prior, estimate_field};
 pub use level::{Laws, Level, LoadCase};
-pub use limit::{Limit, Rest};
+pub use limit::{Limit, Rest, clamped_order};
 pub use sight::{Observation, Quantity};
 pub use unknowns::{Asked, Unknown, Unknowns, poisson_of, ratio_of};

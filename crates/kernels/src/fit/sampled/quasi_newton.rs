@@ -6,6 +6,7 @@
 use crate::error::Result;
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::{Normal, Rank};
+use crate::random::unit_at;
 use springfit_numerics::newton::falls_enough;
 
 /// The largest number of steps.
@@ -17,6 +18,8 @@ const PROMISE: f64 = 1e-12;
 /// Where no step lowers the value, it has converged if the promise is less than this share of the scale. A sum over
 /// many shapes has lost some digits of sixteen; at a kink the promise is larger.
 const ROUNDING: f64 = 1e-9;
+/// The share of the parameters to either side at which a minimum is proved: values there differ by its square, far above their rounding.
+const BESIDE: f64 = 1e-3;
 /// The least share of its expected curvature that a step is believed to have. The number is Powell's (Nocedal and
 /// Wright 2006, procedure 18.2).
 const DAMPED: f64 = 0.2;
@@ -62,7 +65,11 @@ pub fn minimize(
         let promise = -slope - 0.5 * bend;
         // The first promise is that of the quadratic function alone, and says nothing of this one.
         if !(promise > PROMISE * scale.max(own.abs())) && is_scaled {
-            return Ok(Some(Found { unknowns: at, converged: true }));
+            let Some(lower) = lower_beside(&mut value, &at, own, scale, quadratic.nonnegative)? else {
+                return Ok(Some(Found { unknowns: at, converged: true }));
+            };
+            (at, own, slopes) = lower;
+            continue;
         }
         let mut found = None;
         for halvings in 0..HALVINGS {
@@ -76,8 +83,14 @@ pub fn minimize(
         }
         let Some((after, value_after, slopes_after)) = found else {
             // The rounding of the value hides what is left, or the function has a kink.
-            let converged = promise <= ROUNDING * scale.max(own.abs());
-            return Ok(Some(Found { unknowns: at, converged }));
+            if promise > ROUNDING * scale.max(own.abs()) {
+                return Ok(Some(Found { unknowns: at, converged: false }));
+            }
+            let Some(lower) = lower_beside(&mut value, &at, own, scale, quadratic.nonnegative)? else {
+                return Ok(Some(Found { unknowns: at, converged: true }));
+            };
+            (at, own, slopes, is_scaled) = (lower.0, lower.1, lower.2, true);
+            continue;
         };
         let moved: Vec<f64> = after.iter().zip(&at).map(|(a, b)| a - b).collect();
         let mut change: Vec<f64> = slopes_after.iter().zip(&slopes).map(|(a, b)| a - b).collect();
@@ -94,6 +107,33 @@ pub fn minimize(
         update(&mut curvature, &moved, &mut change);
     }
     Ok(Some(Found { unknowns: at, converged: false }))
+}
+
+/// Parameters with their value and its slopes.
+type Point = (Vec<f64>, f64, Vec<f64>);
+
+/// Parameters beside these that have a lower value, where the slopes promise none: these are then at the top of a concave function or at a saddle.
+/// All parameters together are changed to either side, once alike and once at random.
+fn lower_beside(
+    value: &mut impl FnMut(&[f64]) -> Result<(f64, Vec<f64>)>,
+    at: &[f64],
+    own: f64,
+    scale: f64,
+    nonnegative: bool,
+) -> Result<Option<Point>> {
+    let mean = at.iter().map(|p| p.abs()).sum::<f64>() / at.len().max(1) as f64;
+    for seed in [None, Some(1)] {
+        for side in [BESIDE, -BESIDE] {
+            let sign = |i: usize| seed.map_or(1.0, |seed| 2.0 * unit_at(seed, i as u64, 0) - 1.0);
+            let moved = at.iter().enumerate().map(|(i, p)| p + side * sign(i) * p.abs().max(mean));
+            let tried: Vec<f64> = moved.map(|p| if nonnegative { p.max(0.0) } else { p }).collect();
+            let (after, slopes) = value(&tried)?;
+            if after < own - ROUNDING * scale.max(own.abs()) {
+                return Ok(Some((tried, after, slopes)));
+            }
+        }
+    }
+    Ok(None)
 }
 
 /// The step to the minimum of `slopesᵀd + ½ dᵀ B d`, with `at + d ≥ 0` if that is asked for. `None` if there is none.

@@ -32,9 +32,13 @@ pub struct CalibrationOutcome {
     /// A body that the model describes has residuals as large as these, or larger, with this probability; it is null where the noise is not
     /// known.
     pub probability: Option<f64>,
+    /// The body explains this share of the sum of the squares of what was measured, each over its noise, or where that is not known over the root
+    /// mean square of its load.
+    pub explained: f64,
     /// The residuals are more than noise: the model does not describe the body. Deviations by noise are multiplied by the misfit, as they are where it exceeds 3.
     pub is_unexplained: bool,
-    /// Moduli and intervals are to be trusted: the search has reached its optimum, and residuals are at most three times the stated noise.
+    /// Moduli and intervals are to be trusted: the search has reached its optimum, residuals are at most three times the stated noise, or without
+    /// one the body explains three quarters of what was measured, and what is held was not measured to move.
     pub is_trusted: bool,
     /// Intervals are those by noise alone, without the error of the mesh.
     pub by_noise_alone: bool,
@@ -110,6 +114,10 @@ pub struct CalibratedLoad {
     pub sigma: Option<f64>,
     /// The root mean square of the residuals over the noise, whose expectation is 1.
     pub misfit: Option<f64>,
+    /// This many displacements of what is held were measured, which no modulus moves; they are not among the measurements.
+    pub held: usize,
+    /// The largest distance of these from where it is held, m; it is null where none was measured.
+    pub held_residual: Option<f64>,
 }
 
 /// A mesh of a calibration.

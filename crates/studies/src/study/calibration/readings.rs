@@ -37,6 +37,8 @@ pub(super) struct Observed {
     pub places: Vec<f64>,
     /// The groups whose forces were measured.
     pub parts: Vec<String>,
+    /// How far what was measured of what is held is from where it is held, m, with the place of its load in `loads`.
+    pub held: Vec<(usize, f64)>,
 }
 
 /// What was measured under a load of the scene.
@@ -123,8 +125,9 @@ impl Observed {
                 }
                 for (axis, value) in moved.iter().enumerate() {
                     let Some(value) = *value else { continue };
-                    // What is held has no displacement to explain, and no noise.
-                    if held.get(&bits).is_some_and(|held| held[axis]) {
+                    // What is held has no displacement to explain: a modulus does not move it.
+                    if let Some(place) = held.get(&bits).and_then(|held| held[axis]) {
+                        all.held.push((own, value - place));
                         continue;
                     }
                     let quantity = Quantity::Displacement { place: index, axis };
@@ -159,6 +162,12 @@ impl Observed {
                     all.observations.push(Observation { load: own, quantity, value, sigma: reaction.sigma });
                 }
             }
+        }
+        if let Some(own) = (0..all.loads.len()).find(|own| all.observations.iter().all(|seen| seen.load != *own)) {
+            let key = format!("measured of \"{}\"", scene.loads()[all.loads[own]].name);
+            let found =
+                if all.held.iter().any(|(load, _)| *load == own) { "those of what is held alone" } else { "none" };
+            return Err(Error::expected(key, "displacements of what may move, or forces", found));
         }
         if all.observations.is_empty() {
             let expected = "loads with measured displacements or forces, as measured = { file = \"…\" } or reactions in a [[load]]";
@@ -215,12 +224,12 @@ impl Observed {
     }
 }
 
-/// The directions that are held of the points of a mesh that are, by their coordinates.
-fn held_places(mesh: &Mesh, support: &Support) -> std::collections::HashMap<Vec<u64>, Vec<bool>> {
+/// Where points of a mesh are held, in the directions in which they are, by their coordinates.
+fn held_places(mesh: &Mesh, support: &Support) -> std::collections::HashMap<Vec<u64>, Vec<Option<f64>>> {
     let d = mesh.dimension;
     let held = (0..mesh.point_count()).filter_map(|p| {
-        let own: Vec<bool> = (0..d).map(|k| support.is_fixed(p * d + k)).collect();
-        own.contains(&true).then(|| (mesh.point(p).iter().map(|x| x.to_bits()).collect(), own))
+        let own = support.prescribed[p * d..(p + 1) * d].to_vec();
+        own.iter().any(Option::is_some).then(|| (mesh.point(p).iter().map(|x| x.to_bits()).collect(), own))
     });
     held.collect()
 }

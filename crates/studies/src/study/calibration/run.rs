@@ -77,7 +77,8 @@ pub fn calibrate_with(
     let (_, cases) = applied_cases(scene, &mesh, &base)?;
     let is_forced: Vec<bool> = cases.iter().map(|case| case.forces.iter().any(|force| *force != 0.0)).collect();
     let supports: Vec<_> = cases.into_iter().map(|case| case.support).collect();
-    let observed = Observed::of(scene, &mesh, &supports, readings, recipe.loads.as_deref())?;
+    let mut observed = Observed::of(scene, &mesh, &supports, readings, recipe.loads.as_deref())?;
+    let held = std::mem::take(&mut observed.held);
     let (weights, noise) = observed.weights()?;
     let has_forces = observed.has_forces() || observed.loads.iter().any(|load| is_forced[*load]);
     // With both moduli Poisson's ratio is seen, and Young's modulus is said not to be.
@@ -128,6 +129,7 @@ pub fn calibrate_with(
             of_regions(&limit, &base, (&scene.region_names(&base), &is_known), noise, found)
         }
     };
+    count_held(&mut outcome, &limit, &held);
     outcome.scene = scene.title().into();
     outcome.unknowns = recipe.asked.name().into();
     outcome.seconds = start.seconds();
@@ -249,6 +251,7 @@ fn empty(limit: &Limit, residuals: &[f64], noise: bool) -> CalibrationOutcome {
         degrees_of_freedom: None,
         misfit: None,
         probability: None,
+        explained: explained(limit, residuals),
         is_unexplained: false,
         is_trusted: true,
         by_noise_alone: true,
@@ -284,10 +287,31 @@ fn loads(limit: &Limit, residuals: &[f64], noise: bool) -> Vec<CalibratedLoad> {
                 residual: rms(&|i| residuals[i] / limit.weights[i]),
                 sigma: noise.then(|| rms(&|i| 1.0 / limit.weights[i])),
                 misfit: noise.then(|| rms(&|i| residuals[i])),
+                held: 0,
+                held_residual: None,
             });
         }
     }
     all
+}
+
+/// The share of the squares of what was measured that is not in the residuals.
+fn explained(limit: &Limit, residuals: &[f64]) -> f64 {
+    let all = limit.observations.iter().zip(&limit.weights);
+    let square: f64 = all.map(|(seen, weight)| (weight * seen.value).powi(2)).sum();
+    1.0 - residuals.iter().map(|r| r * r).sum::<f64>() / square.max(f64::MIN_POSITIVE)
+}
+
+/// Tells each load how far what is held was measured to be from where it is.
+fn count_held(outcome: &mut CalibrationOutcome, limit: &Limit, held: &[(usize, f64)]) {
+    for (index, load) in limit.levels[0].loads.iter().enumerate() {
+        let own: Vec<f64> =
+            held.iter().filter(|(load, _)| *load == index).map(|(_, distance)| distance.abs()).collect();
+        if let Some(record) = outcome.loads.iter_mut().find(|record| record.load == load.name && !own.is_empty()) {
+            record.held = own.len();
+            record.held_residual = own.into_iter().reduce(f64::max);
+        }
+    }
 }
 
 /// The probability that a number with the χ² distribution of `freedom` degrees of freedom exceeds `square` (Wilson and Hilferty 1931).
