@@ -198,10 +198,17 @@ def setting_of(net, given):
     return own
 
 
+def seconds(word):
+    """A time above 0 s, below the 1e300 s that the program in C takes."""
+    if not 0 < float(word) < 1e300:
+        raise argparse.ArgumentTypeError(f"expected a time above 0 s, found {word}")
+    return float(word)
+
+
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("seconds", nargs="?", type=float, default=2.0)
-    for name, kind in [("--rest", str), ("--load", str), ("--step", float), ("--substeps", int), ("--iterations", int)]:
+    arguments.add_argument("seconds", nargs="?", type=seconds, default=2.0)
+    for name, kind in [("--rest", str), ("--load", str), ("--step", seconds), ("--substeps", int), ("--iterations", int)]:
         arguments.add_argument(name, type=kind)
     arguments.add_argument("--single", action="store_true")
     given = arguments.parse_args()
