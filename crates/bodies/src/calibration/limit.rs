@@ -27,7 +27,7 @@ const PLACE: f64 = 0.55;
 const REACH: f64 = 0.25;
 /// What is known of the rest, and of how changes go on, grows by these multiples of the excess of the ratio over that of an edge, which only meshes
 /// without an order have.
-const GROWTH: (f64, f64) = (1.7, 4.0);
+const GROWTH: (f64, f64) = (0.4, 12.0);
 /// The largest ratio with which changes are compared.
 const SLOWEST: f64 = 0.6;
 /// The part of a change that is not that of the mesh before times the ratio goes on by this multiple, and how far to either side 95 % are.
