@@ -204,6 +204,24 @@ def test_intervals_hold_the_truth_of_another_mesh_and_element():
     assert rows >= 16, found
 
 
+def test_intervals_hold_the_truth_of_solids():
+    pytest.importorskip("skfem")
+    found = bench().study(["block", "inclusion"], range(2), noises=(0.01,), kinds=("surface",))
+    # Of 8 intervals of 95 %, fewer than 5 hold with a chance of 0.04 %.
+    assert sum(row["intervals"] * row["held"] for row in found.values()) >= 5, found
+
+
+@pytest.mark.long
+def test_intervals_of_a_clamped_nearly_incompressible_bar_hold():
+    pytest.importorskip("skfem")
+    own = bench()
+    # What is left of the error of the data is far below the intervals.
+    assert own.error_of_data("bar", 0) < 1e-3
+    found = own.study(["bar"], range(3), noises=(0.0, 0.05), kinds=("interior",))
+    # Of 12 intervals of 95 %, fewer than 8 hold with a chance of 0.02 %.
+    assert sum(row["intervals"] * row["held"] for row in found.values()) >= 8, found
+
+
 def test_supports_and_noise_are_written_as_in_scenes():
     mesh = block()
     held = np.array([0.0, 0.0, 1.0])  # what the lower side does not move

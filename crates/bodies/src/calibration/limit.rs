@@ -15,9 +15,9 @@ const LINEAR: f64 = 2.0;
 /// The order of displacements of quadratic elements where strains are bounded.
 const QUADRATIC: f64 = 4.0;
 
-/// On one refinement 95 % of the rests are within this share of that of a clamped edge, and this multiple of the largest change of an unknown:
-/// a first mesh is often coarser than any order holds for.
-const ONCE: (f64, f64) = (0.5, 0.5);
+/// On one refinement the rest is half the way from that of the element to that of a clamped edge, and 95 % of the rests are within this share of the way,
+/// and of unknowns within this multiple of the largest change of all of them: a first mesh is often coarser than any order holds for.
+const ONCE: (f64, f64) = (0.7, 0.5);
 /// Changes whose ratio is below this share of that of a clamped edge have the order that they show.
 const ORDERLY: f64 = 0.9;
 /// Where the ratio is that of an edge or more, the order is only known to be between that of an edge and that of the element: the rest is this
@@ -27,7 +27,7 @@ const PLACE: f64 = 0.55;
 const REACH: f64 = 0.25;
 /// What is known of the rest, and of how changes go on, grows by these multiples of the excess of the ratio over that of an edge, which only meshes
 /// without an order have.
-const GROWTH: (f64, f64) = (1.7, 4.0);
+const GROWTH: (f64, f64) = (0.4, 12.0);
 /// The largest ratio with which changes are compared.
 const SLOWEST: f64 = 0.6;
 /// The part of a change that is not that of the mesh before times the ratio goes on by this multiple, and how far to either side 95 % are.
@@ -63,9 +63,9 @@ impl Rest {
         match refinements {
             0 => return None,
             1 => {
-                // First meshes of linear elements are coarse and go on like an edge, or slower; quadratic ones may have their order.
-                let share = if is_linear { goes_on(most) } else { 0.5 * (goes_on(least) + goes_on(most)) };
-                let reach = ONCE.0 * goes_on(most);
+                let way = goes_on(most) - goes_on(least);
+                let share = goes_on(least) + 0.5 * way;
+                let reach = ONCE.0 * way;
                 let hidden = deviation(ONCE.1);
                 return Some(Rest { share, deviation: deviation(reach), ratio, other: 0.0, hidden });
             }
