@@ -37,7 +37,7 @@ fn rods_of_many_nodes_pass() {
         // Ends come first.
         let order = [0, count - 1].into_iter().chain(1..count - 1);
         let text = format!(
-            "name = \"bar\"\ncell = \"interval\"\ncoordinates = [\"s\"]\nnodes = [\n{}]\n[quadrature]\nrule = \"gauss-legendre\"\npoints = {count}\n\
+            "name = \"bar\"\ntitle = \"Bar\"\ncell = \"interval\"\ncoordinates = [\"s\"]\nnodes = [\n{}]\n[quadrature]\nrule = \"gauss-legendre\"\npoints = {count}\n\
              [[springs]]\ngroup = \"all\"\nkind = \"length\"\nnodes = \"complete\"\n",
             order.map(node).collect::<String>()
         );

@@ -397,7 +397,15 @@ fn wrong_settings_are_one_line() {
         ("{ method = \"newton-xpbd\", substeps = 1 }", "engine.substeps: expected"),
         ("{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.2 }", "engine.substeps: expected at least"),
         (
-            "{ method = \"xpbd\", sweep = \"jacobi\", relaxation = 0.25, substeps = 20 }",
+            "{ method = \"xpbd\", substeps = 14, sweep = \"jacobi\", relaxation = 0.3 }",
+            "engine: expected sweeps with which a body that is let go comes to rest",
+        ),
+        (
+            "{ method = \"xpbd\", relaxation = 1.95 }",
+            "engine: expected sweeps with which a body that is let go comes to rest",
+        ),
+        (
+            "{ method = \"vbd\", substeps = 4, iterations = 1, relaxation = 1.8 }",
             "engine: expected sweeps with which a body that is let go comes to rest",
         ),
         ("\"unity\"", "engine.method: expected one of xpbd, vbd, jolt"),
