@@ -27,12 +27,13 @@ fn all_elements_pass() {
 /// Elements of one dimension with many nodes, whose springs are more than the equations of their nodes, are fitted as those of the plane are.
 #[test]
 fn rods_of_many_nodes_pass() {
-    for count in [4, 5, 6] {
-        let at: Vec<f64> = (0..count).map(|i| -1.0 + 2.0 * i as f64 / (count - 1) as f64).collect();
-        let node = |i: usize| {
-            let others = at.iter().enumerate().filter(|(j, _)| *j != i);
-            let shape: Vec<String> = others.map(|(_, x)| format!("(s - ({x:?}))/({:?})", at[i] - x)).collect();
-            format!("    {{ at = [{:?}], shape = \"{}\" }},\n", at[i], shape.join("*"))
+    for count in [4, 5, 6_i32] {
+        let (last, at) = (count - 1, |i: i32| 2 * i - (count - 1));
+        let node = |i: i32| {
+            let others = (0..count).filter(|j| *j != i);
+            let shape: Vec<String> =
+                others.map(|j| format!("(s - ({}/{last}))*({last}/({}))", at(j), at(i) - at(j))).collect();
+            format!("    {{ at = [\"{}/{last}\"], shape = \"{}\" }},\n", at(i), shape.join("*"))
         };
         // Ends come first.
         let order = [0, count - 1].into_iter().chain(1..count - 1);
