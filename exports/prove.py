@@ -495,14 +495,14 @@ def relaxing(given, missing):
         for share in ["0.5", "0.2"]:
             springs = springs.replace(f"shear = {share},", f"shear = {share}, bulk = {share},")
         (folder / "classical.toml").write_text(springs)
-        nets, found = {}, {}
+        nets, found, counts = {}, {}, {}
         # The classical network gives way under the whole weight.
         for name, gravity in [("exact", "3 0 -9.81"), ("classical", "0.3 0 -1")]:
             run([given.springfit, "run", folder / f"{name}.toml", "--out", folder / name])
             [path] = [path for path in (folder / name).glob("*.json") if path.stem != "report"]
             nets[name] = equilibrium.read(path)
             step = 0.5 * nets[name]["largest_step"]
-            count = round(MOVES_FOR / step)
+            count = counts[name] = round(MOVES_FOR / step)
             for target in ["npz", "newton", "blender"]:
                 run([given.springfit, "export", path, "--to", target, "--gravity", gravity, "--out", folder / name / target])
             run([sys.executable, "run.py", "--time", repr(count * step), "--step", repr(step)], folder / name / "npz")
@@ -517,8 +517,7 @@ def relaxing(given, missing):
             if number is None:
                 missing.append(f"{target} with stress that relaxes, {name}")
                 continue
-            net, points = nets[name], np.array(nets[name]["points"])
-            count = round(MOVES_FOR / (0.5 * net["largest_step"]))
+            net, points, count = nets[name], np.array(nets[name]["points"]), counts[name]
             if target != "npz":
                 python = given.blender if target == "blender" else sys.executable
                 try:

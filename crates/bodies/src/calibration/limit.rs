@@ -6,7 +6,7 @@ use super::level::{Answer, Level};
 use super::sight::Observation;
 use super::unknowns::Unknowns;
 use crate::error::Result;
-use crate::material::Moduli;
+use crate::material::{Hooke, Moduli};
 use crate::mesh::Mesh;
 use crate::whole::ninety_five;
 
@@ -189,11 +189,11 @@ impl Limit<'_> {
         let Level { mesh, materials, owners, .. } = &self.levels[0];
         // Materials beyond their range have no answers, and never come here.
         let Ok(found) = self.unknowns.materials(mesh, materials, owners, theta) else { return LINEAR };
-        let cells =
-            (0..mesh.blocks.len()).flat_map(|block| (0..mesh.blocks[block].cells().len()).map(move |c| (block, c)));
-        let orders =
-            cells.filter_map(|(block, cell)| found.isotropic(block, cell)).map(|own| clamped_order(&own.moduli()));
-        orders.fold(LINEAR, f64::min)
+        // The order falls as λ/μ rises.
+        let ratio = |moduli: &Moduli| moduli.lambda / moduli.mu;
+        let moduli = found.moduli();
+        let least = moduli.values().filter_map(Hooke::moduli).max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        least.map_or(LINEAR, |moduli| clamped_order(&moduli))
     }
 
     /// The ratio of the last two changes of the answers, in units of σ; `None` with fewer than three meshes, or where they agree to rounding.

@@ -56,12 +56,11 @@ pub(super) fn motion_growth(apply: impl Fn(&Block) -> Block, inverse: &[f64], su
     let mut now: Block = inverse.iter().enumerate().map(|own| [start(own); LANES]).collect();
     let mut before = now.clone();
     let size = |x: &Block| x.iter().map(|x| x[0] * x[0]).sum::<f64>().sqrt();
-    let first = size(&now);
+    let (first, square) = (size(&now), substep * substep);
     let mut last = first;
     for _ in 0..SUBSTEPS {
         let mut next: Block = now.iter().zip(&before).map(|(now, before)| [2.0 * now[0] - before[0]; LANES]).collect();
         let force = apply(&next);
-        let square = substep * substep;
         next.iter_mut().zip(&force).zip(inverse).for_each(|((x, f), w)| *x = [x[0] - square * w * f[0]; LANES]);
         (before, now) = (now, next);
         let own = size(&now);

@@ -101,10 +101,10 @@ impl Truncated {
             false => {
                 let constraints = Constraints::new(network, (points, &inverse), setting, is_rigid);
                 if setting.sweep == Sweep::Jacobi {
-                    match is_rigid {
-                        true if !ends(&constraints, points.len()) => return Ok(None),
-                        true => {}
-                        false => check_growth(&constraints, (network, points, &inverse), setting)?,
+                    if !is_rigid {
+                        check_growth(&constraints, (network, points, &inverse), setting)?;
+                    } else if !ends(&constraints, points.len()) {
+                        return Ok(None);
                     }
                 }
                 Sweeps::Springs(constraints)
@@ -309,7 +309,7 @@ impl Truncated {
                 break;
             }
         }
-        // Two motions of nearly one frequency are told apart slowly, and either has it.
+        // Inverse iteration separates two motions of nearly the same frequency slowly, and the eigenvalue of either gives that frequency.
         Ok(if change <= NEARLY { Vibration::of(before, self.substep) } else { None })
     }
 }

@@ -64,15 +64,9 @@ pub fn minimize(
         let (slope, bend) = (dot(&slopes, &step), dot(&step, &product(&curvature, &step)));
         let promise = -slope - 0.5 * bend;
         // The first promise is that of the quadratic function alone, and says nothing of this one.
-        if !(promise > PROMISE * scale.max(own.abs())) && is_scaled {
-            let Some(lower) = lower_beside(&mut value, &at, own, scale, quadratic.nonnegative)? else {
-                return Ok(Some(Found { unknowns: at, converged: true }));
-            };
-            (at, own, slopes) = lower;
-            continue;
-        }
+        let is_flat = is_scaled && !(promise > PROMISE * scale.max(own.abs()));
         let mut found = None;
-        for halvings in 0..HALVINGS {
+        for halvings in 0..if is_flat { 0 } else { HALVINGS } {
             let share = 0.5f64.powi(halvings);
             let tried: Vec<f64> = at.iter().zip(&step).map(|(p, d)| p + share * d).collect();
             let (after, slopes_after) = value(&tried)?;
@@ -83,7 +77,7 @@ pub fn minimize(
         }
         let Some((after, value_after, slopes_after)) = found else {
             // The rounding of the value hides what is left, or the function has a kink.
-            if promise > ROUNDING * scale.max(own.abs()) {
+            if !is_flat && promise > ROUNDING * scale.max(own.abs()) {
                 return Ok(Some(Found { unknowns: at, converged: false }));
             }
             let Some(lower) = lower_beside(&mut value, &at, own, scale, quadratic.nonnegative)? else {

@@ -100,6 +100,11 @@ impl RelaxingBody {
         (0..self.series.len()).filter(relaxes).take(if self.is_uniform() { 1 } else { usize::MAX }).collect()
     }
 
+    /// Whether shear and bulk of a part of the body relax alike.
+    fn is_alike(&self, part: usize) -> bool {
+        self.series[part].as_ref().is_some_and(Relaxation::is_alike)
+    }
+
     /// Whether the cells of a region belong to this part of the body.
     fn is_part(&self, part: usize, region: usize) -> bool {
         self.is_uniform() || part == region
@@ -113,7 +118,7 @@ impl RelaxingBody {
                 if !self.is_part(part, region) {
                     return Hooke::Isotropic(Moduli { lambda: 0.0, mu: 0.0 });
                 }
-                if self.series[part].as_ref().is_some_and(Relaxation::is_alike) {
+                if self.is_alike(part) {
                     return hooke.clone();
                 }
                 // That every cell is isotropic was checked.
@@ -134,7 +139,7 @@ impl RelaxingBody {
 
     /// The parts of shear and of bulk of a part of the body, one where both relax alike; at large deformation bulk does not relax.
     fn shares(&self, part: usize) -> impl Iterator<Item = Share> + use<> {
-        let is_one = self.is_large || self.series[part].as_ref().is_some_and(Relaxation::is_alike);
+        let is_one = self.is_large || self.is_alike(part);
         [Share::Shear(part), Share::Bulk(part)].into_iter().take(if is_one { 1 } else { 2 })
     }
 
@@ -189,7 +194,7 @@ impl RelaxingBody {
     /// The material of which a share of one modulus is left, in the part of the body that has it; or of both, where both relax alike.
     fn softened(&self, share: Share, left: f64) -> Result<MaterialMap> {
         let (part, moduli) = match share {
-            Share::Shear(part) if self.shares(part).count() == 1 && !self.is_large => (part, [left, left]),
+            Share::Shear(part) if self.is_alike(part) && !self.is_large => (part, [left, left]),
             Share::Shear(part) => (part, [left, 1.0]),
             Share::Bulk(part) => (part, [1.0, left]),
             Share::Elastic => return Ok(self.material.clone()),
@@ -219,9 +224,8 @@ impl RelaxingBody {
                 return Ok(false);
             }
         }
-        let left = |region: usize, share: Share| self.series[region].as_ref().and_then(|_| self.left(share));
         let material = self.of_moduli(|region| {
-            [Share::Shear(region), Share::Bulk(region)].map(|share| left(region, share).unwrap_or(1.0))
+            [Share::Shear(region), Share::Bulk(region)].map(|share| self.left(share).unwrap_or(1.0))
         })?;
         let made = made(&material)?;
         relaxed.push((-1.0, &made));
