@@ -53,7 +53,11 @@ const STEPS: usize = 60;
 const SETTLED: f64 = 1e-7;
 /// The largest change of an unknown in a step, a logarithm.
 const LARGEST: f64 = 1.5;
-/// The unknowns that make the sum of squares least. `noise` says whether the weights are those of known noise.
+/// The step at which a search on some of the meshes ends: the next mesh moves the optimum by more.
+const NEAR: f64 = 0.01;
+
+/// The unknowns that make the sum of squares least. `noise` says whether the weights are those of known noise. A search on the first meshes, whose
+/// steps cost little, gives the start on all of them.
 ///
 /// # Errors
 /// There are as many unknowns as measurements, or no equilibrium at the first guess.
@@ -69,52 +73,28 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     let nothing = || {
         Error::expected("load", "loads under which the body has an equilibrium", "none").of_kind(ErrorKind::Infeasible)
     };
-    let finest = limit.levels.len() - 1;
-    let mut theta = vec![0.0; m];
-    let mut now = limit.at(&theta, finest)?.ok_or_else(nothing)?;
-    let square = |at: &Limiting| {
-        let r = limit.residuals(&at.values());
-        dot(&r, &r)
-    };
-    let (mut damping, mut fault, mut steps) = (0.0, Some(Fault::Steps), 0);
-    for count in 0..STEPS {
-        if !goes_on(count) {
-            break;
+    let (meshes, guess) = (limit.levels.len(), vec![0.0; m]);
+    let (mut start, mut before) = (guess.clone(), 0);
+    for some in 1..meshes {
+        let mut goes_on = |steps| goes_on(before + steps);
+        if let Some(found) = search(limit, some, start.clone(), NEAR, &mut goes_on)? {
+            before += found.steps;
+            // Where no optimum is near, the guess is the better start.
+            start = if found.fault.is_none() { found.theta } else { guess.clone() };
         }
-        steps = count + 1;
-        let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
-        let before = square(&now);
-        let mut found = None;
-        // Twelve factors of ten shorten a step below all that can be seen.
-        for _ in 0..12 {
-            let step = damped(&columns, &residuals, damping);
-            let largest = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
-            if largest < SETTLED {
-                fault = None;
-                break;
-            }
-            let length = (LARGEST / largest).min(1.0);
-            let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
-            if let Some(next) = limit.at(&tried, finest)?
-                && square(&next) < before
-            {
-                found = Some((tried, next));
-                break;
-            }
-            // Marquardt's factors of ten, from a damping that hardly changes a step.
-            damping = if damping == 0.0 { 1e-4 } else { 10.0 * damping };
-        }
-        let Some((tried, next)) = found else {
-            // Near the optimum rounding decides.
-            let step = damped(&columns, &residuals, 0.0);
-            // A relative change of 1e-4 is far below the intervals that are reported.
-            let near = step.iter().all(|s| s.abs() < 1e-4);
-            fault = fault.filter(|_| !near).map(|_| Fault::Stalled);
-            break;
-        };
-        (theta, now) = (tried, next);
-        damping = if damping < 1e-4 { 0.0 } else { damping / 10.0 };
     }
+    let mut found = search(limit, meshes, start.clone(), SETTLED, &mut |steps| goes_on(before + steps))?;
+    // Coarse meshes that lock may lead astray.
+    if start != guess && found.as_ref().is_none_or(|found| found.fault.is_some()) {
+        before += found.as_ref().map_or(0, |found| found.steps);
+        let other = search(limit, meshes, guess, SETTLED, &mut |steps| goes_on(before + steps))?;
+        let square = |found: &Option<Reached>| found.as_ref().map_or(f64::INFINITY, |found| found.square(limit));
+        if square(&other) < square(&found) {
+            found = other;
+        }
+    }
+    let Reached { theta, now, fault, steps } = found.ok_or_else(nothing)?;
+    let steps = before + steps;
     let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
     let known = Determination::by(&columns, &residuals, residuals.len(), noise.then_some(1.0))?;
     let size = if noise { 1.0 } else { known.residual };
@@ -150,6 +130,79 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
         steps,
         fault,
     })
+}
+
+/// Where a search has come to.
+struct Reached {
+    theta: Vec<f64>,
+    now: Limiting,
+    /// Where it has ended before the optimum, why.
+    fault: Option<Fault>,
+    steps: usize,
+}
+
+impl Reached {
+    /// The sum of the squares of the residuals.
+    fn square(&self, limit: &Limit) -> f64 {
+        sum_of_squares(limit, &self.now)
+    }
+}
+
+fn sum_of_squares(limit: &Limit, at: &Limiting) -> f64 {
+    let r = limit.residuals(&at.values());
+    dot(&r, &r)
+}
+
+/// Steps of Levenberg and Marquardt on so many of the meshes until one is below `settled`; `None` without an equilibrium at the start.
+fn search(
+    limit: &Limit,
+    meshes: usize,
+    mut theta: Vec<f64>,
+    settled: f64,
+    goes_on: &mut dyn FnMut(usize) -> bool,
+) -> Result<Option<Reached>> {
+    let finest = meshes - 1;
+    let Some(mut now) = limit.at(&theta, meshes, finest)? else { return Ok(None) };
+    let (mut damping, mut fault, mut steps) = (0.0, Some(Fault::Steps), 0);
+    for count in 0..STEPS {
+        if !goes_on(count) {
+            break;
+        }
+        steps = count + 1;
+        let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
+        let before = sum_of_squares(limit, &now);
+        let mut found = None;
+        // Twelve factors of ten shorten a step below all that can be seen.
+        for _ in 0..12 {
+            let step = damped(&columns, &residuals, damping);
+            let largest = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
+            if largest < settled {
+                fault = None;
+                break;
+            }
+            let length = (LARGEST / largest).min(1.0);
+            let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
+            if let Some(next) = limit.at(&tried, meshes, finest)?
+                && sum_of_squares(limit, &next) < before
+            {
+                found = Some((tried, next));
+                break;
+            }
+            // Marquardt's factors of ten, from a damping that hardly changes a step.
+            damping = if damping == 0.0 { 1e-4 } else { 10.0 * damping };
+        }
+        let Some((tried, next)) = found else {
+            // Near the optimum rounding decides.
+            let step = damped(&columns, &residuals, 0.0);
+            // A relative change of 1e-4 is far below the intervals that are reported.
+            let near = step.iter().all(|s| s.abs() < 1e-4);
+            fault = fault.filter(|_| !near).map(|_| Fault::Stalled);
+            break;
+        };
+        (theta, now) = (tried, next);
+        damping = if damping < 1e-4 { 0.0 } else { damping / 10.0 };
+    }
+    Ok(Some(Reached { theta, now, fault, steps }))
 }
 
 /// The step of Levenberg and Marquardt in units in which each unknown changes the residuals alike.

@@ -149,7 +149,7 @@ fn no_equilibrium() -> Error {
 
 impl Search<'_, '_> {
     fn at(&self, theta: &[f64]) -> Result<Option<Limiting>> {
-        self.limit.at(theta, 0)
+        self.limit.at(theta, self.limit.levels.len(), 0)
     }
 
     fn again(&self, theta: &[f64]) -> Result<Limiting> {

@@ -11,9 +11,9 @@ use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::{CellIndex, Embedding, Mesh};
 use crate::model::{Body, Elastic, Support, displaced, each_cell_forces};
-use crate::solve::{Equations, Newton, StaticSolver, System};
+use crate::solve::{Equations, KnownPatterns, Newton, StaticSolver};
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 
 /// A load on a mesh.
 #[derive(Debug, Clone)]
@@ -47,6 +47,8 @@ pub struct Level<'a> {
     pub solver: StaticSolver,
     /// The laws at large deformation, and how loads are followed.
     pub large: Option<(&'a Laws<'a>, Newton)>,
+    /// The patterns of the equations under each support, which no moduli change.
+    patterns: KnownPatterns,
     /// The last displacements, from which the next equilibria are searched.
     guesses: Mutex<Vec<Option<Vec<f64>>>>,
 }
@@ -84,7 +86,8 @@ impl<'a> Level<'a> {
         large: Option<(&'a Laws<'a>, Newton)>,
     ) -> Level<'a> {
         let guesses = Mutex::new(vec![None; loads.len()]);
-        Level { mesh, materials, owners, loads, places, parts, solver, large, guesses }
+        let patterns = KnownPatterns::default();
+        Level { mesh, materials, owners, loads, places, parts, solver, large, patterns, guesses }
     }
 
     /// What the finite elements answer at θ; `None` if a load has no stable equilibrium there.
@@ -151,7 +154,7 @@ impl<'a> Level<'a> {
         let mut all = Vec::new();
         for loads in groups {
             let support = &self.loads[loads[0]].support;
-            let found = Equations::of_body(&self.mesh, &moduli, support, (self.solver, SOLUTIONS))?;
+            let found = Equations::of_body(&self.mesh, &moduli, support, (self.solver, SOLUTIONS), &self.patterns)?;
             let Some(equations) = found else { return Ok(None) };
             let forces: Vec<Vec<f64>> = loads.iter().map(|&l| self.loads[l].forces.clone()).collect();
             let displacements = equations.solve_all(&forces)?;
@@ -191,8 +194,9 @@ impl<'a> Level<'a> {
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let mut all = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {
-            let pattern: Arc<System> =
-                Arc::new(Newton::pattern(&rest.tangent, &load.support)?.placed(&self.mesh.points, self.mesh.dimension));
+            let make =
+                || Ok(Newton::pattern(&rest.tangent, &load.support)?.placed(&self.mesh.points, self.mesh.dimension));
+            let pattern = self.patterns.under(&load.support, make)?;
             let (points, guess) = (&self.mesh.points, guesses[index].as_deref());
             let found = newton.reach_stable(&model, points, &load.support, &load.forces, guess, &pattern)?;
             let Some((u, equations)) = found else { return Ok(None) };

@@ -167,10 +167,10 @@ impl Limiting {
 }
 
 impl Limit<'_> {
-    /// The answers at θ, with the derivatives on the mesh with this number.
-    pub(super) fn at(&self, theta: &[f64], derived: usize) -> Result<Option<Limiting>> {
+    /// The answers at θ of so many meshes, with the derivatives on the mesh with this number.
+    pub(super) fn at(&self, theta: &[f64], meshes: usize, derived: usize) -> Result<Option<Limiting>> {
         let (mut answers, mut columns) = (Vec::new(), Vec::new());
-        for (index, level) in self.levels.iter().enumerate() {
+        for (index, level) in self.levels[..meshes].iter().enumerate() {
             let found = level.answer(&self.unknowns, &self.observations, theta, derived == index)?;
             let Some(Answer { values, columns: own }) = found else { return Ok(None) };
             answers.push(values);
@@ -180,7 +180,7 @@ impl Limit<'_> {
         }
         let mut found = Limiting { answers, columns, rest: None };
         let edge = self.edge(theta);
-        found.rest = Rest::of(&self.levels[0].mesh, edge, self.levels.len() - 1, self.ratio(&found));
+        found.rest = Rest::of(&self.levels[0].mesh, edge, meshes - 1, self.ratio(&found));
         Ok(Some(found))
     }
 

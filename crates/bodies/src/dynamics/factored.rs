@@ -3,14 +3,14 @@
 use super::equations::{End, Equations, Solved};
 use crate::error::{Error, ErrorKind, Result};
 use crate::memory;
-use crate::solve::elimination_order;
+use crate::solve::{elimination_order, positions};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::prelude::MatMut;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::{Pair, SparseColMatRef, SymbolicSparseColMat};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, Par, Side};
 
 /// The work per entry, as a share of faer's default, from which columns are eliminated in dense groups. With three
@@ -65,17 +65,18 @@ impl Factored {
             order.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
             let pair = |&(row, column): &(usize, usize)| {
                 let (a, b) = (place[row], place[column]);
-                (a != usize::MAX && b != usize::MAX).then(|| Pair::new(a.max(b), a.min(b)))
+                (a != usize::MAX && b != usize::MAX).then(|| (a.max(b), a.min(b)))
             };
-            let diagonal = (0..n).map(|i| Pair::new(i, i));
-            let pairs: Vec<Pair<usize, usize>> = places.iter().filter_map(pair).chain(diagonal).collect();
+            let diagonal = (0..n).map(|i| (i, i));
+            let pairs: Vec<(usize, usize)> = places.iter().filter_map(pair).chain(diagonal).collect();
             (place, pairs)
         };
-        let turned = |pairs: &[Pair<usize, usize>]| -> Vec<Pair<usize, usize>> {
-            pairs.iter().map(|pair| Pair::new(pair.col, pair.row)).collect()
+        let turned = |pairs: &[(usize, usize)]| -> Vec<(usize, usize)> {
+            pairs.iter().map(|&(row, column)| (column, row)).collect()
         };
-        let pattern_of = |pairs: &[Pair<usize, usize>]| {
-            SymbolicSparseColMat::try_new_from_indices(n, n, pairs).map(|(pattern, _)| pattern).map_err(|_| large())
+        let pattern_of = |pairs: &[(usize, usize)]| {
+            let list = |tell: &mut dyn FnMut(usize, usize)| pairs.iter().for_each(|&(row, column)| tell(row, column));
+            positions(n, list).map(|(pattern, _)| pattern).map_err(|_| large())
         };
         // The rows are stored in the order that keeps the factor sparse, so that no step permutes.
         let (_, mut pairs) = lower(&free);

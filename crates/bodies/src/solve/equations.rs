@@ -5,6 +5,7 @@ use super::levels::Levels;
 use super::linear::{Factor, System};
 use super::method::StaticSolver;
 use super::modes::{Modes, lowest_modes};
+use super::patterns::KnownPatterns;
 use crate::clock::Clock;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, Hooke};
@@ -60,7 +61,7 @@ impl Equations {
         Ok(levels.ok().map(|levels| Equations::Iterated(Arc::new(levels), solver)))
     }
 
-    /// Those of the finite elements, for about `loads` forces; `None` if some motion has no stiffness.
+    /// Those of the finite elements, for about `loads` forces, on a pattern that is known; `None` if some motion has no stiffness.
     ///
     /// # Errors
     /// The equations do not fit into memory, or are not those of a body.
@@ -69,6 +70,7 @@ impl Equations {
         moduli: &CellMap<Hooke>,
         support: &Support,
         (solver, loads): (StaticSolver, usize),
+        known: &KnownPatterns,
     ) -> Result<Option<Equations>> {
         let solver = solver.suited(mesh, moduli);
         if solver.iterates(mesh, loads) {
@@ -80,7 +82,8 @@ impl Equations {
             }
         }
         check_body(mesh)?;
-        Equations::factored(&finite_elements(mesh, moduli), support, &mesh.points, mesh.dimension)
+        let entries = finite_elements(mesh, moduli);
+        Equations::of_system(known.renewed(&entries, support, &mesh.points, mesh.dimension)?)
     }
 
     /// The displacements under the nodal forces f, `[points · dimension]`, N, and the relative residual; refined where there is a

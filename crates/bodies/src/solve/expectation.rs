@@ -2,9 +2,9 @@
 
 use super::cholesky::Analysis;
 use super::ordering::Places;
+use super::positions::positions;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use faer::sparse::{Pair, SymbolicSparseColMat};
 use faer::{Mat, Side};
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -37,18 +37,18 @@ pub fn factor_cost_of<'a>(
     coupled: impl Iterator<Item = &'a [usize]>,
 ) -> Result<FactorCost> {
     let count = points.len() / dimension.max(1);
-    let mut places: Vec<Pair<usize, usize>> = (0..count).map(|point| Pair::new(point, point)).collect();
+    let mut places: Vec<(usize, usize)> = (0..count).map(|point| (point, point)).collect();
     for nodes in coupled {
         let all = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b)));
-        places.extend(all.filter(|(a, b)| a != b).map(|(a, b)| Pair::new(a, b)));
+        places.extend(all.filter(|(a, b)| a != b));
     }
     cost_of(points, dimension, places)
 }
 
 /// [`factor_cost_of`], without parameters of type: compiled here, where code is optimised, and not with each caller.
-fn cost_of(points: &[f64], dimension: usize, places: Vec<Pair<usize, usize>>) -> Result<FactorCost> {
+fn cost_of(points: &[f64], dimension: usize, places: Vec<(usize, usize)>) -> Result<FactorCost> {
     let count = points.len() / dimension.max(1);
-    let pattern = SymbolicSparseColMat::try_new_from_indices(count, count, &places);
+    let pattern = positions(count, |tell| places.iter().for_each(|&(row, column)| tell(row, column)));
     let (pattern, _) = pattern.map_err(|_| Error::new("the pattern of the stiffness does not fit into memory"))?;
     let places = Places { coordinates: points.to_vec(), dimension };
     let (entries, operations) = Analysis::new(pattern.as_ref(), Some(&places))?.cost();

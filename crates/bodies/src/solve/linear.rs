@@ -4,6 +4,7 @@
 
 use super::cholesky::{Analysis, Cholesky, Pivoted, out_of_memory};
 use super::ordering::Places;
+use super::positions::positions;
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::model::{ADVICE, Entries, Support};
@@ -13,7 +14,7 @@ use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::solvers::Lu;
-use faer::sparse::{CreationError, FaerError, Pair, SparseColMat, SymbolicSparseColMat};
+use faer::sparse::{FaerError, SparseColMat, SymbolicSparseColMat};
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 
@@ -80,22 +81,14 @@ impl System {
         let mut place = vec![usize::MAX; support.prescribed.len()];
         let free: Vec<usize> = (0..place.len()).filter(|&dof| !support.is_fixed(dof)).collect();
         free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
-        let mut places = Vec::with_capacity(2 * entries.len());
-        each_value(entries, &place, |row, column, _| {
-            if place[column] != usize::MAX {
-                places.push(Pair::new(place[row], place[column]));
-            }
-        });
-        let (symbolic, _) =
-            SymbolicSparseColMat::try_new_from_indices(free.len(), free.len(), &places).map_err(|e| match e {
-                CreationError::Generic(cause) => too_large(cause),
-                CreationError::OutOfBounds { .. } => unreachable!("each place is that of a free degree of freedom"),
-            })?;
-        let (starts, rows) = (symbolic.col_ptr(), symbolic.row_idx());
-        let slot = |Pair { row, col }: &Pair<usize, usize>| {
-            starts[*col] + rows[starts[*col]..starts[*col + 1]].partition_point(|other| other < row)
+        let list = |tell: &mut dyn FnMut(usize, usize)| {
+            each_value(entries, &place, |row, column, _| {
+                if place[column] != usize::MAX {
+                    tell(place[row], place[column]);
+                }
+            });
         };
-        let slots = places.iter().map(slot).collect();
+        let (symbolic, slots) = positions(free.len(), list).map_err(too_large)?;
         let (places, cholesky) = Default::default();
         Ok(System::of(Arc::new(Pattern { free, place, symbolic, slots, places, cholesky }), entries, support))
     }
@@ -135,6 +128,7 @@ impl System {
                 }
             }
         });
+        debug_assert!(slots.next().is_none(), "a pattern is that of as many entries");
         let (values, lost) = sums.iter().map(|sum| (sum.kept().hi, sum.kept().lo)).unzip();
         let matrix = SparseColMat::new(pattern.symbolic.clone(), values);
         System { matrix, lost, reaction, prescribed: support.prescribed.clone(), pattern }

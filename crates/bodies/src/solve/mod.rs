@@ -19,6 +19,8 @@ mod method;
 mod modes;
 mod newton;
 mod ordering;
+mod patterns;
+mod positions;
 mod stability;
 mod stable;
 
@@ -37,5 +39,7 @@ pub(crate) use modes::generator;
 pub use modes::{Modes, lowest_modes};
 pub(crate) use newton::ROUGHEST;
 pub use newton::{Ending, Equilibrium, Newton};
+pub use patterns::KnownPatterns;
+pub(crate) use positions::positions;
 pub use springfit_numerics::dense::eigenvalues;
 pub use stability::{Stability, Standing, compare_energies, is_definite};

@@ -7,7 +7,7 @@ use super::target::{Frequencies, Target};
 use crate::engine::{Truncated, TruncatedModel};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{BlockStiffness, Elastic, Network, Support, displaced};
-use crate::solve::{Equations, Newton, System};
+use crate::solve::{Equations, KnownPatterns, Newton, System};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -20,8 +20,10 @@ pub struct Displacements<'a> {
     pub(super) scales: Vec<Vec<f64>>,
     /// Groups of loads with the same support.
     pub(super) groups: Vec<Vec<usize>>,
-    /// The equations of each group, whose pattern is reused.
-    systems: Mutex<Vec<Option<Arc<System>>>>,
+    /// The patterns of the equations under each support.
+    patterns: KnownPatterns,
+    /// The patterns of the tangents under each support, which have entries of their own on the diagonal.
+    tangents: KnownPatterns,
     /// The last stiffness that was solved by iterations, whose pattern is reused.
     blocks: Mutex<Option<BlockStiffness>>,
     /// The displacements from which the next search for an equilibrium starts.
@@ -76,9 +78,9 @@ impl<'a> Displacements<'a> {
             }
         }
         // The last group is that of the frequencies.
-        let systems = Mutex::new(vec![None; groups.len() + 1]);
+        let (patterns, tangents) = Default::default();
         let blocks = Mutex::default();
-        Ok(Displacements { object, targets, frequencies, scales, groups, systems, blocks, guesses })
+        Ok(Displacements { object, targets, frequencies, scales, groups, patterns, tangents, blocks, guesses })
     }
 
     /// The number of displacements that are known and free to change, and of frequencies.
@@ -134,20 +136,12 @@ impl<'a> Displacements<'a> {
     }
 
     /// The equations of each support at θ; `None` if the stiffness at rest is not positive definite.
-    fn equations(&self, theta: &[f64], supports: &[(usize, &Support)]) -> Result<Option<Vec<Equations>>> {
+    fn equations(&self, theta: &[f64], supports: &[&Support]) -> Result<Option<Vec<Equations>>> {
         let object = self.object;
         let Some(solver) = object.iterations else {
             let entries = object.stiffness(theta);
-            let one = |(group, support): &(usize, &Support)| {
-                let lock = || self.systems.lock().expect("nothing panics while it holds the systems");
-                // Taken out, so that the lock is free while the equations are assembled.
-                let known = lock()[*group].take();
-                let system = Arc::new(match known {
-                    Some(known) => known.renewed(&entries, support)?,
-                    None => System::new(&entries, support)?.placed(object.points, object.dimension()),
-                });
-                lock()[*group] = Some(system.clone());
-                Equations::of_system(system)
+            let one = |support: &&Support| {
+                Equations::of_system(self.patterns.renewed(&entries, support, object.points, object.dimension())?)
             };
             return supports.iter().map(one).collect();
         };
@@ -156,8 +150,7 @@ impl<'a> Displacements<'a> {
         *known = Some(stiffness.clone());
         // Solutions take long and need the pattern no more.
         drop(known);
-        let one =
-            |(_, support): &(usize, &Support)| Equations::iterated(stiffness.clone(), object.points, support, solver);
+        let one = |support: &&Support| Equations::iterated(stiffness.clone(), object.points, support, solver);
         supports.iter().map(one).collect()
     }
 
@@ -168,7 +161,7 @@ impl<'a> Displacements<'a> {
         }
         let mut displacements = vec![Vec::new(); self.targets.len()];
         let mut tangents = Vec::new();
-        let supports = self.groups.iter().enumerate().map(|(i, group)| (i, &self.targets[group[0]].support));
+        let supports = self.groups.iter().map(|group| &self.targets[group[0]].support);
         let Some(all) = self.equations(theta, &supports.collect::<Vec<_>>())? else { return Ok(None) };
         for (group, equations) in self.groups.iter().zip(all) {
             let forces: Vec<Vec<f64>> = group.iter().map(|&l| self.targets[l].forces.clone()).collect();
@@ -257,23 +250,19 @@ impl<'a> Displacements<'a> {
     /// Equations with the pattern of the tangents under each support, which are analysed once.
     fn patterns(&self, network: &Network) -> Result<Option<Vec<Arc<System>>>> {
         let Some(rest) = network.respond(self.object.points) else { return Ok(None) };
-        let mut systems = self.systems.lock().expect("nothing panics while it holds the systems");
-        let mut one = |(i, group): (usize, &Vec<usize>)| {
-            if let Some(known) = &systems[i] {
-                return Ok(known.clone());
-            }
-            let system = Newton::pattern(&rest.tangent, &self.targets[group[0]].support)?
-                .placed(self.object.points, self.object.dimension());
-            Ok(systems[i].insert(Arc::new(system)).clone())
+        let one = |group: &Vec<usize>| {
+            let support = &self.targets[group[0]].support;
+            let (points, dimension) = (self.object.points, self.object.dimension());
+            self.tangents.under(support, || Ok(Newton::pattern(&rest.tangent, support)?.placed(points, dimension)))
         };
-        self.groups.iter().enumerate().map(&mut one).collect::<Result<_>>().map(Some)
+        self.groups.iter().map(one).collect::<Result<_>>().map(Some)
     }
 
     /// The residuals of the frequencies and the derivative `∂/∂c_s = ½ √w φ_iᵀ K_s φ_i/ω_i²` of each.
     fn vibrations(&self, theta: &[f64]) -> Result<Option<Vibrating>> {
         let Some(wanted) = self.frequencies else { return Ok(Some((Vec::new(), Vec::new()))) };
         let (object, count) = (self.object, wanted.squares.len());
-        let Some(equations) = self.equations(theta, &[(self.groups.len(), &wanted.support)])? else { return Ok(None) };
+        let Some(equations) = self.equations(theta, &[&wanted.support])? else { return Ok(None) };
         let modes = equations[0].lowest_modes(&wanted.masses, object.dimension(), count)?;
         let root = 0.5 * wanted.weight.sqrt();
         let residuals = modes.squares.iter().zip(&wanted.squares).map(|(a, b)| root * (a / b).ln()).collect();

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::material::{CellMap, Hooke, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Support, finite_elements};
-use crate::solve::{Equations, KnownEquations, StaticSolver};
+use crate::solve::{Equations, KnownEquations, KnownPatterns, StaticSolver};
 use crate::study::progress::{Event, Progress};
 
 /// The answer of the finite elements of a finer mesh to one load.
@@ -28,7 +28,8 @@ pub(super) fn equations(
     support: &Support,
     (solver, loads): (StaticSolver, usize),
 ) -> Result<Equations> {
-    Equations::of_body(mesh, moduli, support, (solver, loads))?.ok_or_else(|| not_definite(mesh))
+    Equations::of_body(mesh, moduli, support, (solver, loads), &KnownPatterns::default())?
+        .ok_or_else(|| not_definite(mesh))
 }
 
 /// The answers to all loads; equations are kept in `known`, and `stage` names the work.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
-use crate::solve::{Equations, StaticSolver};
+use crate::solve::{Equations, KnownPatterns, StaticSolver};
 
 /// Returns the processor time of a solution with finite elements, s, or `None` if some motion has no stiffness.
 ///
@@ -14,7 +14,7 @@ use crate::solve::{Equations, StaticSolver};
 /// The equations do not fit into memory.
 pub fn seconds_of_body(mesh: &Mesh, moduli: &CellMap<Hooke>, case: &Case, solver: StaticSolver) -> Result<Option<f64>> {
     let start = Clock::start();
-    let equations = Equations::of_body(mesh, moduli, &case.support, (solver, 1))?;
+    let equations = Equations::of_body(mesh, moduli, &case.support, (solver, 1), &KnownPatterns::default())?;
     finished(equations, case, start)
 }
 

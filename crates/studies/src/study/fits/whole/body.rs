@@ -11,7 +11,7 @@ use crate::fit::CellFits;
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network, Support, unheld_bodies};
-use crate::solve::{Equations, KnownEquations, Newton, StaticSolver};
+use crate::solve::{Equations, KnownEquations, KnownPatterns, Newton, StaticSolver};
 use crate::study::body::Case;
 use crate::study::checkpoint::{Controls, Identity, Saved};
 use crate::study::progress::{Event, Progress};
@@ -70,7 +70,13 @@ impl<'a> WholeBody<'a> {
     pub(in crate::study) fn equations(&self, key: &str, support: &Support) -> Result<Equations> {
         self.known.under(support, || {
             self.check_held(key, support)?;
-            let found = Equations::of_body(self.mesh, &self.material.moduli(), support, (self.solver, LOADS))?;
+            let found = Equations::of_body(
+                self.mesh,
+                &self.material.moduli(),
+                support,
+                (self.solver, LOADS),
+                &KnownPatterns::default(),
+            )?;
             found.ok_or_else(|| Error::expected(key, self.holding(support), "motions without stiffness"))
         })
     }
