@@ -26,6 +26,7 @@ pub fn available() -> Option<u64> {
         read("meminfo").and_then(|text| Some(kilobytes(&text, "MemAvailable:")? + kilobytes(&text, "SwapFree:")?));
     let process = || {
         let (limits, status) = (read("self/limits")?, read("self/status")?);
+        // A limit may have been lowered below what is in use.
         let left = |limit: &str, used: &str| Some(bytes(&limits, limit)?.saturating_sub(kilobytes(&status, used)?));
         left("Max address space", "VmSize:").into_iter().chain(left("Max data size", "VmData:")).min()
     };

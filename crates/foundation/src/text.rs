@@ -75,6 +75,7 @@ pub fn not_a_line(text: &str, is_expression: bool) -> Option<String> {
 
 /// The number with so many significant digits at most, such as `0.0123` or `1.5e-7`.
 pub fn rounded(value: f64, digits: usize) -> String {
+    // The digits are rounded in decimal, and read again so that the fewest of them are printed.
     let short = format!("{:.*e}", digits - 1, value).parse::<f64>().unwrap_or(value);
     match short.abs() {
         0.0 | 1e-4..1e6 => format!("{short}"),

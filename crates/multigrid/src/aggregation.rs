@@ -23,12 +23,14 @@ fn strong<const N: usize>(a: &BlockMatrix<N, N>, is_held: &[bool], threshold: f6
         a.rows(),
         || (),
         |(), row, list| {
+            // A held node does not move on any level, so that no aggregate needs it.
             if is_held[row] {
                 return;
             }
             for at in pattern.starts[row]..pattern.starts[row + 1] {
                 let column = pattern.columns[at] as usize;
                 let coupling = square(&a.values[at]);
+                // Squares are compared, so that most blocks need no root.
                 let bound = threshold * threshold * sizes[row] * sizes[column];
                 if column != row && !is_held[column] && coupling > bound {
                     // The diagonal of a node may be zero, by which nothing may be divided.

@@ -60,9 +60,11 @@ impl<const D: usize> BlockMatrix<D, D> {
                     Ok(entries)
                 })
                 .collect();
+            // The errors are looked through in the order of the groups, so that the same one is told on any number of threads.
             let parts = parts.into_iter().collect::<Result<Vec<Vec<f64>>, E>>()?;
             let touched = batch.iter().flat_map(|&group| groups.of(group)).copied();
             let (low, high) = touched.fold((u32::MAX, 0), |(low, high), node| (low.min(node), high.max(node)));
+            // Groups without nodes touch no row; the fold then has its start.
             if low > high {
                 continue;
             }
@@ -77,6 +79,8 @@ impl<const D: usize> BlockMatrix<D, D> {
                 pieces.push((begin..end, own));
                 rest = others;
             }
+            // Each thread goes through all groups of the batch and adds what falls into its rows: no lock is needed, and each block is
+            // summed in the order of the groups.
             pieces.into_par_iter().for_each(|(rows, values)| {
                 let before = pattern.starts[rows.start];
                 for (part, entries) in batch.chunks(PART).zip(&parts) {

@@ -6,6 +6,7 @@ use crate::entry::Entry;
 pub type Block<const R: usize, const C: usize> = [[f64; C]; R];
 
 /// A pivot below this share of its diagonal entry is rounding.
+// A pivot is a difference of at most N ≤ 6 numbers of the size of the entry, which rounding changes by less than 1e-15 of it.
 const ROUNDING: f64 = 1e-14;
 
 pub(crate) const fn zero<const R: usize, const C: usize>() -> Block<R, C> {
@@ -87,6 +88,7 @@ pub fn inverse<const N: usize>(a: &Block<N, N>, free: &[bool; N]) -> Option<Bloc
             let entry = if free[i] && free[j] { a[i][j] } else { f64::from(u8::from(i == j)) };
             let rest = entry - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
             if i == j {
+                // The comparison is negated so that a pivot that is not a number is refused as well.
                 if !(rest > ROUNDING * entry && rest.is_finite()) {
                     return None;
                 }
@@ -131,6 +133,8 @@ pub fn softest<const N: usize>(a: &Block<N, N>, free: &[bool; N]) -> [f64; N] {
                     continue;
                 }
                 let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                // Of the two angles that make the entry zero this is the one of at most 45°, with which the cyclic method converges
+                // (Forsythe and Henrici 1960). Equal diagonal entries give theta = 0, whose signum is 1, and an angle of 45°.
                 let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;
@@ -144,6 +148,7 @@ pub fn softest<const N: usize>(a: &Block<N, N>, free: &[bool; N]) -> [f64; N] {
             }
         }
     }
+    // The rows that are not free have the eigenvalue zero, which would pass for the least one.
     let least = (0..N).filter(|i| free[*i]).min_by(|i, j| a[*i][*i].total_cmp(&a[*j][*j]));
     least.map_or([0.0; N], |least| std::array::from_fn(|k| v[k][least]))
 }

@@ -37,12 +37,15 @@ impl<const N: usize> Bottom<N> {
             (0..held.len()).for_each(|j| (dense[(i, j)], dense[(j, i)]) = (0.0, 0.0));
             dense[(i, i)] = 1.0;
         }
+        // The eigenvectors cost many times a factor: they are worked out only to show why there is none.
         if let Ok(factor) = dense.llt(Side::Lower) {
             return Ok(Bottom::Dense(factor));
         }
         let mut motion = vec![[0.0; N]; a.rows()];
         if let Ok(eigen) = dense.self_adjoint_eigen(Side::Lower) {
             // Ascending.
+            // The equations of what is held have the eigenvalue 1, so that the
+            // least one, which is not above zero here, is a motion of what is free.
             let softest = eigen.U().col(0);
             motion.as_flattened_mut().iter_mut().enumerate().for_each(|(i, x)| *x = softest[i]);
         }
@@ -60,6 +63,7 @@ impl<const N: usize> Bottom<N> {
             Bottom::Dense(factor) => {
                 let rows = x.len() * N;
                 let b = b.as_flattened();
+                // The factor reads whole columns, whereas an entry has the numbers of all right-hand sides side by side.
                 let mut columns: Vec<f64> =
                     (0..T::COUNT).flat_map(|lane| b.iter().map(move |b| b.lane(lane))).collect();
                 factor.solve_in_place(MatMut::from_column_major_slice_mut(&mut columns, rows, T::COUNT));
@@ -75,6 +79,7 @@ pub(crate) fn is_diagonal<const N: usize>(a: &BlockMatrix<N, N>) -> bool {
     let pattern = a.pattern();
     (0..a.rows()).all(|row| {
         let own = pattern.starts[row]..pattern.starts[row + 1];
+        // Products store blocks that are zero, which couple nothing.
         own.into_iter().all(|at| pattern.columns[at] as usize == row || a.values[at] == zero())
     })
 }

@@ -63,10 +63,13 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     pub fn definiteness(&self, doubt: f64, steps: usize, watch: &mut Watch) -> Result<Definiteness, Fault> {
         let rows = self.rows();
         let mut room = self.workspace();
+        // The seed is fixed: the same matrix has the same answer in each run.
         let mut random = Random::new(0x5eed);
         let mut r: Vec<[f64; D]> = (0..rows)
             .map(|row| {
                 let normal: [f64; D] = std::array::from_fn(|_| random.normal());
+                // The start has the covariance D, not the identity, because then its
+                // variance along every motion has the bound of the smoother alone.
                 root_product(&self.first.matrix.diagonal(row), &self.is_held[row].map(|held| !held), &normal)
             })
             .collect();
@@ -74,6 +77,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         self.apply(&r, &mut z, &mut room);
         let (mut p, mut ap) = (z.clone(), z.clone());
         let mut along = dot(&r, &z);
+        // Nothing is free, or there are no rows: there is no motion that could be unseen.
         if along == 0.0 {
             return Ok(Definiteness::Positive { doubt: 0.0, iterations: 0 });
         }
@@ -85,6 +89,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         for k in 1..=steps {
             self.matrix().apply(&p, &mut ap);
             let energy = dot(&p, &ap);
+            // Whatever the preconditioner is worth, this direction is a proof by itself. The negation takes what is not a number along.
             if !(energy > 0.0) {
                 return match self.not_positive(&p, energy) {
                     Fault::NotPositive(motion) => Ok(Definiteness::NotPositive { motion, iterations: k }),
@@ -93,6 +98,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             }
             let step = along / energy;
             combine(&mut r, 1.0, &ap, -step);
+            // The matrix has the rows of what is held, whose forces must not enter the search again.
             self.mask(&mut r);
             self.apply(&r, &mut z, &mut room);
             let next = dot(&r, &z);
@@ -120,6 +126,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             combine(&mut p, next / along, &z, 1.0);
             along = next;
         }
+        // After few steps the bound is above one, which no chance is.
         Ok(Definiteness::Undecided { least, doubt: chance.min(1.0), iterations: steps })
     }
 }
@@ -128,6 +135,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
 fn unseen(theta: f64, c: f64, k: usize) -> f64 {
     let argument = ((c + theta) / (c - theta).max(f64::MIN_POSITIVE)).acosh();
     // cosh overflows late; its logarithm does not.
+    // Half of the exponential is below cosh, so that the bound is rather too large than too small.
     let log = argument * (k - 1) as f64 - 2.0_f64.ln();
     ((c - theta).max(0.0) / theta).sqrt() * (-log.max(0.0)).exp()
 }
@@ -138,6 +146,7 @@ fn root_product<const D: usize>(a: &Block<D, D>, free: &[bool; D], g: &[f64; D])
     for i in (0..D).filter(|i| free[*i]) {
         for j in (0..=i).filter(|j| free[*j]) {
             let rest = a[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            // No pivot is zero here: levels are not built of blocks with a pivot that is rounding.
             l[i][j] = if i == j { rest.max(0.0).sqrt() } else { rest / l[j][j] };
         }
     }

@@ -82,6 +82,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                 return Err(Fault::Size { what, expected: rows, found });
             }
         }
+        // The largest quotient of A is the least of −A: one search for a least one serves both ends.
         let sign = match end {
             End::Least => 1.0,
             End::Largest => -1.0,
@@ -109,6 +110,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             self.apply(&force, &mut smooth, &mut room);
         }
         let mut best = images(smooth);
+        // Where nothing is free there is no quotient; 1 is that of equal matrices.
         if !normalize(&mut best)? {
             return Ok(Extreme { quotient: 1.0, displacement: vec![0.0; rows * D], iterations: 0, is_settled: true });
         }
@@ -147,6 +149,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                 }
             }
             let weights = softest(&projected, &std::array::from_fn(|i| i < m));
+            // The next step is kept without the part along the motion itself. As a difference of two iterates it would be lost to
+            // cancellation near the end (Knyazev 2001).
             let mut step = Direction { x: vec![[0.0; D]; rows], ax: vec![[0.0; D]; rows], bx: vec![[0.0; D]; rows] };
             (1..m).for_each(|i| step.add(weights[i], &basis[i]));
             best.scale(weights[0]);

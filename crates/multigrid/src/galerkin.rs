@@ -61,6 +61,7 @@ pub(crate) fn galerkin<const R: usize, const C: usize>(
                 }
             }
             marks.clear(&columns[begin..]);
+            // The columns come in an order that depends on the rows of A, whereas places are searched for in ascending ones.
             columns[begin..].sort_unstable();
         };
         let (own_starts, own_columns) = list_rows(end - first, || Marks::new(count), list);
@@ -75,6 +76,7 @@ pub(crate) fn galerkin<const R: usize, const C: usize>(
                         let i = local[i as usize] as usize;
                         for at_ap in ap.pattern.starts[i]..ap.pattern.starts[i + 1] {
                             let place = marks.place[ap.pattern.columns[at_ap] as usize];
+                            // A block below the diagonal has no place: the upper triangle alone is summed.
                             if place != ABSENT {
                                 let block = &mut blocks[place as usize];
                                 add_transposed_block_product(block, &p.values[at as usize], &ap.values[at_ap]);
@@ -93,6 +95,7 @@ pub(crate) fn galerkin<const R: usize, const C: usize>(
         starts.extend(own_starts[1..].iter().map(|start| before + start));
         columns.extend(own_columns);
         values.extend(own_values);
+        // Only what was set is taken back. A new list for each batch would take time in proportion to all nodes.
         fine.iter().for_each(|&row| local[row as usize] = ABSENT);
     }
     mirrored(&Pattern { starts, columns, width: count }, &values)
@@ -115,6 +118,7 @@ fn product<const R: usize, const C: usize>(
                 }
             }
         }
+        // The columns of A P stay as they were met: they are looked up by marks alone, and sorting them would serve nothing.
         marks.clear(&columns[begin..]);
     };
     let (starts, columns) = list_rows(rows.len(), || Marks::new(width), list);

@@ -17,6 +17,7 @@ const RESTARTS: usize = 4;
 /// The square of the share of `‖ |A| |x| ‖` below which a residual is rounding: four units.
 const ROUNDING: f64 = 16.0 * f64::EPSILON * f64::EPSILON;
 /// So many right hand sides take less time side by side than one after another.
+// Eight side by side take 1.8 to 2.5 times the time of one (docs/src/theory/multigrid.md), however many lanes are filled.
 const WORTH: usize = 3;
 
 /// A solution, and how it was found.
@@ -62,6 +63,7 @@ impl Column {
     fn begin(&mut self, along: f64, tolerance: f64) {
         let scale = *self.scale.get_or_insert(along);
         if !self.is_done && !(along > tolerance * tolerance * scale) {
+            // A right-hand side of zeros has 0/0 here, which max turns into zero.
             self.solution.error = (along / scale).max(0.0).sqrt();
             self.is_done = true;
         }
@@ -78,6 +80,7 @@ impl Column {
             self.best = (solution.error, solution.iterations);
         }
         let is_stalled = solution.iterations >= iterations || solution.iterations > self.best.1 + PATIENCE;
+        // The comparison is negated so that an error that is not a number ends the search too.
         self.rests = !(solution.error > tolerance) || is_stalled || !next.is_finite();
         self.along = next;
         ratio
@@ -169,6 +172,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                 let energy = dot(&p, &ap);
                 let mut steps = vec![0.0; columns.len()];
                 for (lane, column) in columns.iter().enumerate().filter(|(_, column)| !column.rests) {
+                    // A positive definite matrix gives energy to every direction but zero, and a search without residual has ended before.
                     if !(energy.lane(lane) > 0.0) {
                         return Err(self.not_positive(&vector(&p, lane), energy.lane(lane)));
                     }
@@ -177,6 +181,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                 let step = lanes(&steps);
                 combine(&mut x, one, &p, step);
                 combine(&mut r, one, &ap, T::ZERO - step);
+                // The rows of what is held are in the matrix: their forces are reactions and no residual.
                 self.mask(&mut r);
                 self.cycle(&r, &mut z, &mut room);
                 let next = dot(&r, &z);
@@ -209,6 +214,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         let end = |(lane, Column { mut solution, .. }): (usize, Column)| {
             let [wanted, left, rounding] = [wanted, left, rounding].map(|square| square.lane(lane));
             solution.residual = if wanted > 0.0 { (left / wanted).sqrt() } else { 0.0 };
+            // Both comparisons are negated, so that a solution that is not a number has stalled.
             if !(solution.error <= tolerance) && !(left <= ROUNDING * rounding) {
                 let (residual, iterations, levels) = (solution.residual, solution.iterations, self.levels().to_vec());
                 return Err(Fault::Stalled { residual, iterations, levels });
@@ -233,6 +239,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
                             for i in 0..D {
                                 for j in 0..D {
                                     let product = x[j] * a.values[at][i][j];
+                                    // The sizes of the products are what rounding is relative to: in their sum nothing cancels.
                                     sizes[i] += T::of_each(|lane| product.lane(lane).abs());
                                 }
                             }

@@ -58,12 +58,14 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         agree("the motions", rows, motions.len())?;
         agree("the supports", rows * D, is_held.len())?;
         agree("the columns", rows, matrix.pattern().width())?;
+        // A number that is not finite would fail the first pivot below, and be told as a motion without resistance.
         if matrix.values().iter().flatten().flatten().any(|x| !x.is_finite()) {
             return Err(Fault::NotFinite);
         }
         let is_held: Vec<[bool; D]> = is_held.as_chunks::<D>().0.to_vec();
         let mut motions = motions.to_vec();
         let held = |(motion, held): (&mut Block<D, M>, &[bool; D])| {
+            // The prolongator is built of these motions: what is zero here is never moved by a correction.
             (0..D).filter(|k| held[*k]).for_each(|k| motion[k] = [0.0; M]);
         };
         motions.iter_mut().zip(&is_held).for_each(held);
@@ -90,6 +92,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             } else {
                 match Level::new(matrix.clone(), &motions, &coarse, settings, others.len() as i32 + 1) {
                     Ok(Some((level, after))) => {
+                        // The first level is always followed by another, even where its own unknowns are few enough for a factor.
                         others.push(level);
                         next = after;
                         continue;
@@ -152,6 +155,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     pub(crate) fn cycle<T: Entry>(&self, r: &[[T; D]], z: &mut [[T; D]], workspace: &mut Workspace<D, M, T>) {
         let Workspace { first, others } = workspace;
         first.residual.copy_from_slice(r);
+        // `Multigrid::new` returns only with a level that has the bottom, so that there are at least two sizes.
         let (stage, rest) = others.split_first_mut().expect("there is a level after the first");
         let Stage { force, motion, room } = stage;
         self.first.cycle(z, first, force, motion, |force, motion| self.descend(0, force, motion, room, rest));
@@ -214,11 +218,13 @@ pub(crate) fn shown<const D: usize>(a: &BlockMatrix<D, D>, mut motion: Vec<[f64;
     }
     let mut image = motion.clone();
     a.apply(&motion, &mut image);
+    // Sizes do not cancel where the energies of neighbours do, so that the quotient is near zero for a motion without resistance.
     let own = |(row, x): (usize, &[f64; D])| -> f64 {
         let block = a.diagonal(row);
         (0..D).flat_map(|i| (0..D).map(move |j| (i, j))).map(|(i, j)| (x[i] * block[i][j] * x[j]).abs()).sum()
     };
     let scale: f64 = motion.iter().enumerate().map(own).sum();
+    // A motion of zeros has the energy zero, not 0/0.
     let energy = dot(&motion, &image) / scale.max(f64::MIN_POSITIVE);
     Motion { displacement: motion.as_flattened().to_vec(), energy }
 }

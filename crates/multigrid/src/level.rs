@@ -41,6 +41,7 @@ pub(crate) fn inverses<const N: usize>(
     let free = |row: usize| is_held[row].map(|held| !held);
     let all: Vec<Option<Block<N, N>>> =
         (0..a.rows()).into_par_iter().map(|row| inverse(&a.diagonal(row), &free(row))).collect();
+    // The first row in the order of the nodes is shown, on any number of threads.
     if let Some(row) = all.iter().position(Option::is_none) {
         let mut motion = vec![[0.0; N]; a.rows()];
         motion[row] = softest(&a.diagonal(row), &free(row));
@@ -89,6 +90,7 @@ impl<const R: usize, const C: usize> Level<R, C> {
 
     /// `y ← Pᵀ r`.
     fn restrict<T: Entry>(&self, r: &[[T; R]], y: &mut [[T; C]]) {
+        // A row of the next level sums over all nodes of an aggregate and around it: fewer of them are as much work as elsewhere.
         let piece = PIECE / 8;
         y.par_chunks_mut(piece).enumerate().for_each(|(part, y)| {
             vectorized(
@@ -121,6 +123,7 @@ impl<const R: usize, const C: usize> Level<R, C> {
         solve: impl FnOnce(&mut [[T; C]], &mut [[T; C]]),
     ) {
         x.fill([T::ZERO; R]);
+        // The same polynomial smooths before and after, so that the cycle is symmetric, as conjugate gradients need it.
         self.smoother.smooth(&self.matrix, x, room, true);
         self.restrict(&room.residual, force);
         solve(force, motion);
@@ -130,7 +133,9 @@ impl<const R: usize, const C: usize> Level<R, C> {
             x.as_flattened_mut().iter_mut().zip(next.as_flattened()).for_each(|(x, p)| *x += *p);
         };
         x.par_chunks_mut(PIECE).zip(next.par_chunks(PIECE)).for_each(add);
+        // The right-hand side has been overwritten by the residual, which is corrected by what the next level has changed.
         self.matrix.each_row(residual, next, |r, product| (0..R).for_each(|k| r[k] -= product[k]));
+        // Nothing reads the residual after the cycle: it would cost one more product with the matrix.
         self.smoother.smooth(&self.matrix, x, room, false);
     }
 }

@@ -19,6 +19,7 @@ pub(crate) fn dot<T: Entry, const N: usize>(x: &[[T; N]], y: &[[T; N]]) -> T {
         vectorized(
             #[inline(always)]
             || {
+                // N sums do not wait for each other, and the compiler may not reorder one.
                 let mut sums = [T::ZERO; N];
                 for (x, y) in x.iter().zip(y) {
                     for i in 0..N {
@@ -29,6 +30,7 @@ pub(crate) fn dot<T: Entry, const N: usize>(x: &[[T; N]], y: &[[T; N]]) -> T {
             },
         )
     };
+    // One piece has the same sum either way, without a list and a task.
     if x.len() <= PIECE {
         return piece((x, y));
     }
@@ -65,6 +67,7 @@ pub(crate) fn fill_rows<T: Send, S>(
         fill: &(impl Fn(&mut S, usize, &mut [T]) + Sync),
     ) {
         if rows.len() > PIECE {
+            // Rows are filled independently of each other: where they are split changes no result.
             let middle = rows.start + rows.len() / 2;
             let (before, after) = entries.split_at_mut(starts[middle] - starts[rows.start]);
             rayon::join(

@@ -45,6 +45,7 @@ impl Pattern {
             groups.iter().zip(&around).map(|(groups, starts)| groups_around(groups, starts)).collect();
         let list = |_: &mut (), row: usize, columns: &mut Vec<u32>| {
             let first = columns.len();
+            // The diagonal is stored even where no group has the node: smoother and bottom ask for it.
             columns.push(row as u32);
             for ((groups, starts), members) in groups.iter().zip(&around).zip(&members) {
                 for &group in &members[starts[row]..starts[row + 1]] {
@@ -52,6 +53,7 @@ impl Pattern {
                 }
             }
             columns[first..].sort_unstable();
+            // `Vec::dedup` would go through the columns of all rows before this one.
             let mut kept = first;
             for at in first + 1..columns.len() {
                 if columns[at] != columns[kept] {
@@ -98,6 +100,7 @@ impl Pattern {
 
     /// For each column the rows that have it, ascending, each with the place of its block.
     pub(crate) fn transposed(&self) -> (Vec<usize>, Vec<[u32; 2]>) {
+        // A count for each column and one pass in the order of the rows leave the rows of each column ascending, without sorting.
         let mut starts = vec![0; self.width + 1];
         self.columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
         for i in 0..self.width {

@@ -16,6 +16,7 @@ pub(crate) fn prolongator<const R: usize, const C: usize>(
     aggregates: &Aggregates,
     tentative: &Tentative<R, C>,
 ) -> BlockMatrix<R, C> {
+    // A node that is held as a whole has no inverse, and a row of P without blocks.
     let moves = |row: usize| inverse[row].iter().flatten().any(|x| *x != 0.0);
     let list = |_: &mut (), row: usize, columns: &mut Vec<u32>| {
         if !moves(row) {
@@ -48,6 +49,7 @@ pub(crate) fn prolongator<const R: usize, const C: usize>(
                     }
                 }
                 for (block, sum) in blocks.iter_mut().zip(&*sums) {
+                    // D⁻¹ comes after the sum over the neighbours: one product for each block of P in place of one for each block of A.
                     add_block_product(block, &inverse[row], sum);
                     block.as_flattened_mut().iter_mut().for_each(|x| *x *= -omega);
                 }

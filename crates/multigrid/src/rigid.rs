@@ -29,7 +29,10 @@ fn motions<const D: usize, const M: usize>(
     for x in points {
         (0..D).for_each(|k| centre[k] += x[k] / points.len() as f64);
     }
+    // Rotations about the centre in units of the body's size are as large as translations. About a distant origin they would be
+    // translations but for a few digits.
     let distance = |x: &[f64; D]| (0..D).map(|k| (x[k] - centre[k]).abs()).fold(0.0, f64::max);
+    // A body of one point has the size zero, by which nothing may be divided.
     let size = points.iter().map(distance).fold(f64::MIN_POSITIVE, f64::max);
     let node = |(x, held): (&[f64; D], &[bool; D])| {
         let mut block = zero::<D, M>();

@@ -17,6 +17,8 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Settings {
+        // With Vaněk's threshold of 0.08 the weak springs of a network are left out,
+        // and its next level has two to three times as many points as that of a body.
         Settings { threshold: 0.05, degree: 2, ratio: 12.0, dense: 900 }
     }
 }

@@ -65,6 +65,7 @@ impl<const N: usize> Smoother<N> {
     pub fn smooth<T: Entry>(&self, a: &BlockMatrix<N, N>, x: &mut [[T; N]], room: &mut Room<N, T>, wanted: bool) {
         let (theta, delta) = self.interval();
         let sigma = theta / delta;
+        // The recurrence is that of Saad, Iterative Methods for Sparse Linear Systems, algorithm 12.1.
         let mut rho = 1.0 / sigma;
         let inverse = &self.inverse;
         let Room { residual, direction, next } = room;
@@ -92,12 +93,14 @@ impl<const N: usize> Smoother<N> {
             let after = 1.0 / (2.0 * sigma - rho);
             let (keep, add) = (after * rho, 2.0 * after / delta);
             rho = after;
+            // Rows that are still to come read the last direction of their neighbours, so that the new one is written beside it.
             let old = &*direction;
             let step = |piece: usize, x: &mut [[T; N]], r: &mut [[T; N]], d: &mut [[T; N]]| {
                 vectorized(
                     #[inline(always)]
                     || {
                         for (((row, x), r), d) in (piece * PIECE..).zip(x).zip(r).zip(d) {
+                            // The product, the residual and the next direction are worked out in one pass: memory is what takes the time.
                             let product = a.row_product(row, old);
                             let mut z = [T::ZERO; N];
                             (0..N).for_each(|k| r[k] -= product[k]);
@@ -166,5 +169,6 @@ fn largest<const N: usize>(a: &BlockMatrix<N, N>, inverse: &[Block<N, N>]) -> f6
         combine(&mut image, 1.0, &before, -beside);
         before = std::mem::replace(&mut force, image);
     }
+    // Where nothing is free there is no eigenvalue, and any bound above zero serves.
     t.extremes().map_or(1.0, |[_, high]| high).max(f64::MIN_POSITIVE)
 }

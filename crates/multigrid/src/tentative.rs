@@ -57,6 +57,7 @@ fn orthonormalize<const R: usize, const C: usize>(q: &mut [Block<R, C>]) -> (Blo
         |q: &[Block<R, C>], a: usize, b: usize| -> f64 { q.iter().flatten().map(|row| row[a] * row[b]).sum() };
     for j in 0..C {
         let size = product(q, j, j).sqrt();
+        // One pass leaves rounding of the size of what it takes out; after the second the vectors are orthogonal to the last digits.
         for _ in 0..2 {
             for i in (0..j).filter(|i| !held[*i]) {
                 let along = product(q, i, j);
@@ -65,6 +66,7 @@ fn orthonormalize<const R: usize, const C: usize>(q: &mut [Block<R, C>]) -> (Blo
             }
         }
         let left = product(q, j, j).sqrt();
+        // The comparison is negated so that a motion that is zero on the whole aggregate is held as well.
         held[j] = !(left > DEPENDENT * size);
         let scale = if held[j] { 0.0 } else { 1.0 / left };
         r[j][j] = if held[j] { 0.0 } else { left };

@@ -30,6 +30,7 @@ impl Tridiagonal {
         let n = self.diagonal.len();
         let reach = |i: usize| {
             let beside = |i: Option<usize>| i.and_then(|i| self.beside.get(i)).map_or(0.0, |b| b.abs());
+            // The first row has no entry before it and the last none after it.
             beside(i.checked_sub(1)) + beside(Some(i))
         };
         let low = (0..n).map(|i| self.diagonal[i] - reach(i)).reduce(f64::min)?;

@@ -111,6 +111,7 @@ impl Programme {
         let cones = [ZeroConeT(equations), NonnegativeConeT(limits.len() - equations)];
         let mut solver = DefaultSolver::new(&quadratic, &linear, &constraints, &limits, &cones, settings)?;
         solver.set_termination_callback(move |info: &DefaultInfo<f64>| {
+            // False lets the solver go on: a search is ended by its tolerances alone, whoever hears of it.
             hear(nearness(info));
             false
         });
@@ -132,6 +133,7 @@ fn found(solution: Result<DefaultSolution<f64>, SolverError>) -> Found {
             slacks: solution.s,
             iterations: solution.iterations,
         }),
+        // A proof to the reduced tolerance is none: `AlmostPrimalInfeasible` is among what is left.
         SolverStatus::PrimalInfeasible => Found::Infeasible,
         status => Found::Unsolved(format!("{status:?} after {} iterations", solution.iterations)),
     }
@@ -148,6 +150,7 @@ pub fn sparse<C: IntoIterator<Item = (usize, f64)>>(height: usize, columns: impl
     let (mut starts, mut rows, mut values) = (vec![0], vec![], vec![]);
     for column in columns {
         for (row, value) in column.into_iter().filter(|entry| entry.1 != 0.0) {
+            // Zeros would be entries of the solver's factor like others.
             rows.push(row);
             values.push(value);
         }

@@ -33,9 +33,11 @@ pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<
     if largest == 0.0 {
         return None;
     }
+    // Divided before any square, so that tiny and huge displacements lose no digits.
     let difference: Vec<f64> = fem.iter().zip(lem).map(|(a, b)| (a - b) / largest).collect();
     let points = (fem.len() / dimension) as f64;
     let sizes = fem.chunks_exact(dimension).map(length).enumerate();
+    // `max_by` takes the last of equal ones, by the order of the points: the same in each run.
     let (tip, _) = sizes.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
     let tip = length(&difference[tip * dimension..(tip + 1) * dimension]);
     let worst = difference.chunks_exact(dimension).map(length).fold(0.0, f64::max);

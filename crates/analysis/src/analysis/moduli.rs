@@ -115,6 +115,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
     let d = mesh.dimension;
     let outer = mesh.outer_points();
     let boundary: BTreeSet<usize> = (0..mesh.point_count()).filter(|&p| outer[p]).collect();
+    // Without inner points all follow the strain, and the moduli are bounds from above and no approximation.
     if d != mesh.cell_dimension() || mesh.is_mixed() || boundary.len() == mesh.point_count() {
         return Ok(None);
     }
@@ -136,6 +137,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
     }
     let energy = |u: &[f64], v: &[f64]| -> f64 {
         let entry = |e: &Triplet<usize, usize, f64>| {
+            // The lower triangle alone is stored: an entry beside the diagonal stands for two.
             let other = if e.row == e.col { 0.0 } else { u[e.col] * v[e.row] };
             e.val * (u[e.row] * v[e.col] + other)
         };
@@ -158,6 +160,7 @@ fn homogenise(mesh: &Mesh, entries: &Entries) -> Option<EffectiveModuli> {
         order.extend((0..image.len()).find(|&p| image[p] == class));
     }
     let first: BTreeSet<usize> = order.iter().copied().collect();
+    // Images come after all own points: the numbers of own points are then those of the folded matrix.
     order.extend((0..image.len()).filter(|p| !first.contains(p)));
     order.iter().enumerate().for_each(|(at, &p)| place[p] = at);
     let dof = |dof: usize| place[dof / d] * d + dof % d;
@@ -183,6 +186,7 @@ fn images(mesh: &Mesh) -> (Vec<usize>, usize) {
     };
     let mut class = |p: usize| {
         let at = place(p);
+        // Places are in units of the box: what differs by rounding is one point, and nodes of an element are far apart beside that.
         let same = |other: &Vec<f64>| other.iter().zip(&at).all(|(a, b)| (a - b).abs() < 1e-9);
         classes.iter().position(same).unwrap_or_else(|| {
             classes.push(at.clone());
@@ -227,6 +231,7 @@ fn moduli(stiffness: DMatrix<f64>, d: usize) -> Option<EffectiveModuli> {
     Some(EffectiveModuli {
         young: mean(DVector::from_fn(d, |k, _| 1.0 / compliance[(k, k)])),
         poisson: over_pairs(&|k, l| -compliance[(k, l)] / compliance[(k, k)]),
+        // The shears of this notation are `2 ε_kl`, whose entry is C₄₄ itself.
         zener: 2.0 * shear / (along - across),
         stiffness,
     })

@@ -118,6 +118,7 @@ fn valid(element: &Element, count: usize, seed: u64, mut draw: impl FnMut(&mut R
     let mut random = Random::new(seed);
     let mut geometry = Geometry::new(&element.tabulation);
     let mut shapes = Vec::with_capacity(count);
+    // An element that tangles nearly always must not draw for ever.
     for _ in 0..100 * count {
         let shape = draw(&mut random);
         if geometry.set(&element.tabulation, &shape).is_ok() {

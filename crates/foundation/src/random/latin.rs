@@ -21,6 +21,7 @@ impl Latin {
     /// The hypercube of `count` points, at least one.
     pub fn new(count: usize, seed: u64) -> Latin {
         let count = count.max(1) as u64;
+        // A hypercube of one point has no bits; half a bit could not be mixed.
         let bits = (u64::BITS - (count - 1).leading_zeros()).max(1);
         Latin { count, seed, half: bits.div_ceil(2) }
     }
@@ -37,6 +38,8 @@ impl Latin {
     fn slice(&self, index: u64, coordinate: u64) -> u64 {
         let mask = (1 << self.half) - 1;
         let mut place = index;
+        // The power of four is at most four times the count: few rounds end outside.
+        // A permutation comes back to a number within, so that the loop ends.
         loop {
             let (mut left, mut right) = (place >> self.half, place & mask);
             for round in 0..ROUNDS {

@@ -44,6 +44,7 @@ impl DoubleDouble {
     #[inline(always)]
     fn times(self, y: f64) -> DoubleDouble {
         let high = self.hi * y;
+        // The fused product minus its rounded value is the rounding error of the product, exactly.
         let low = self.lo.mul_add(y, self.hi.mul_add(y, -high));
         fast_two_sum(high, low)
     }
@@ -90,6 +91,7 @@ impl Div<&DoubleDouble> for DoubleDouble {
         let rest = self - &y.times(first);
         let second = rest.hi / y.hi;
         let third = (rest - &y.times(second)).hi / y.hi;
+        // The third digit makes the quotient about as accurate as the other operations.
         fast_two_sum(first, second) + &DoubleDouble::from(third)
     }
 }
@@ -113,6 +115,7 @@ impl Scalar for DoubleDouble {
     }
 
     fn given() -> f64 {
+        // Coordinates and tables are doubles, however many digits the computation has.
         f64::EPSILON / 2.0
     }
 
@@ -156,6 +159,7 @@ impl Real for DoubleDouble {
     }
 
     fn choose(&self, yes: &DoubleDouble, no: &DoubleDouble) -> DoubleDouble {
+        // `lo` is at most half a unit of `hi`, so that the sign is that of `hi`.
         if self.hi > 0.0 { *yes } else { *no }
     }
 }

@@ -82,6 +82,7 @@ impl<const N: usize, T: Scalar> Div<&Dual<N, T>> for Dual<N, T> {
     fn div(self, y: &Dual<N, T>) -> Dual<N, T> {
         let value = self.value.clone() / &y.value;
         let own = y.value.one() / &y.value;
+        // `−a/b²` is `−(a/b)/b`: the quotient is there already, and the square cannot overflow.
         let other = value.zero() - &(value.clone() * &own);
         Dual::with(value, &self, &own, y, &other)
     }
@@ -161,6 +162,7 @@ impl<const N: usize, T: Real> Real for Dual<N, T> {
     fn choose(&self, yes: &Dual<N, T>, no: &Dual<N, T>) -> Dual<N, T> {
         let mut slopes = yes.slopes.clone();
         for i in 0..N {
+            // The value decides for the slopes as well: in lanes each element follows the number that was chosen for it.
             slopes[i] = self.value.choose(&yes.slopes[i], &no.slopes[i]);
         }
         Dual { value: self.value.choose(&yes.value, &no.value), slopes }

@@ -258,6 +258,7 @@ pub fn adjugate<T: Scalar, const D: usize>(a: &[[T; D]; D]) -> ([[T; D]; D], T) 
             }
         }
     }
+    // The first row times its cofactors, which the adjugate has already.
     let mut determinant = a[0][0].clone() * &adjugate[0][0];
     for l in 1..D {
         determinant = determinant.plus_product(&a[0][l], &adjugate[l][0]);
@@ -309,4 +310,5 @@ macro_rules! plain {
 }
 
 plain!(f64, |value| value, f64::EPSILON / 2.0);
+// Exact numbers have no rounding error.
 plain!(BigRational, |value| BigRational::from_float(value).expect("constants are finite"), 0.0);

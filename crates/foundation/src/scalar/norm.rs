@@ -11,6 +11,7 @@ pub fn norm(v: &[f64]) -> f64 {
 /// The distance `‖b − a‖`, with the range of [`norm`].
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     let size = a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+    // Nearly all distances end here, without a list of differences.
     if ORDINARY.contains(&size) { size } else { norm(&a.iter().zip(b).map(|(a, b)| b - a).collect::<Vec<_>>()) }
 }
 
@@ -22,6 +23,7 @@ pub fn scaled_norm(v: &[f64], squares: impl Fn(&[f64]) -> f64) -> f64 {
         return size;
     }
     let largest = v.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    // Zeros have no share, and shares of an infinite entry would be NaN where the norm is infinite.
     if !(largest > 0.0 && largest.is_finite()) || v.iter().any(|x| x.is_nan()) {
         return size;
     }

@@ -51,6 +51,7 @@ macro_rules! registers {
                 if let Some(simd) = V3::try_new() {
                     return Simd::vectorize(simd, $work(simd, work));
                 }
+                // Machines without these instructions, and other processors, run the same work on plain arrays.
                 work.run([0.0; 4])
             }
         }
@@ -125,6 +126,7 @@ macro_rules! registers {
             #[inline(always)]
             fn dot(self, other: Self) -> $number {
                 let products: [$number; 4] = cast(self.simd.$mul(self.values, other.values));
+                // A vector has three coordinates: the fourth number only fills the register.
                 products[0] + products[1] + products[2]
             }
 

@@ -76,9 +76,11 @@ impl Value for BigRational {
     }
     fn to_power(self, exponent: &BigRational) -> Option<BigRational> {
         let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= LARGEST_EXACT_EXPONENT)?;
+        // The digits of a power are at most this product, which is known before the power is.
         if bits(&self).saturating_mul(n.unsigned_abs().into()) > MOST_EXACT_BITS {
             return None;
         }
+        // Rational arithmetic would end the program at a division by zero.
         if self.is_zero() && n < 0 {
             return None;
         }

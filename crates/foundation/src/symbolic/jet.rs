@@ -105,6 +105,7 @@ impl<T: Differentiable> Value for Jet<T> {
     }
 
     fn plus(self, other: Jet<T>) -> Jet<T> {
+        // A constant has no lists, to which nothing could be added: the other one is kept.
         let (mut sum, other) = if self.gradient.is_empty() { (other, self) } else { (self, other) };
         sum.value = sum.value + &other.value;
         sum.gradient.iter_mut().zip(&other.gradient).for_each(|(a, b)| *a = a.clone() + b);
@@ -163,6 +164,7 @@ impl<T: Differentiable> Value for Jet<T> {
                 let first = number(1.0) / &(number(1.0) + &(x.clone() * &x));
                 (first.clone(), number(-2.0) * &x * &first * &first)
             }
+            // At zero the slope of the right side is taken; there is none in both.
             Function::Abs => (number(x.rounded().signum()), number(0.0)),
             Function::Step => (number(0.0), number(0.0)),
         };

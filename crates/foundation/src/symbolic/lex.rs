@@ -116,6 +116,7 @@ pub(super) fn lex(text: &str, units: &[Quantity]) -> Result<Lexed> {
                     let literal: String = chars[start..at].iter().collect();
                     let Some(mut value) = decimal(&literal) else { return fault(start, "a decimal number") };
                     let mut power = None;
+                    // The longest unit that fits is taken: `mm` is not the unit `m` before a name.
                     if let Some((end, size, of_length)) = unit_after(&chars, at, units) {
                         let follows = chars[end..].iter().find(|c| !c.is_whitespace());
                         if before == '/' || before == '^' || follows == Some(&'^') {
@@ -235,6 +236,7 @@ fn end_of_number(chars: &[char], start: usize) -> usize {
     if !matches!(chars.get(at), Some('e' | 'E')) {
         return at;
     }
+    // A letter e that no digit follows is the beginning of a name or unit.
     let signed = at + 1 + matches!(chars.get(at + 1), Some('+' | '-')) as usize;
     let end = digits(signed);
     if end > signed { end } else { at }

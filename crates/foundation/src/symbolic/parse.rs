@@ -135,6 +135,7 @@ impl Scope {
             Operator::Mul => Expr::product([real(0)?, real(1)?]),
             Operator::Div => {
                 let divisor = real(1)?;
+                // A division by the number zero is a mistake of the text, and is told while its place is known.
                 if divisor.as_number().is_some_and(Zero::is_zero) {
                     return Err(Error::new("division by zero"));
                 }
@@ -146,6 +147,7 @@ impl Scope {
                 }
                 match (real(0)?, real(1)?) {
                     (base, Expr::Number(n)) => Expr::power(base, n),
+                    // An exponent with variables makes a real power of positive bases alone, which this has.
                     (base, n) => Expr::call(Function::Exp, Expr::product([n, Expr::call(Function::Ln, base)])),
                 }
             }
@@ -156,6 +158,7 @@ impl Scope {
                 match function(identifier) {
                     Some(Called::Sqrt) => Expr::power(argument, BigRational::new(1.into(), 2.into())),
                     Some(Called::Ramp) => {
+                        // The argument is in the result twice: nested ramps would double its size each time.
                         lexed.count(&argument)?;
                         Expr::product([argument.clone(), Expr::call(Function::Step, argument)])
                     }

@@ -22,6 +22,7 @@ const WAVES: usize = 16;
 impl Value for DoubleDouble {
     fn from_rational(c: &BigRational) -> Option<DoubleDouble> {
         let hi = c.to_f64()?;
+        // A number beyond the range of `f64` is infinite and has no rest.
         let rest = BigRational::from_float(hi).and_then(|hi| (c - hi).to_f64());
         Some(DoubleDouble { hi, lo: rest.unwrap_or(0.0) })
     }
@@ -36,6 +37,8 @@ impl Value for DoubleDouble {
 
     fn to_power(self, exponent: &BigRational) -> Option<DoubleDouble> {
         let doubled = exponent + exponent;
+        // Powers of halves are products and one root. They keep digits that
+        // the product of exponent and logarithm would lose for large results.
         let Some(halves) = doubled.to_i32().filter(|_| doubled.is_integer()) else {
             let p = DoubleDouble::from_rational(exponent)?;
             return (p * &self.apply(Function::Ln)?).apply(Function::Exp);
@@ -79,6 +82,7 @@ impl Value for DoubleDouble {
 
 /// `x` minus `count` times a number that is given as three doubles.
 fn less(x: DoubleDouble, count: f64, parts: &[f64; 3]) -> DoubleDouble {
+    // Part after part, so that what a multiple of the first two cancels does not take the last digits along (Cody and Waite 1980).
     parts.iter().fold(x, |x, part| x - &(DoubleDouble::from(*part) * &DoubleDouble::from(count)))
 }
 
@@ -112,6 +116,7 @@ fn sine_and_cosine(x: DoubleDouble) -> [DoubleDouble; 2] {
         })
     };
     let (sine, cosine) = (series(1) * &r, series(0));
+    // Each quarter of a turn exchanges sine and cosine, and one of them changes its sign.
     match count.rem_euclid(4.0) {
         1.0 => [cosine, sine.negated()],
         2.0 => [sine.negated(), cosine.negated()],

@@ -47,6 +47,7 @@ impl JacobianBounds {
             return None;
         }
         let along: Vec<f64> =
+            // Chebyshev's points keep the inverse from Bernstein's basis well conditioned.
             (0..count).map(|i| 0.5 - 0.5 * ((2 * i + 1) as f64 * PI / (2 * count) as f64).cos()).collect();
         let places = (0..count.pow(d as u32))
             .map(|point| (0..d).map(|k| along[point / count.pow(k as u32) % count]).collect::<Vec<f64>>());
@@ -106,11 +107,13 @@ impl JacobianBounds {
         let corner = |corner: usize| (0..d).map(|k| (corner >> k & 1) * (n - 1) * n.pow(k as u32)).sum::<usize>();
         let corners: Vec<usize> = (0..1 << d).map(corner).collect();
         let mut boxes = vec![coefficients];
+        // What is undecided then counts as positive: a cell is called folded only where that is shown.
         for _ in 0..MOST_BOXES {
             let Some(coefficients) = boxes.pop() else { return false };
             if corners.iter().any(|&corner| coefficients[corner] < zero) {
                 return true;
             }
+            // The polynomial is a mean of its coefficients with weights above zero, and not below the least of them.
             if coefficients.iter().all(|c| *c >= zero) {
                 continue;
             }
@@ -206,6 +209,7 @@ fn halves(coefficients: Vec<f64>, n: usize, d: usize, k: usize) -> [Vec<f64>; 2]
             for i in 0..n - round {
                 high[place(i)] = 0.5 * (high[place(i)] + high[place(i + 1)]);
             }
+            // The first entries of the rounds are the coefficients of the lower half, the last round is the upper one.
             low[place(round)] = high[place(0)];
         }
     });

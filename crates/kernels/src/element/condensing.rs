@@ -61,6 +61,7 @@ pub fn tabulate(
         for (b, node) in definition.nodes.iter().enumerate() {
             let at: Vec<f64> = node.at.iter().map(Constant::value).collect();
             let value = mode.evaluate(&at);
+            // The comparison is negated so that a mode without a value at a node is refused.
             if !(value.abs() <= ROUNDING) {
                 return Err(Error::expected(key(j), format!("zero at nodes[{b}], as condensed functions are"), value));
             }
@@ -72,6 +73,7 @@ pub fn tabulate(
     if let Some(bad) = own.gradients.iter().position(|g| !g.is_finite()) {
         return Err(Error::at(key(bad / d % count), "has no finite gradient at a quadrature point"));
     }
+    // Either rule must pass the patch test by itself, because each integrates a part of the energy.
     for weights in [&table.weights, &table.volumetric].into_iter().filter(|weights| !weights.is_empty()) {
         for (j, k) in (0..count).flat_map(|j| (0..d).map(move |k| (j, k))) {
             let terms = weights.iter().zip(own.gradients.chunks_exact(count * d)).map(|(w, g)| w * g[j * d + k]);
@@ -93,6 +95,7 @@ pub fn tabulate(
         return Err(Error::expected("nodes", expected, "dependent ones"));
     }
     let centre = cell.centre();
+    // Modes that jump have the Jacobian of the centre, where all shape functions must have gradients.
     let centre: Vec<f64> = functions.gradients.iter().flatten().map(|dn| dn.evaluate(&centre)).collect();
     if centre.iter().any(|dn| !dn.is_finite()) {
         return Err(Error::expected("nodes", "shape functions with gradients at the centre of the cell", "none"));
@@ -102,6 +105,7 @@ pub fn tabulate(
 
 fn vanishes_on_sides(cell: Cell, mode: &Expr) -> bool {
     let d = cell.dimension();
+    // The sides of a line are its ends.
     if d == 1 {
         return cell.corners().iter().all(|corner| mode.evaluate(corner).abs() <= ROUNDING);
     }

@@ -52,6 +52,7 @@ pub fn spring_groups(definition: &Definition, positions: &[f64]) -> Result<Vec<S
                 return Err(Error::at(key(&format!("nodes[{p}]")), problem));
             }
         }
+        // Two springs on one content would be linearly dependent in every fit.
         if nodes.is_empty() && groups.iter().any(SpringGroup::is_content) {
             return Err(Error::at(key("kind"), "the cell's content has a spring already"));
         }
@@ -97,6 +98,7 @@ fn nodes_of(
                 SpringKind::Angle => (corner_angles(definition.cell, positions), "angles at the corners"),
                 _ => (pairs(count), "pairs"),
             };
+            // The word fills up what other entries leave, so that groups may name their own springs first.
             let free: Vec<Vec<usize>> =
                 all.into_iter().filter(|list| !taken.contains(&identity(entry, list))).collect();
             if free.is_empty() {
@@ -167,6 +169,7 @@ fn corner_angles(cell: Cell, positions: &[f64]) -> Vec<Vec<usize>> {
     for (i, &[a, b]) in edges.iter().enumerate() {
         for &[c, d] in &edges[..i] {
             let met = [[a, b, c, d], [b, a, c, d], [a, b, d, c], [b, a, d, c]];
+            // Two edges share one corner at most: one of the four ways fits, or none.
             angles.extend(met.iter().find(|[_, b, c, _]| b == c).map(|[a, b, _, d]| vec![*a, *b, *d]));
         }
     }

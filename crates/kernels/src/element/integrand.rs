@@ -71,6 +71,7 @@ impl Element {
             Integrand::Load(m) => p.saturating_mul(m),
             Integrand::Mass => p,
         };
+        // The degree of a load comes from a file; a sum beyond all rules is cut by the rule.
         p.saturating_add(factor).saturating_add(jacobian_degree(region, p))
     }
 
@@ -101,6 +102,7 @@ impl Element {
         let changed = |order: &usize| {
             let (now, further) = (self.moments(2 * order), self.moments(2 * order + FURTHER));
             let change = now.iter().zip(&further).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            // The comparison is negated so that moments that are not numbers count as changed.
             !(change <= SETTLED * self.cell.content())
         };
         (1..most).find(|order| !changed(order)).unwrap_or(most)

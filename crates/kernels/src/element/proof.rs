@@ -52,6 +52,7 @@ pub fn coordinates(definition: &Definition) -> Result<()> {
     for (k, name) in definition.coordinates.iter().enumerate() {
         scope.define(name, "0").map_err(|e| e.at_key(format!("coordinates[{k}]")))?;
     }
+    // A linear field has d + 1 numbers: fewer nodes cannot have it.
     if definition.nodes.len() <= d || definition.nodes.len() > MOST_NODES {
         let expected = format!("{} to {MOST_NODES} nodes", d + 1);
         return Err(Error::expected("nodes", expected, definition.nodes.len()));
@@ -78,6 +79,7 @@ pub fn moderate(definition: &Definition, shapes: &[Expr]) -> Result<()> {
 
 /// Checks that the shape functions and their gradients can be evaluated at so many points in a few seconds.
 pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
+    // Numbers of a file may overflow the product, which then is above any limit.
     let steps = functions.parts().saturating_mul(points);
     if steps <= MOST_STEPS {
         return Ok(());
@@ -120,6 +122,7 @@ fn number(c: &Constant) -> Expr {
 
 fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, String) {
     let exact: Option<Vec<BigRational>> = at.iter().map(Constant::exact).collect();
+    // Exact numbers decide exactly, where both the place and the function have them.
     if let Some(value) = exact.and_then(|at| shape.value(&at)) {
         return (value == BigRational::from_integer(expected.into()), value.to_string());
     }
@@ -143,6 +146,7 @@ fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, S
 /// Whether the defect is zero everywhere; otherwise its value at some point, as text.
 fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), String> {
     let d = definition.cell.dimension();
+    // The sample is for the message, and decides only where coefficients or places are not rational.
     let sample = Quadrature::of_degree(definition.cell, 6);
     let (at, worst) = sample
         .points
@@ -210,6 +214,7 @@ pub fn quadrature(definition: &Definition, rule: &Rule, name: &str) -> Result<Qu
                 weights: weights.iter().map(Constant::value).collect(),
             };
             let sum: f64 = rule.weights.iter().sum();
+            // A rule that does not integrate one gives a wrong volume to every cell.
             if (sum - cell.content()).abs() > ROUNDING * cell.content() {
                 let expected = format!("weights that sum to the cell's content {}", cell.content());
                 return Err(Error::expected(key("weights"), expected, sum));
@@ -237,6 +242,7 @@ pub fn formats(definition: &Definition) -> Result<()> {
     let nodes = definition.nodes.len();
     let permutation = |entry: &Option<FormatEntry>, key: &str| {
         let Some(order) = entry.as_ref().and_then(|e| e.order.as_ref()) else { return Ok(()) };
+        // Sorting shows a number that is missing, too large or there twice in one comparison.
         let mut sorted = order.clone();
         sorted.sort_unstable();
         if sorted.iter().copied().eq(0..nodes) {

@@ -29,6 +29,7 @@ impl Quadrature {
     pub fn of_degree(cell: Cell, degree: usize) -> Quadrature {
         match cell {
             Cell::Interval | Cell::Quadrilateral | Cell::Hexahedron => {
+                // n points are exact to the degree 2 n − 1.
                 Quadrature::gauss_legendre(cell.dimension(), degree / 2 + 1)
             }
             Cell::Triangle | Cell::Tetrahedron => match degree {
@@ -51,6 +52,7 @@ impl Quadrature {
             let b = corners[(i + 1) % corners.len()];
             for (s, w) in local.points.chunks_exact(2).zip(&local.weights) {
                 rule.points.extend((0..2).map(|k| s[0] * a[k] + s[1] * b[k]));
+                // The triangle of the reference has the area ½, and the determinant is twice that of this one.
                 rule.weights.push(w * (a[0] * b[1] - a[1] * b[0]));
             }
         }
@@ -79,6 +81,7 @@ impl Quadrature {
         for (s, ws) in line.points.iter().zip(&line.weights) {
             let (z, scale) = ((1.0 + s) / 2.0, (1.0 - s) / 2.0);
             for (at, w) in square.points.chunks_exact(2).zip(&square.weights) {
+                // The section at height z is the square scaled by `1 − z`.
                 rule.points.extend([scale * at[0], scale * at[1], z]);
                 rule.weights.push(w * ws / 2.0 * scale * scale);
             }

@@ -134,6 +134,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
     /// nothing written, if the Jacobian of a cell is not safely positive or its equations are not regular.
     fn fit(&mut self, first: usize, nodes: &[usize], constants: &mut [f64], tally: &mut Tally) -> bool {
         self.hooke.set(first, nodes.len() / self.element.nodes());
+        // Blocks of springs on functions have neither route: each cell is solved alone, through the rows of its springs.
         if (self.closed.is_none() && self.method.is_none()) || !self.packing.gather(nodes) {
             return false;
         }
@@ -169,6 +170,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         let m = springs.len();
         write(closed, springs, constants);
+        // The optimum without bounds that violates none is the optimum with them, because the objective is convex.
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }
@@ -198,6 +200,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
                 }
             };
             fit.spread(springs, constants, &k);
+            // The other lanes have passed the elimination, so that their equations are regular: only these are counted.
             tally.add(Verdict { certificate: None, rank, reached: true, delicate: false });
         }
         true
@@ -212,6 +215,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         is_delicate: bool,
     ) -> Result<Verdict, Fault> {
         let hooke = &self.hooke.of_cell(cell);
+        // The lanes have failed or are delicate, so that the cell is placed anew and by itself, which also tells its fault.
         let mut x = vec![0.0; self.packing.x.len()];
         self.packing.place(nodes, &mut x)?;
         let mut geometry = Geometry::new(&self.element.tabulation);
@@ -247,6 +251,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             }
         };
         let normal = normal.by_unknowns(self.springs, self.fit.tied);
+        // The elimination overwrites the equations, which are solved below another way where they are regular.
         let mut eliminated = normal.clone();
         // A small pivot has lost digits of gradients that have lost some before: the cell is fitted again in more
         // digits.
@@ -279,6 +284,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             let x = self.packing.lane(lane);
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
+            // Lanes without a cell have the numbers of the first one: zeros would end all lanes as irregular.
             let last = if lane == 0 { T::COUNT } else { lane + 1 };
             self.measured
                 .iter_mut()

@@ -49,10 +49,12 @@ pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, 
     let mut from = kappa.to_vec();
     let Some(start) = at(&from) else { return false };
     for i in 0..count {
+        // `κ − slope/curvature < 0` without the division, which a curvature of zero would not survive.
         let fall = start.hessian[i * count + i].clone() * &from[i] - &start.slope[i];
         from[i] = fall.choose(&from[i], &zero);
     }
     let mut point = match at(&from) {
+        // All of them at once may be too many: A is then not positive definite, or the objective larger.
         Some(point) if point.value <= start.value => point,
         _ => {
             from = kappa.to_vec();
@@ -61,6 +63,7 @@ pub fn settle<T: Real>(h: &[T], p: usize, unknowns: &[usize], balance: Balance, 
     };
     for _ in 0..STEPS {
         let free: Vec<usize> =
+            // A constant at zero whose slope is not below zero would only leave the bounds: the step is that of the others.
             (0..count).filter(|&i| from[i].exceeds(&zero) || zero.exceeds(&point.slope[i])).collect();
         let Some(step) = point.newton(&free, count) else { return false };
         let decrement: f64 = free.iter().zip(&step).map(|(&i, d)| -(point.slope[i].clone() * d).rounded()).sum();
@@ -108,6 +111,7 @@ impl<T: Real> Point<T> {
         add_outers(&mut a, h, p, kappa, unknowns, 1.0);
         let content = trace(&a, p).rounded();
         let least = factorize(&mut a, p, 0.0, &mut pivots);
+        // The comparison is negated so that a pivot that is not a number counts as not positive.
         if !(least.rounded() > at_rounding::<T>(FLOOR)) {
             return None;
         }
@@ -143,6 +147,8 @@ impl<T: Real> Point<T> {
         let entry = |(i, j): (usize, usize)| self.hessian[free[i.max(j)] * count + free[i.min(j)]].clone();
         let mut matrix: Vec<T> = (0..n * n).map(|ij| entry((ij / n, ij % n))).collect();
         let mut pivots = vec![self.slope[0].zero(); n];
+        // Springs that depend on each other leave directions without curvature,
+        // in which the floor keeps the step from being rounding over rounding.
         factorize(&mut matrix, n, at_rounding::<T>(FLOOR), &mut pivots);
         let mut step: Vec<T> = free.iter().map(|&i| self.slope[i].negated()).collect();
         solve(&matrix, n, &pivots, &mut step);

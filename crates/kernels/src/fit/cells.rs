@@ -139,6 +139,7 @@ impl CellFits {
         self.certificates.clear();
         self.force = Force::Linear;
         self.parameters.clear();
+        // Without springs there is nothing to fit, and a slice has no pieces of length zero.
         if m == 0 {
             return Ok(());
         }
@@ -154,6 +155,7 @@ impl CellFits {
         if fit.is_costly() && cells > 1 {
             let congruence = Congruence::of(element, points, connectivity, &moduli)?;
             let shapes = congruence.representatives.len();
+            // Where no two cells are alike, the copies would only take memory.
             if shapes < cells {
                 let nodes = |&cell: &usize| &connectivity[cell * n..(cell + 1) * n];
                 let few: Vec<usize> = congruence.representatives.iter().flat_map(nodes).copied().collect();
@@ -162,6 +164,7 @@ impl CellFits {
                 // The caller counts cells, not shapes.
                 let mut share = |done: usize| progress(done * cells / shapes);
                 let own = moduli.of_cells(&congruence.representatives);
+                // One pair of moduli stays one, so that lanes need not be filled anew for each block.
                 let own = BlockValues::listed(&own, matches!(moduli, BlockValues::Uniform(_)));
                 fitted.fit_each(element, points, &few, own, fit, &mut share)?;
                 self.copy_by_shape(&fitted, &congruence.shapes);
@@ -189,6 +192,7 @@ impl CellFits {
             let moduli = moduli.part(first, connectivity.len() / n);
             if let Solver::General { method, iterations, topology } = fit.solver {
                 let weight = fit.objective.of_motions()?;
+                // The first cell is told, as below, although the loop over the cells goes on.
                 let (mut unmeasured, mut failed) = (None, None);
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {

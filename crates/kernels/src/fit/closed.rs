@@ -54,6 +54,8 @@ impl<T: Real> Closed<T> {
         let lengths_alone = springs.content.is_none() && springs.parallel.is_empty();
         let steps = match weight {
             _ if fit.tied => Steps::Groups,
+            // Two length springs share a block of different nodes only if they join
+            // the same nodes: M is diagonal. A spring on the content is in all blocks.
             ClosedWeight::OffDiagonal if lengths_alone => Steps::Decoupled,
             ClosedWeight::None if is_shorter(springs) => Steps::Nodes,
             ClosedWeight::None | ClosedWeight::OffDiagonal | ClosedWeight::Modal(_) => Steps::Springs,
@@ -124,6 +126,7 @@ impl<T: Real> Closed<T> {
                 &mut self.tied
             }
         };
+        // The elimination overwrites the equations, which the search under bounds needs.
         if self.nonnegative {
             self.kept.gram.clone_from(&equations.gram);
             self.kept.rhs.clone_from(&equations.rhs);
@@ -155,6 +158,7 @@ impl<T: Real> Closed<T> {
                 Steps::Springs => self.normal.substitute(w),
                 Steps::Groups => {
                     let mut sums = vec![any.zero(); springs.names.len()];
+                    // The equations of groups are sums over their springs, and so is their right-hand side.
                     for (w, &group) in w.iter().zip(&springs.groups) {
                         sums[group] = sums[group].clone() + w;
                     }
@@ -190,6 +194,7 @@ impl<T: Real> Closed<T> {
     ) -> Option<&Normal<T>> {
         match self.steps {
             Steps::Decoupled => None,
+            // The nodes were solved without any equation of a spring, which is worked out only now, for the few cells with bounds.
             Steps::Nodes => {
                 normal_equations(self.weight, springs, x, geometry, hooke, &mut self.normal);
                 Some(&self.normal)

@@ -214,6 +214,7 @@ impl ClosedForm {
                 let of_modulus = |modulus: &Modulus| solve(&self.equations(closed, modulus));
                 self.moduli.iter().map(of_modulus).collect::<Result<Vec<_>>>()?
             }
+            // M is that of the springs alone: it is worked out once, whatever modulus it is asked for, and only b changes.
             ClosedWeight::None | ClosedWeight::OffDiagonal => {
                 let normal = self.equations(closed, &self.moduli[0]);
                 let of_stiffness = |r: &Vec<Fraction>| {
@@ -319,6 +320,7 @@ fn classes(element: &Element, springs: &Springs, x: &[Fraction], by_axis: bool) 
         image == *nodes || kind.properties().symmetry != Symmetry::Ordered && own.contains(&known(kind, &image))
     };
     let keeps = |p: &Vec<usize>| {
+        // Squares of distances are rational where the nodes are, so that they are compared exactly.
         (0..n * n).all(|i| squares[i] == squares[p[i / n] * n + p[i % n]])
             && all.iter().all(|(kind, nodes)| takes(p, *kind, nodes))
     };

@@ -77,6 +77,7 @@ impl Congruence {
         each_cell(element, points, connectivity, 0, |cell, x, _| {
             let lengths = lengths(x);
             let largest = lengths.iter().fold(0.0, |a, length: &f64| length.abs().max(a));
+            // The unit is that of the first cell, not of a sum over all, because cells are passed one by one.
             if first == 0.0 {
                 first = largest;
             }
@@ -86,6 +87,7 @@ impl Congruence {
             let size = ((largest / first).ln() / SIZES.ln()).round();
             let unit = EQUAL * first * SIZES.powf(size);
             let moduli = moduli(cell).into_iter().map(u64::cast_signed).chain([size as i64]);
+            // A length is at most half a factor of SIZES above the unit of its size: 3e13 steps, far below 2⁶³.
             let key = moduli.chain(lengths.iter().map(|length| (length / unit).round() as i64)).collect();
             let shape = *known.entry(key).or_insert_with(|| {
                 congruence.representatives.push(cell);

@@ -30,6 +30,7 @@ pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding:
         };
     }
     let (k, pivot) = (free.rounded().rhs, free.least_pivot());
+    // The optimum without bounds that violates none is the one with them, because the objective is convex.
     if !nonnegative || k.iter().all(|k| *k >= 0.0) {
         return (k, Rank::Full, pivot);
     }
@@ -56,6 +57,7 @@ pub fn bounded_optimum<T: Real>(normal: &Normal<T>, near: &[f64]) -> Option<Opti
     set.iter().zip(&free.rhs).for_each(|(&s, value)| k[s] = value.clone());
     let tolerance = OPTIMALITY * scaled.largest();
     let slopes = scaled.gradient(&k);
+    // These are the conditions of Karush, Kuhn and Tucker: they decide, not the way that led to this set.
     let is_optimal = k.iter().all(|k| k.rounded() >= 0.0)
         && slopes.iter().zip(near).all(|(slope, k)| *k > 0.0 || slope.rounded() >= -tolerance);
     Some(is_optimal.then(|| k.into_iter().zip(&scale).map(|(k, scale)| k * scale).collect()))
@@ -101,6 +103,7 @@ fn decided(pivoted: Option<Vec<f64>>, scaled: impl FnOnce() -> Normal) -> (Vec<f
     let is_regular = scaled.clone().solve_regular();
     match least_nonnegative(&scaled) {
         Some(k) => (k, if is_regular { Rank::Full } else { Rank::Deficient }),
+        // Zero keeps the bounds, and the rank tells that it is no optimum.
         None => (vec![0.0; scaled.size()], Rank::Unsolved),
     }
 }

@@ -54,6 +54,7 @@ impl DelicateCells<'_> {
             }
         }
         let normal = normal.by_unknowns(springs, fit.tied);
+        // The coordinates are doubles: what differs by less than their rounding is not known, however many digits are computed.
         let (k, rank, _) = solve_precisely(&normal, fit.nonnegative, DoubleDouble::given());
         fit.spread(springs, constants, &k);
         Some(Verdict { certificate: None, rank, reached: true, delicate: false })

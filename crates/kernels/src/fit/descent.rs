@@ -138,6 +138,8 @@ pub fn search(
     let mut start = vec![reduced.uniform(); count];
     // Best equal constants tell the size of κ, of which a search knows nothing else.
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;
+    // The seed is fixed: the same element has the same springs in each run. The
+    // optimiser has the objective behind a shared reference, hence the lock.
     let random = Mutex::new(StdRng::seed_from_u64(1));
     let (objective, nonnegative) = (fit.objective, fit.nonnegative);
     let mut raw = Raw { reduced: &reduced, objective, nonnegative, price: 0.0, stride, random };
@@ -172,6 +174,7 @@ pub fn search(
             };
             let each = topology.map_or(iterations, |_| iterations.min(AGREED)).max(1);
             let swarms = iterations.div_ceil(each).max(1);
+            // Each swarm has a seed of its own; the last one has the iterations that are left.
             let found = (0..swarms).map(|i| swarm(1 + i, each.min(iterations - i * each)));
             let found = found.collect::<std::result::Result<Vec<_>, String>>()?;
             found.into_iter().flatten().min_by(|a, b| raw.cost_of(a).total_cmp(&raw.cost_of(b)))

@@ -88,6 +88,7 @@ impl<'a, T: Packed> Differences<'a, T> {
                 _ => self.subtract::<3>(first, count),
             },
         );
+        // Springs without tension at rest have no measures, and those of lengths have been taken off in all lanes.
         if self.measures.len() > self.fits.springs.pairs.len() {
             (0..count).for_each(|lane| self.bend_singly(first + lane, lane));
         }
@@ -101,6 +102,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         for (lane, cell) in nodes.chunks_exact(table.nodes).enumerate() {
             let placed = self.packing.place(cell, x);
             placed.and_then(|()| geometry.set(table, x)).map_err(|fault| (lane, fault))?;
+            // The lanes without a cell hold the numbers of the first one, so that all are finite.
             let last = if lane == 0 { T::COUNT } else { lane + 1 };
             let fill = |lanes: &mut [T], values: &[f64]| {
                 lanes.iter_mut().zip(values).for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
@@ -207,6 +209,8 @@ impl<'a, T: Packed> Differences<'a, T> {
                     if k == l {
                         entry = entry + &across;
                     }
+                    // K has the entry on the diagonal and its negative beside it, and K is
+                    // taken off. Of the two blocks beside the diagonal the lower one is kept.
                     for (row, column, sign) in [(low, low, -1.0), (high, high, -1.0), (high, low, 1.0)] {
                         let place = (row * D + k) * size + column * D + l;
                         self.left[place] = self.left[place].clone() + &entry.clone().scaled(&sign);
@@ -269,6 +273,7 @@ impl<'a, T: Packed> Differences<'a, T> {
             let dofs: Vec<usize> = nodes.iter().flat_map(|&a| a * d..(a + 1) * d).collect();
             let at: Vec<f64> = dofs.iter().map(|&i| x[i]).collect();
             let pull = self.tension(cell, s, measure.value(&at, d));
+            // Second derivatives are dear, and a spring without tension has no use for them.
             if pull == 0.0 {
                 continue;
             }
@@ -301,6 +306,7 @@ fn subtract_turns<T: Packed, const D: usize>(entries: &mut [T], g: &[[T; D]], p:
         for (b, gb) in g[..a].iter().enumerate() {
             for k in 0..D {
                 for l in 0..D {
+                    // `g_ak g_bk − g_ak g_bk` is zero.
                     if k == l {
                         continue;
                     }

@@ -155,9 +155,11 @@ impl<T: Real> Divergence<T> {
                     let share = barrier.clone() / &self.trial[i];
                     self.gradient[i] = self.gradient[i].clone() - &share;
                     let diagonal = &mut self.hessian[i * c + i];
+                    // The barrier −β ln κ has the slope −β/κ and the curvature β/κ².
                     *diagonal = diagonal.clone() + &(share / &self.trial[i]);
                 }
             }
+            // Springs that depend on each other leave directions without curvature: the floor takes them out of the step.
             factorize(&mut self.hessian, c, at_rounding::<T>(FLOOR), &mut self.hessian_pivots);
             for i in 0..c {
                 self.trial[i] = self.gradient[i].negated();
@@ -177,6 +179,7 @@ impl<T: Real> Divergence<T> {
             // For the barrier −log det, with λ the decrement, a step of 1/(1 + λ) stays inside and decreases the
             // objective. From λ = ½ down a whole step does, after which λ₊ ≤ (λ/(1 − λ))² (Nesterov and Nemirovskii
             // 1994).
+            // Rounding may leave a decrement below zero, which has no root.
             let length = one.clone() / &(one.clone() + &decrement.greatest(&zero).sqrt());
             let mut length = (one.constant(&0.25) - &decrement).choose(&one, &length);
             if self.nonnegative {
@@ -188,6 +191,7 @@ impl<T: Real> Divergence<T> {
             }
             // A lane that is outside tries half of its last step, while the others go on.
             alpha = inside.choose(&moving, &alpha.clone().scaled(&0.5));
+            // A lane that has ended takes its last step in the next pass, so that the test stands before the line that ends lanes.
             if self.reached.exceeds(&zero) {
                 break;
             }

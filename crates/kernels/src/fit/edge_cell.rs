@@ -42,6 +42,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
         let edges = edges.as_chunks_mut::<D>().0;
         for ((d, q), &[i, j]) in edges.iter_mut().zip(&mut *q).zip(&springs.pairs) {
             *d = difference(&x[j], &x[i]);
+            // `n nᵀ = d dᵀ/(d·d)`: without the length itself no root is taken, and fractions have the same kernel.
             *q = zero.one() / &dot(d, d);
         }
         EdgeCell { springs, x, edges, q: &q[..lengths], geometry, hooke }
@@ -107,6 +108,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
                 let gradients = gradients(s, &grad.as_chunks::<D>().0[..n]);
                 let (y, z) = gradients.both();
                 let image: [T; D] = std::array::from_fn(|j| dot(&tensor[j], z));
+                // The stiffness is summed with v as a whole; what a rule of the volumetric part changes is the term with λ alone.
                 let volumetric = (w.clone() - v) * stiffness.lambda();
                 sum = sum.plus_product(v, &dot(y, &image));
                 sum = sum.plus_product(&volumetric, &gradients.product_along(&self.edges[s]));
@@ -223,6 +225,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
                 for k in 0..D {
                     strain[k] = Some(h[k][k].clone());
                     for l in 0..k {
+                        // Voigt's shears are those of engineers, twice the entry of the tensor.
                         strain[voigt(D, k, l)] = Some(h[k][l].clone() + &h[l][k]);
                     }
                 }

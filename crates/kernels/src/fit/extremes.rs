@@ -37,6 +37,8 @@ impl<T: Real> Extremes<T> {
             || {
                 let (size, sum) = row_sums(a, self.order);
                 // A matrix of zeros is left as it is.
+                // The largest row sum bounds all eigenvalues (Gershgorin): after
+                // division they are from −1 to 1, and no square of an entry overflows.
                 let inverse = any.one() / &size.choose(&size, &any.one());
                 for entry in a.iter_mut() {
                     *entry = entry.clone() * &inverse;
@@ -70,6 +72,7 @@ impl<T: Real> Extremes<T> {
                 break;
             }
             let length = square.sqrt();
+            // The sign is that of the entry, so that the sum below does not cancel.
             let signed = end.choose(&length, &length.negated());
             row[last - 1] = end + &signed;
             // β = 2/vᵀv, zero where there is nothing to reflect.
@@ -144,6 +147,7 @@ impl<T: Real> Extremes<T> {
             let room = size.clone() / &g;
             let moves = room - &left;
             let spread = (size.clone() * &h).minus_product(&g, &g) * &rest;
+            // The spread is zero where all eigenvalues are equal, and rounding may leave it below zero.
             let root = spread.choose(&spread, &zero).sqrt();
             let step = size.clone() / &(g + &root);
             // A lane that has arrived, or whose numbers are not finite, stays where it is.

@@ -26,8 +26,10 @@ pub fn eigenvectors<T: Real>(a: &mut [T], n: usize, v: &mut [T]) {
                         rest = rest.plus_product(&a[i * n + j], &a[i * n + j]);
                     }
                 }
+                // Entries beside the diagonal that are a rounding error of it together move no eigenvalue by more than that.
                 let floor = size.scaled(&T::epsilon().powi(2));
                 let moves = rest.clone() - &floor;
+                // The sweeps end with the slowest lane; one that has converged has zero angles from there on.
                 if floor.exceeds(&rest) {
                     break;
                 }
@@ -51,6 +53,7 @@ fn rotate<T: Real>(a: &mut [T], n: usize, v: &mut [T], (i, j): (usize, usize), m
     // The tangent of the angle, the smaller of the two solutions: 2 A_ij/(d ± √(d² + 4 A_ij²)).
     let root = twice.clone().squared().plus_product(&difference, &difference).sqrt();
     let denominator = difference.magnitude() + &root;
+    // Two equal diagonal entries with nothing beside them have 0/0 here, and need no rotation.
     let tangent = denominator.choose(&(twice / &denominator.choose(&denominator, &zero.one())), &zero);
     let tangent = difference.negated().choose(&tangent.negated(), &tangent);
     let tangent = moves.choose(&tangent, &zero);
@@ -70,6 +73,7 @@ fn rotate<T: Real>(a: &mut [T], n: usize, v: &mut [T], (i, j): (usize, usize), m
         a[k * n + i] = a[i * n + k].clone();
         a[k * n + j] = a[j * n + k].clone();
     }
+    // The diagonal is updated by the tangent alone (Rutishauser 1966): the rotation of its rows would add rounding to what hardly changes.
     a[i * n + i] = first.minus_product(&tangent, &entry);
     a[j * n + j] = last.plus_product(&tangent, &entry);
     let left = moves.choose(&zero, &entry);

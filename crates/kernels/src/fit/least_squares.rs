@@ -38,6 +38,7 @@ pub fn constants_in<T: Scalar>(
     x: &[T],
     moduli: &Moduli<T::Constant>,
 ) -> Result<Vec<T>> {
+    // What requires roots is refused before anything is computed: rational numbers have none.
     let weight = weight.closed(springs.need_matrix())?;
     if (table.nodes, table.dimension) != (springs.nodes, springs.dimension) {
         let expected = format!("a table of {} nodes in {} dimensions", springs.nodes, springs.dimension);
@@ -104,9 +105,11 @@ pub(super) fn equations<T: Scalar, const D: usize>(
         ClosedWeight::None => {
             cell.plain_energies(rhs);
             clear(gram, m, &zero);
+            // Springs without a common node have `M_st = 0`: their pairs, which are most, are not visited.
             for &(s, t) in &springs.touching {
                 gram[t * m + s] = cell.cosine_squared(s, t);
             }
+            // `(g·g)² = 4`, because g has a unit vector at each of its two ends.
             for s in 0..lengths {
                 gram[s * m + s] = two.clone().squared();
             }
@@ -156,8 +159,10 @@ pub(super) fn equations<T: Scalar, const D: usize>(
             for t in 0..lengths {
                 images[t] = difference(&q[pairs[t][1]], &q[pairs[t][0]]);
                 let along = linear.weighted(&rest, &images[t]);
+                // P couples springs that share no node: no pair is left out here.
                 for s in 0..=t {
                     let ([a, b], [c, d]) = (pairs[s], pairs[t]);
+                    // A spring between one node and itself does not exist, so that the number is from −2 to 2.
                     let ends = i8::from(a == c) + i8::from(b == d) - i8::from(a == d) - i8::from(b == c);
                     let mut factor = dot(&images[s], &along);
                     if ends != 0 {

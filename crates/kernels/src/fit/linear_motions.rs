@@ -35,6 +35,7 @@ impl<T: Scalar, const D: usize> LinearMotions<T, D> {
                 for row in q.iter_mut() {
                     row[l] = row[l].clone().minus_product(&share, &row[m]);
                 }
+                // `U⁻¹` is built column by column with the same shares: it needs no substitution afterwards.
                 for k in 0..=m {
                     back[k][l] = back[k][l].clone().minus_product(&share, &back[k][m]);
                 }
@@ -92,6 +93,7 @@ impl<T: Scalar, const D: usize> LinearMotions<T, D> {
 #[inline(always)]
 pub fn from_mean<T: Scalar, const D: usize>(x: &[[T; D]], q: &mut [[T; D]]) {
     let zero = x[0][0].zero();
+    // The sign is in the share, so that subtraction is one more sum of products.
     let share = zero.constant(&T::exact(-1.0)) / &zero.constant(&T::exact(x.len() as f64));
     let mut less: [T; D] = zeros(&zero);
     for x in x {

@@ -116,6 +116,7 @@ impl<T: Real> Method<T> {
         let m = springs.len();
         let solver = match fit.objective {
             Objective::Frobenius(_) => {
+                // The room serves the products of springs with each other first, and then their images under R.
                 let products = vec![any.zero(); m * m.max(reduced.order)];
                 Solver::LeastSquares { normal: Normal::default(), products }
             }
@@ -222,6 +223,7 @@ impl<T: Real> Method<T> {
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
         if let Solver::LeastSquares { normal, .. } = &self.solver {
             // Relative weights make pivots as small as the softest motion; this does not affect the accuracy.
+            // With linearly dependent springs small pivots are those of the dependence, which no weight excuses.
             let relative = self.weight.divides_by_stiffness() && independent();
             let rounding = if relative { T::epsilon() } else { T::given() };
             let (kappa, rank, pivot) = solve_precisely(normal, self.nonnegative, rounding);
@@ -229,6 +231,7 @@ impl<T: Real> Method<T> {
                 *constant = kappa[unknown] * self.reduced.scales[unknown].rounded();
             }
             verdict.rank = rank;
+            // A pivot of less leaves fewer than nine digits, whatever the elimination calls regular.
             verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
@@ -247,6 +250,7 @@ impl<T: Real> Method<T> {
         certificate.rounding = certificate.size * self.rounding(constants);
         let unit = f64::EPSILON * certificate.size;
         let most = 4.0 * self.reduced.order as f64 * unit;
+        // The excess starts at no less than one unit, because twice zero is zero.
         let (reached, mut excess) = (certificate.value, certificate.rounding.max(unit).min(most));
         for _ in 0..TRIALS {
             certificate.value = reached + excess;
@@ -282,6 +286,7 @@ impl<T: Real> Method<T> {
         }
         let value = any.constant(&value) / &any;
         let (mut e, mut pivots) = (vec![any.zero(); p * p], vec![any.zero(); p]);
+        // Both `t I − E` and `t I + E` must be positive definite: the 2-norm is the larger of the two ends.
         for sign in [-1.0, 1.0] {
             self.reduced.residual(&kappa, &mut e);
             e.iter_mut().for_each(|entry| *entry = entry.clone().scaled(&sign));
@@ -290,6 +295,7 @@ impl<T: Real> Method<T> {
                 return None;
             }
         }
+        // An optimum of zero has no relative distance; it is relative to what counts as zero there.
         let floor = value.greatest(&any.constant(&EXACT));
         Some(((value - &solver.bound) / &floor).rounded())
     }
@@ -297,6 +303,7 @@ impl<T: Real> Method<T> {
     /// Writes the constants of one lane, `[springs]`, N/m. `lane` reads a number of that lane, and `quality` measures
     /// its cell if needed.
     pub fn finish(&mut self, lane: impl Fn(&T) -> f64, quality: impl Fn() -> f64, constants: &mut [f64]) -> Verdict {
+        // The comparison is negated so that a softness that is not a number asks for more digits.
         let delicate = !(lane(&self.reduced.softest) > SOFTEST);
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
         let kappa: Vec<f64> = match &self.solver {
@@ -324,6 +331,7 @@ impl<T: Real> Method<T> {
                 let is_enough = optimum.value - optimum.bound <= solver.gap * optimum.value.max(EXACT);
                 let refines = T::epsilon() >= T::given() && !is_enough;
                 // A nonnegative optimum stays in the middle of the optima, away from the bounds.
+                // A large least curvature shows a single optimum, which spares the search for others.
                 let doubtful = lane(&solver.curvature) < AMBIGUOUS && !self.nonnegative;
                 let mut ambiguous = false;
                 if refines || doubtful {

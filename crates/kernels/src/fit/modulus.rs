@@ -54,6 +54,7 @@ impl Modulus {
         let s = strains(dimension);
         let mut entries = vec![any.zero(); s * s];
         // One of the orders of each strain.
+        // `C_kilj` and `C_iklj` are one entry in Voigt's notation, which must be set once.
         for &[k, i, l, j] in self.entries.iter().filter(|[k, i, l, j]| k <= i && l <= j) {
             let entry = &mut entries[voigt(dimension, k, i) * s + voigt(dimension, l, j)];
             *entry = entry.clone() + &any.one();
@@ -66,6 +67,7 @@ impl Modulus {
         let (n, d) = (geometry.nodes, geometry.dimension);
         let size = n * d;
         let mut r = vec![geometry.volumes[0].zero(); size * size];
+        // R is symmetric: half of the products of polynomials are spared.
         for (a, b) in (0..n).flat_map(|a| (0..=a).map(move |b| (a, b))) {
             // ∫ ∇_i N_a ∇_j N_b dV
             let product = |i: usize, j: usize| {

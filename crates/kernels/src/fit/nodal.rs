@@ -39,6 +39,7 @@ impl<T> Default for Nodal<T> {
 
 /// Whether the equations of the nodes are fewer than those of the springs, in the plane or in space.
 pub fn is_shorter(springs: &Springs) -> bool {
+    // The equations of the nodes are compiled for the plane and for space alone.
     if springs.dimension < 2 {
         return false;
     }
@@ -87,6 +88,7 @@ impl<T: Scalar> Nodal<T> {
             cell.content(ClosedWeight::None, &mut self.border, rhs);
         }
         self.energies.clone_from(rhs);
+        // The entries stay for products under bounds and for other right-hand sides.
         self.set_entries(&cell);
         self.set_small::<D>(springs, &zero);
         // k = A⁻¹ b of the length springs alone.
@@ -95,10 +97,12 @@ impl<T: Scalar> Nodal<T> {
             return false;
         }
         self.scatter::<D>(springs, rhs);
+        // The border would be empty, and `rhs` has no entry after those of the lengths.
         if springs.content.is_none() {
             return true;
         }
         // M = [A c; cᵀ e]: the constant of the content is (b_e − cᵀ A⁻¹ b)/(e − cᵀ A⁻¹ c).
+        // The factor of the nodes is that of A alone: one more substitution, for c, serves as the elimination of the border.
         self.image.clone_from(&self.border);
         let mut image = std::mem::take(&mut self.image);
         self.gather::<D>(springs, &image);
@@ -112,6 +116,7 @@ impl<T: Scalar> Nodal<T> {
         }
         // The pivot of the content, by the rule of all normal equations: a thousand rounding errors count as zero.
         let regular = below.exceeds(&self.border[lengths].clone().scaled(&T::exact(1e3 * T::epsilon())));
+        // Lanes whose pivot vanishes hold numbers that are not finite here; the result is refused as a whole.
         let constant = above / &below;
         for s in 0..lengths {
             rhs[s] = rhs[s].clone().minus_product(&constant, &image[s]);
@@ -180,6 +185,7 @@ impl<T: Scalar> Nodal<T> {
             for k in 0..D {
                 for l in 0..=k {
                     let at = a * width + entry;
+                    // `2 W⁻¹`: W is 1 on the diagonal of a block and 2 below it.
                     gram[at * size + at] = zero.constant(&T::exact(if k == l { 2.0 } else { 1.0 }));
                     entry += 1;
                 }
@@ -190,6 +196,7 @@ impl<T: Scalar> Nodal<T> {
             for k in 0..width {
                 for l in 0..width {
                     let product = v[k].clone() * &v[l];
+                    // Rows and columns are nodes; only blocks on and below the diagonal are kept, and of those on it the lower triangle.
                     for (row, column) in [(low, low), (high, high), (high, low)] {
                         if row != column || l <= k {
                             let place = &mut gram[(row * width + k) * size + column * width + l];
@@ -251,6 +258,7 @@ impl<T: Packed> Nodal<T> {
         let zero = k[0].zero();
         let (mut scale, mut border) = (vec![zero.one(); springs.len()], Vec::new());
         if let (Some(_), Some((entry, row))) = (springs.content, self.border.split_last()) {
+            // A length has the diagonal entry 4. With the same for the content all slopes have one tolerance.
             let content = zero.constant(&2.0) / &entry.clone().sqrt();
             border = row.iter().map(|c| c.clone() * &content).collect();
             scale[row.len()] = content;
@@ -291,6 +299,7 @@ impl<T: Packed> NodalProduct<'_, T> {
         }
         for sums in sums.iter_mut() {
             for (entry, sum) in sums.iter_mut().enumerate() {
+                // W counts entries below the diagonal twice, and 0, 2 and 5 are (1,1), (2,2) and (3,3).
                 if !matches!(entry, 0 | 2 | 5) {
                     *sum = sum.clone() + &sum.clone();
                 }

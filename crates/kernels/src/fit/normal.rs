@@ -116,6 +116,7 @@ impl<T: Scalar> Normal<T> {
 
     /// Solves the equations as [`Normal::solve_regular`] does, for input data with the relative error `rounding`.
     pub fn solve_to(&mut self, rounding: f64) -> bool {
+        // No unknowns: the empty solution is right.
         let Some(any) = self.rhs.first().cloned() else { return true };
         // A size that the compiler knows unrolls the loops of the small systems, where they are most of the work.
         any.vectorize(
@@ -145,6 +146,7 @@ impl<T: Scalar> Normal<T> {
             let (before, row) = gram.split_at_mut(s * m);
             let row = &mut row[..=s];
             let pivot = eliminate_row(row, before, inverse, m, s);
+            // A relative limit, because springs on lengths, areas and volumes have pivots of different units.
             if !pivot.exceeds(&row[s].clone().scaled(&least)) {
                 return false;
             }
@@ -214,6 +216,7 @@ impl Normal {
 
     /// The solution in which unknowns without influence are zero, and `solve` finds the others.
     pub fn solve_determined(&self, solve: impl Fn(&Normal) -> (Vec<f64>, Rank)) -> (Vec<f64>, Rank) {
+        // A zero on the diagonal of a positive matrix is a row of zeros: the unknown has no influence, and no scale.
         let determined: Vec<usize> = (0..self.size()).filter(|&s| self.entry(s, s) > 0.0).collect();
         if determined.len() == self.size() {
             return solve(self);
@@ -247,6 +250,7 @@ impl Normal {
     pub fn least_norm(&self) -> Vec<f64> {
         let (scaled, scale) = self.scaled();
         let m = self.size();
+        // With a unit diagonal the eigenvalues have no unit, whatever springs measure: they can be compared with each other.
         let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
         let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
         let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));

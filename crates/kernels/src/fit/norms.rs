@@ -62,6 +62,7 @@ pub fn solve_norm(rows: &[f64], rhs: &[f64], unknowns: usize, norm: Norm, nonneg
     let size = root_mean_square(rhs.iter().copied());
     let column = |j: usize| rows.iter().skip(j).step_by(unknowns).copied();
     let scale: Vec<f64> = (0..unknowns).map(|j| root_mean_square(column(j))).collect();
+    // Zero is an optimum: nothing is asked for, or nothing has an effect. Neither could be scaled.
     if size == 0.0 || scale.iter().all(|s| *s == 0.0) {
         return Some(vec![0.0; unknowns]);
     }
@@ -79,6 +80,7 @@ fn ratio(a: f64, s: f64) -> f64 {
 }
 
 fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    // Squares of numbers beyond 1e154 overflow and those below 1e-154 vanish; relative to the largest they do neither.
     let largest = values.clone().fold(0.0f64, |largest, value| largest.max(value.abs()));
     let count = values.clone().count().max(1) as f64;
     largest * (values.map(|value| ratio(value, largest).powi(2)).sum::<f64>() / count).sqrt()
@@ -108,6 +110,7 @@ impl Residual {
     fn minimize_in_basis(&self, norm: Norm) -> Option<Vec<f64>> {
         let a = DMatrix::from_row_slice(self.rhs.len(), self.unknowns, &self.rows);
         let Some(basis) = basis(&a) else { return self.minimize(norm) };
+        // nalgebra stores columns, whereas the rows of a residual are one after the other.
         let rows = (a * &basis).transpose().as_slice().to_vec();
         let independent = Residual { rows, rhs: self.rhs.clone(), unknowns: basis.ncols(), nonnegative: false };
         let x = basis * DVector::from_vec(independent.minimize(norm)?);
@@ -134,6 +137,7 @@ impl Residual {
         let column = |i: usize| self.row(i).iter().copied().enumerate().chain(bounds(i));
         let constraints = sparse(n + 2 * m, (0..m).map(column));
         let limits = [vec![0.0; n], vec![1.0; 2 * m]].concat();
+        // The multiplier of an equation has any sign, that of an inequality none below zero: these are the x.
         let equations = if self.nonnegative { 0 } else { n };
         let optimum = Programme { quadratic, linear, constraints, limits, equations }.optimum()?;
         Some(self.unknowns_of(optimum.multipliers))
@@ -154,6 +158,7 @@ impl Residual {
             if worst.is_empty() {
                 return Some(x);
             }
+            // The worst come first; equal ones stay in their order, so that each run takes the same.
             worst.sort_by(|a, b| b.0.total_cmp(&a.0));
             worst.iter().take(inside.len()).for_each(|&(_, i)| taken[i] = true);
         }
@@ -179,6 +184,7 @@ impl Residual {
             let entry = |&i: &usize| if j < n { self.row(i)[j] } else { -1.0 };
             let opposite = |i: &usize| if j < n { -entry(i) } else { entry(i) };
             let both = equations.iter().map(entry).chain(equations.iter().map(opposite)).enumerate();
+            // The bound of an unknown is the row −x ≤ 0; t has none, because the other rows hold it above zero.
             both.chain((j < bounds).then_some((2 * m + j, -1.0))).collect::<Vec<_>>()
         };
         let constraints = sparse(2 * m + bounds, (0..=n).map(column));
@@ -207,6 +213,7 @@ fn basis(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let pivoted = a.clone().qr().unpack_r().col_piv_qr();
     let mut r = pivoted.r();
     let pivots: Vec<f64> = (0..m.min(n)).map(|k| r[(k, k)]).collect();
+    // Pivoting puts the largest first, and pivots fall: after the first that is too small there is no other.
     let rank = pivots.iter().take_while(|pivot| **pivot > DEPENDENT * pivots[0]).count();
     if rank == n && pivots[n - 1] > INDEPENDENT * pivots[0] {
         return None;

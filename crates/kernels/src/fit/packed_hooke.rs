@@ -28,6 +28,7 @@ impl<'a, T: Packed> PackedHooke<'a, T> {
     pub fn set(&mut self, first: usize, count: usize) {
         let BlockValues::Each(all) = self.given else { return };
         let of_lane = |lane: usize| &all[first + if lane < count { lane } else { 0 }];
+        // The common case sets two numbers in each lane and allocates nothing.
         if let (Hooke::Isotropic(lanes), true) = (&mut self.lanes, self.is_isotropic) {
             for lane in 0..T::COUNT {
                 let Some(Moduli { lambda, mu }) = of_lane(lane).moduli() else { continue };
@@ -41,6 +42,7 @@ impl<'a, T: Packed> PackedHooke<'a, T> {
             (0..T::COUNT).for_each(|lane| lanes.as_mut_slice()[lane] = value(lane));
             lanes
         };
+        // Lanes compute with one kind of law: a single anisotropic cell makes all of them anisotropic.
         let moduli: Option<Vec<Moduli>> = (0..T::COUNT).map(|lane| of_lane(lane).moduli()).collect();
         self.lanes = match moduli {
             Some(moduli) => Hooke::Isotropic(Moduli {

@@ -52,6 +52,7 @@ impl<'a, T: Packed> Packing<'a, T> {
         let n = self.element.nodes();
         let mut x = vec![0.0; self.x.len()];
         for lane in 0..T::COUNT {
+            // A lane without a cell repeats the first one, whose numbers are finite and are not read.
             let cell = if lane * n < nodes.len() { &nodes[lane * n..(lane + 1) * n] } else { &nodes[..n] };
             if self.place(cell, &mut x).is_err() {
                 return false;
@@ -71,6 +72,7 @@ impl<'a, T: Packed> Packing<'a, T> {
             for (x, &node) in x.iter_mut().zip(cell) {
                 let point = &points[node];
                 for k in 0..D {
+                    // Differences of nearby doubles are exact (Sterbenz 1974): a body far from the origin has the same constants.
                     x[k].as_mut_slice()[lane] = point[k] - first[k];
                 }
             }

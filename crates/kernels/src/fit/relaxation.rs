@@ -67,6 +67,7 @@ impl ModulusTest<'_> {
     pub fn fit(&self) -> Result<FittedSeries> {
         let (places, [first, last]) = self.checked()?;
         let count = ((last / first).log10() * PER_DECADE).ceil().max(1.0);
+        // Times are even in their logarithm, because each term acts within about a decade of its own.
         let times: Vec<f64> = (0..=count as usize).map(|i| first * (last / first).powf(i as f64 / count)).collect();
         let rows = self.rows(places, &times);
         let n = times.len() + 1;
@@ -102,6 +103,7 @@ impl ModulusTest<'_> {
 
     /// The rows of the least squares, each with its value, relative to the size of the modulus.
     fn rows(&self, places: &[f64], times: &[f64]) -> Vec<(Vec<f64>, f64)> {
+        // Each row is divided by its value: errors count relative to the modulus, which may fall by decades.
         let row = |size: f64, rest: f64, of: &dyn Fn(f64) -> f64| -> Vec<f64> {
             std::iter::once(rest).chain(times.iter().map(|time| of(*time))).map(|a| a / size).collect()
         };
@@ -112,10 +114,13 @@ impl ModulusTest<'_> {
             ModulusTest::Creep { compliances, .. } => places
                 .iter()
                 .zip(compliances)
+                // `expm1` keeps the digits of times far below τ, where the exponential is nearly one.
                 .map(|(t, j)| (row(*j, 1.0, &|tau| -f64::exp_m1(-t / tau)), 1.0))
                 .collect(),
             ModulusTest::Frequencies { storage, loss, .. } => {
+                // Storage and loss share the size of the complex modulus: a small loss is not weighted up to its own.
                 let both = |(frequency, (real, imaginary)): (&f64, (&f64, &f64))| {
+                    // Frequencies are in Hz, ω in radians per second.
                     let w = TAU * frequency;
                     let size = real.hypot(*imaginary);
                     let of_real = row(size, 1.0, &|tau| (w * tau).powi(2) / (1.0 + (w * tau).powi(2)));
@@ -175,6 +180,7 @@ impl ModulusTest<'_> {
         }
         let ends = [places[0], places[places.len() - 1]];
         let is_of_frequencies = matches!(self, ModulusTest::Frequencies { .. });
+        // The highest frequency shows the shortest time, so that the order turns.
         Ok((places, if is_of_frequencies { [1.0 / (TAU * ends[1]), 1.0 / (TAU * ends[0])] } else { ends }))
     }
 }

@@ -44,6 +44,7 @@ impl<T: Scalar> Rows<T> {
         squares.extend(functions.1);
         if springs.content.is_some() {
             rows.extend(geometry.content_gradient());
+            // The gradient of the content needs no root, so that its factor is one.
             squares.push(zero.one());
         }
         Rows { dimension: d, size, rows, squares }
@@ -78,6 +79,7 @@ impl<T: Scalar> Rows<T> {
             let mut sum = zero.clone().unwrap_or_else(|| q.zero());
             for (i, r) in r.chunks_exact(self.size).enumerate() {
                 let mut force = q.zero();
+                // The blocks of one node with itself are left out where those of different nodes alone count.
                 for (j, entry) in r.iter().enumerate().filter(|(j, _)| !(off_diagonal && i / d == j / d)) {
                     force = force.plus_product(entry, &row[j]);
                 }

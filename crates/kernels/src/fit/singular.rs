@@ -21,6 +21,7 @@ const ROUNDING: f64 = 1e-14;
 pub fn least_nonnegative(normal: &Normal) -> Option<Vec<f64>> {
     let tolerance = slope_tolerance::<f64>(normal.largest());
     let free = normal.least_norm();
+    // The solution of least norm without bounds is the one with them where it violates none.
     if free.iter().all(|k| *k >= 0.0) && violation(normal, &free) <= tolerance {
         return Some(free);
     }
@@ -29,6 +30,7 @@ pub fn least_nonnegative(normal: &Normal) -> Option<Vec<f64>> {
     for delta in DELTAS {
         let mut near = normal.clone();
         (0..m).for_each(|s| near.gram[s * m + s] += delta);
+        // The first step, from zero, is Tikhonov's; those after it are proximal.
         near.rhs.iter_mut().zip(&k).for_each(|(b, k)| *b += delta * k);
         k = regular_optimum(&near)?;
         if violation(normal, &k) <= ENOUGH * tolerance {
@@ -40,6 +42,7 @@ pub fn least_nonnegative(normal: &Normal) -> Option<Vec<f64>> {
 
 /// The largest violation of the conditions `M k − b ≥ 0` and `k (M k − b) = 0` by constants that are not negative.
 fn violation(normal: &Normal, k: &[f64]) -> f64 {
+    // A constant above zero may have no slope at all; one at zero may only have one that pushes it up.
     let violation = |(k, slope): (&f64, f64)| if *k > 0.0 { slope.abs() } else { -slope };
     k.iter().zip(normal.gradient(k)).map(violation).fold(0.0, f64::max)
 }
@@ -49,6 +52,7 @@ fn violation(normal: &Normal, k: &[f64]) -> f64 {
 fn regular_optimum(normal: &Normal) -> Option<Vec<f64>> {
     let (m, tolerance) = (normal.size(), ROUNDING * normal.largest());
     let (mut k, mut set, mut barred) = (vec![0.0; m], Vec::new(), vec![false; m]);
+    // In exact numbers no set returns, of which rounding makes no promise: the number of steps is bounded.
     for _ in 0..100 + 30 * m {
         let slopes = normal.gradient(&k);
         let candidates = (0..m).filter(|s| !barred[*s] && slopes[*s] < -tolerance && !set.contains(s));
@@ -70,6 +74,7 @@ fn descend(normal: &Normal, k: &mut [f64], set: &mut Vec<usize>) -> bool {
     let entering = set[set.len() - 1];
     loop {
         let mut free = normal.restricted(set);
+        // An entering constant that does not become positive would return the set before it, without end.
         if !free.solve_regular() || (k[entering] == 0.0 && !(free.rhs[set.len() - 1] > 0.0)) {
             set.retain(|s| *s != entering);
             k[entering] = 0.0;
@@ -81,6 +86,7 @@ fn descend(normal: &Normal, k: &mut [f64], set: &mut Vec<usize>) -> bool {
             set.iter().zip(&free.rhs).for_each(|(&s, z)| k[s] = *z);
             return true;
         };
+        // Rounding may leave the constant that limits the step a little below zero.
         set.iter().zip(&free.rhs).for_each(|(&s, z)| k[s] = (k[s] + share * (z - k[s])).max(0.0));
         k[leaving] = 0.0;
         set.retain(|&s| k[s] > 0.0);

@@ -94,6 +94,7 @@ impl Wide {
                     let (at, lane) = (s / WIDTH, s % WIDTH);
                     let (own, mut sums) = (self.constants[at][lane], [0.0; WIDTH]);
                     for ((row, k), product) in row[..=at].iter().zip(&self.constants).zip(&mut product) {
+                        // Each entry of the lower triangle serves its row and its column: the matrix is read once.
                         for l in 0..WIDTH {
                             sums[l] += row[l] * k[l];
                             product[l] += row[l] * own;
@@ -114,6 +115,7 @@ impl Wide {
         let gram = self.gram.as_flattened();
         self.factor.clear();
         self.factor.resize(m * groups, [0.0; WIDTH]);
+        // With an empty set there are no groups, and a slice has no pieces of length zero.
         for (i, (row, &s)) in self.factor.chunks_exact_mut(groups.max(1)).zip(set).enumerate() {
             let own = &gram[s * full..(s + 1) * full];
             for (entry, &t) in row.as_flattened_mut().iter_mut().zip(&set[..i]) {
@@ -145,10 +147,12 @@ impl Wide {
                     pivot -= *entry * scaled;
                     *entry = scaled;
                 }
+                // The comparison is negated so that a pivot that is not a number counts as zero.
                 if !(pivot > own * RANK * rounding) {
                     return false;
                 }
                 inverse[s] = 1.0 / pivot;
+                // The forward substitution goes along with the factor, while its row is in the cache.
                 let sum = dot(&row[..s.div_ceil(WIDTH)], &solution[..s.div_ceil(WIDTH)]);
                 solution[s / WIDTH][s % WIDTH] = self.rhs[set[s]] - sum;
             }

@@ -28,6 +28,7 @@ impl Anisotropy {
         for (key, moduli) in [("young", young), ("shear", shear)] {
             moduli.into_iter().try_for_each(|modulus| positive(key, modulus, "Pa").map(|_| ()))?;
         }
+        // The comparison is negated so that a ratio that is not a number is refused as well.
         if let Some(found) = poisson.iter().find(|ratio| !(ratio.abs() <= LARGEST_RATIO)) {
             return Err(Error::expected("poisson", format!("ratios of at most {LARGEST_RATIO} in size"), found));
         }
@@ -35,6 +36,7 @@ impl Anisotropy {
         (0..3).for_each(|i| compliance[(i, i)] = 1.0 / young[i]);
         for ((i, j), nu) in [(0, 1), (1, 2), (0, 2)].into_iter().zip(poisson) {
             compliance[(i, j)] = -nu / young[i];
+            // `ν_ji/E_j = ν_ij/E_i`: the compliance is symmetric, and the other ratio follows.
             compliance[(j, i)] = compliance[(i, j)];
         }
         // G12 is that of xy, G23 of yz and G13 of xz.
@@ -47,6 +49,7 @@ impl Anisotropy {
             let found = format!("its eigenvalue {eigenvalue:.6e} 1/Pa");
             Error::expected("poisson", expected, found).of_kind(ErrorKind::Infeasible)
         };
+        // A factor exists where the compliance is positive definite, which is asked for anyway.
         let stiffness = compliance.cholesky().ok_or_else(indefinite)?.inverse();
         Anisotropy::of_stiffness(stiffness)
     }
@@ -64,6 +67,7 @@ impl Anisotropy {
         if !(nu_across > -1.0 && nu_across < 1.0) {
             return Err(Error::expected("poisson", "a ratio across above -1 and below 1", nu_across));
         }
+        // The plane across is isotropic, so that its shear modulus follows from its two moduli.
         let in_plane = across / (2.0 * (1.0 + nu_across));
         Anisotropy::orthotropic([along, across, across], [nu_along, nu_across, nu_along], [shear, in_plane, shear])
     }
@@ -92,6 +96,7 @@ impl Anisotropy {
             return Err(Error::expected("stiffness", expected, format!("{size:?}")));
         }
         Stiffness::new(3, stiffness.transpose().as_slice())?;
+        // What differs across the diagonal is rounding of another program, as has been proved above.
         Ok(Anisotropy { stiffness: (stiffness + stiffness.transpose()) / 2.0 })
     }
 
@@ -137,6 +142,8 @@ impl Anisotropy {
         let c = &self.stiffness;
         let singular = || Error::expected("stiffness", "one with an inverse", "a singular one");
         let t = state.thickness();
+        // Strains across are zero in plane strain, which keeps entries of the stiffness; stresses across are zero in plane stress, which
+        // keeps entries of the compliance.
         match state {
             State::Solid => Stiffness::new(3, c.transpose().as_slice()),
             State::PlaneStrain { .. } => {
@@ -169,6 +176,7 @@ fn frame(first: [f64; 3], second: [f64; 3]) -> Result<nalgebra::Matrix3<f64>> {
     };
     let (a, b) = (unit(first), unit(second));
     let across = b - a * a.dot(&b);
+    // The comparison is negated so that a vector of zeros, which has no direction, is refused.
     if !(across.norm() > INDEPENDENT) {
         let found = format!("{first:?} and {second:?}");
         return Err(Error::expected("axes", "two independent vectors of finite length", found));

@@ -30,6 +30,7 @@ pub const fn voigt(dimension: usize, k: usize, l: usize) -> usize {
     match (dimension, k == l) {
         (_, true) => k,
         // yz, xz, xy: the direction that is missing.
+        // Shears are numbered 3, 4 and 5, and two directions add up to 3 less the one that is missing.
         (3, false) => 6 - k - l,
         (_, false) => 2,
     }
@@ -75,6 +76,7 @@ impl Stiffness {
         }
         let mean: Vec<f64> = (0..s * s).map(|e| (entries[e] + entries[e % s * s + e / s]) / 2.0).collect();
         let stiffness = Stiffness { dimension, lambda: nearest_lambda(dimension, &mean), entries: mean.into() };
+        // Voigt's shears are twice those of the tensor: its eigenvalues would depend on the axes.
         let eigenvalues = stiffness.kelvin().symmetric_eigenvalues();
         let (least, largest) = (eigenvalues.min(), eigenvalues.max());
         if !(least > LEAST * largest) {
@@ -130,10 +132,12 @@ impl<C> Stiffness<C> {
 fn nearest_lambda(dimension: usize, entries: &[f64]) -> f64 {
     let (s, d) = (strains(dimension), dimension as f64);
     if dimension == 1 {
+        // One strain has no part that is a change of volume alone, and the quotient below would be 0/0.
         return 0.0;
     }
     let normal: f64 =
         (0..dimension).flat_map(|i| (0..dimension).map(move |j| (i, j))).map(|(i, j)| entries[i * s + j]).sum();
+    // Voigt's shear entries are those of the tensor, which has each of them twice in the trace.
     let weight = |i: usize| if i < dimension { 1.0 } else { 2.0 };
     let trace: f64 = (0..s).map(|i| weight(i) * entries[i * s + i]).sum();
     (normal * (d + 1.0) / 2.0 - trace) / (d * d * (d + 1.0) / 2.0 - d)

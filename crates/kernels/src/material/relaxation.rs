@@ -46,6 +46,7 @@ impl Relaxation {
                     return Err(under(Error::expected(key, "a share of the modulus from 0 to 1", share)));
                 }
             }
+            // Such a term would cost its memory in every step and change nothing.
             if term.shear == 0.0 && term.bulk == 0.0 {
                 return Err(Error::expected(format!("terms[{i}]"), "a share of shear or bulk above 0", "none"));
             }
@@ -96,6 +97,7 @@ impl Relaxation {
     /// The shares of the moduli μ and K that are left at the time t, s, after a strain was applied.
     pub fn left(&self, t: f64) -> [f64; 2] {
         self.terms.iter().fold([1.0; 2], |[shear, bulk], term| {
+            // `expm1` keeps the digits at times far below τ.
             let gone = -(-t / term.time).exp_m1();
             [shear - term.shear * gone, bulk - term.bulk * gone]
         })
@@ -109,6 +111,7 @@ impl Relaxation {
             let left = 1.0 - flowing().map(share).sum::<f64>();
             flowing().fold([left, 0.0], |[real, imaginary], term| {
                 let x = w * term.time;
+                // `1/(1 + ix) = (1 − ix)/(1 + x²)`, and the real part is counted from what is left at rest.
                 let part = share(term) * x / (1.0 + x * x);
                 [real + part * x, imaginary + part]
             })
@@ -173,11 +176,13 @@ pub fn expect_strains(material: &MaterialMap) -> Result<()> {
 /// # Errors
 /// There is no such material.
 pub fn with_moduli(material: Material, shear: f64, bulk: f64) -> Result<Material> {
+    // One factor for both keeps Poisson's ratio to the last bit, and holds in any state.
     if shear == bulk {
         return Material::new(shear * material.young(), material.poisson(), material.state());
     }
     let Moduli { lambda, mu } = material.moduli();
     let thickness = material.thickness();
+    // The moduli of a plane contain its thickness, those of a material do not.
     let (k, mu) = ((lambda + mu * 2.0 / 3.0) / thickness * bulk, mu / thickness * shear);
     let (young, poisson) = (9.0 * k * mu / (3.0 * k + mu), (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)));
     Material::new(young, poisson, material.state())

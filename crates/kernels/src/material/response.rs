@@ -43,12 +43,14 @@ impl Energy {
                 let l = stretch[i];
                 let direct = self.formula.slopes[4 + i].evaluate(&at);
                 let others = stretch[(i + 1) % 3] * stretch[(i + 2) % 3];
+                // An energy may have invariants and stretches: by the chain rule `∂I1/∂λ = 2 λ`, `∂I2/∂λ = 2 λ (I1 − λ²)`.
                 direct + 2.0 * l * g1 + 2.0 * l * (i1 - l * l) * g2 + others * g3
             };
             return (0..3).map(|i| pull(i) * n.column(i) * big_n.column(i).transpose()).sum();
         }
         let mut stress = Matrix3::zeros();
         let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| {
+            // Most energies lack an invariant, whose direction need not be worked out.
             if !self.formula.slopes[v].is_zero() {
                 stress += self.formula.slopes[v].evaluate(&at) * direction();
             }
@@ -143,6 +145,7 @@ impl Energy {
         let mut stress = Matrix3::zeros();
         (0..3).for_each(|i| stress += g[i] * direction(i, i));
         let mut tangent = Tangent::zeros();
+        // nalgebra stores columns, whereas the tangent counts its entries row by row.
         let flat = |a: Matrix3<f64>| SMatrix::<f64, 9, 1>::from_row_slice(a.transpose().as_slice());
         for i in 0..3 {
             for j in 0..3 {
@@ -171,11 +174,13 @@ impl Energy {
 /// The decomposition `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, and the N as columns. A reflection appears as the
 /// sign of the least stretch.
 fn principal(f: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>, Matrix3<f64>)> {
+    // A decomposition by iterations need not end with numbers that are not finite.
     if !f.iter().all(|entry| entry.is_finite()) {
         return None;
     }
     let svd = f.svd(true, true);
     let (mut n, big_n, mut stretch) = (svd.u?, svd.v_t?.transpose(), svd.singular_values);
+    // Singular values have no sign: the least of them takes that of det F, so that J of the stretches is that of F.
     if f.determinant() < 0.0 {
         stretch[2] = -stretch[2];
         n.column_mut(2).neg_mut();
@@ -193,6 +198,7 @@ fn cofactor(f: &Matrix3<f64>) -> Matrix3<f64> {
 
 /// `∂² det F/∂F_ik ∂F_lm = ε_ilp ε_kmq F_pq`.
 fn second_of_determinant(f: &Matrix3<f64>, (i, k): (usize, usize), (l, m): (usize, usize)) -> f64 {
+    // det F is linear in each row and in each column.
     if i == l || k == m {
         return 0.0;
     }

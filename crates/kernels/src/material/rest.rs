@@ -35,6 +35,7 @@ impl Energy {
             let found = format!("one that has {least:.3e} Pa");
             return Err(Error::expected("energy", "a positive stiffness at rest in every strain", found));
         }
+        // Fibres add what the moduli of the file do not have: neither isotropy nor these moduli can be asked for.
         if self.has_fibres() {
             return Ok(());
         }
@@ -69,6 +70,7 @@ impl Energy {
         };
         let given = of([a, b, c]);
         // Terms with exchanged stretches are summed in another order, which changes some of the last digits.
+        // Two exchanges of neighbours make all orders.
         if [[b, a, c], [a, c, b]].map(of).iter().any(|other| (other - given).abs() > 1e-9 * size) {
             return Err(Error::expected("energy", ISOTROPIC, "one that changes if l1, l2 and l3 are exchanged"));
         }
@@ -89,6 +91,7 @@ const ISOTROPIC: &str = "an energy without directions, unless it has fibres";
 /// The tangent without stress on symmetric strains, in Kelvin's notation.
 fn kelvin(tangent: &Tangent) -> Matrix6<f64> {
     let entry = |(i, j): (usize, usize), (k, l): (usize, usize)| tangent[(3 * i + j, 3 * k + l)];
+    // Kelvin's shears are √2 times those of the tensor, and the sum below has each of them twice.
     let scale = |(i, j): (usize, usize)| if i == j { 1.0 } else { 0.5 * 2f64.sqrt() };
     Matrix6::from_fn(|row, column| {
         let ((i, j), (k, l)) = (PAIRS[row], PAIRS[column]);
@@ -102,6 +105,7 @@ fn kelvin(tangent: &Tangent) -> Matrix6<f64> {
 /// The bulk and the shear modulus of the isotropic tensor that is nearest to C.
 fn isotropic(c: &Matrix6<f64>) -> [f64; 2] {
     let bulk = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|at| c[at]).sum::<f64>() / 9.0;
+    // The trace is `3 K + 5 · 2 μ`: one eigenvalue of volume, five of shape.
     [bulk, (c.trace() - 3.0 * bulk) / 10.0]
 }
 

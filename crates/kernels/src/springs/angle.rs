@@ -31,6 +31,7 @@ pub fn angle_row<T: Scalar>(x: &[T], dimension: usize) -> (Vec<T>, T) {
     };
     let (first, last) = (over(first, &u), over(last, &v));
     let middle = first.iter().zip(&last).map(|(a, b)| zero.clone() - a - b).collect();
+    // In space r carries the length of n, which q takes out; in the plane n is left out of r.
     let q = if dimension == 3 { zero.one() / &square(&n) } else { zero.one() };
     ([first, middle, last].concat(), q)
 }
@@ -52,6 +53,7 @@ pub fn angle_gradient<T: Real>(x: &[T], dimension: usize) -> Vec<T> {
     let n = angle_normal(x, dimension);
     let factor = match n.as_slice() {
         [turn] if turn.rounded() == 0.0 => turn.constant(&f64::NAN),
+        // The angle has no sign, so that its gradient turns with the order of the legs.
         [turn] => turn.choose(&turn.one(), &turn.constant(&-1.0)),
         _ => q.sqrt(),
     };

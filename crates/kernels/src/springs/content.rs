@@ -68,6 +68,7 @@ impl<'a> Content<'a> {
             }
             let j = self.rows(dn);
             // det = J_k · (J_k+1 × J_k+2) for every k.
+            // Rows of the identity stand for missing dimensions, so that one formula serves lengths, areas and volumes.
             let beside: [[f64; 3]; 3] = std::array::from_fn(|k| cross(j[(k + 1) % 3], j[(k + 2) % 3]));
             for (i, entry) in gradient.iter_mut().enumerate() {
                 *entry += w * dot(&node(dn, i / d, d), &beside[i % d]);
@@ -93,6 +94,7 @@ impl<'a> Content<'a> {
             // pair of nodes.
             let j = self.rows(dn);
             for a in 0..size / d {
+                // ∇N_a × ∇N_a is zero, and the other half is the same.
                 for b in 0..a {
                     let normal = cross(node(dn, a, d), node(dn, b, d));
                     for k in 0..d {
@@ -157,6 +159,7 @@ impl<'a> Content<'a> {
         for (i, row) in hessian.chunks_exact_mut(size).enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
                 let (a, b) = (&dn[i / space * d..][..d], &dn[j / space * d..][..d]);
+                // The tangent of a curve is linear in the positions, and has no second derivative.
                 let turned = if d == 1 { 0.0 } else { a[0] * b[1] - a[1] * b[0] };
                 let across = dot(&turns[i], &turns[j]) - dot(&unit, &turns[i]) * dot(&unit, &turns[j]);
                 let second = turned * triple(unit, axis(i % space), axis(j % space));

@@ -51,7 +51,9 @@ impl Turns {
     pub fn new<'a>(turns: impl IntoIterator<Item = (&'a [usize], f64)>, points: usize) -> Option<Turns> {
         let turn = |(places, weight): (&[usize], f64)| {
             let places = <[usize; 4]>::try_from(places).ok()?;
+            // Two equal points leave an edge or a height of length zero, by which the gradient divides.
             let is_apart = (0..4).all(|i| !places[..i].contains(&places[i]));
+            // A place is stored in a byte.
             let is_in = places.iter().all(|&place| place < points.min(256));
             (is_in && is_apart && weight.is_finite()).then(|| Turn { places: places.map(|place| place as u8), weight })
         };
@@ -112,6 +114,7 @@ fn dofs(places: [usize; 4]) -> [usize; 12] {
 /// The turn of the triangle with this apex and edge a → b from the director.
 fn turn(points: &[Vector<f64>; 4]) -> f64 {
     let arms = Arms::of(points);
+    // The quadrant is kept: a sheet may turn by more than a right angle.
     arms.across.atan2(arms.along)
 }
 
@@ -125,6 +128,7 @@ fn slopes<T: Real>(points: &[Vector<T>; 4]) -> [Vector<T>; 4] {
         (arms.along.clone() * &arms.normal[k] - &(arms.across.clone() * &arms.conormal[k])) / &reach
     });
     let ends: [Vector<T>; 2] = [true, false].map(|is_first| {
+        // Motions of the whole turn nothing: the ends of the edge balance the slopes at apex and director by their levers.
         let share = |foot: &T| if is_first { foot.clone() - &foot.one() } else { foot.negated() };
         let [apex, director] = [share(&arms.apex_foot), share(&arms.director_foot)];
         std::array::from_fn(|k| apex.clone() * &of_apex[k] + &(director.clone() * &of_director[k]))

@@ -58,6 +58,7 @@ impl<T: Scalar> Geometry<T> {
             let there = multiple(&(middle_determinant.clone() * &inverse), &middle);
             let each = own.as_chunks_mut::<D>().0.iter_mut().zip(dm.as_chunks::<D>().0);
             for ((gradient, dm), is_bubble) in each.zip(&modes.bubbles) {
+                // A bubble vanishes on the sides and needs no correction: its gradient integrates to zero by itself.
                 let back = if *is_bubble { &here } else { &there };
                 for k in 0..D {
                     gradient[k] = back[0][k].zero();
@@ -73,8 +74,10 @@ impl<T: Scalar> Geometry<T> {
 /// Takes the degrees of freedom from `kept` on out of a symmetric matrix, `[size × size]`, of which the lower triangle is read; writes both
 /// triangles of `[kept × kept]`.
 fn eliminated<T: Scalar>(mut matrix: Vec<T>, size: usize, kept: usize) -> Vec<T> {
+    // Elimination from the last row up leaves the kept rows in place, and needs neither a factor nor a root.
     for last in (kept..size).rev() {
         let (before, row) = matrix.split_at_mut(last * size);
+        // The reader of element files proves the modes to be independent, so that `R_aa` is positive definite and no pivot is zero.
         let pivot = row[last].clone();
         for i in 0..last {
             let factor = row[i].clone() / &pivot;

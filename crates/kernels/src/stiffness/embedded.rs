@@ -35,6 +35,8 @@ impl Placed {
         let mut along: Vec<Vector3<f64>> = Vec::with_capacity(d);
         for tangent in &tangents {
             let mut rest = *tangent;
+            // Gram's and Schmidt's method keeps the first vector along the first
+            // tangent: F is an upper triangle, whatever way the cell is turned.
             along.iter().for_each(|a| rest -= a.dot(&rest) * a);
             let length = rest.norm();
             if !(length > FLAT * tangent.norm()) {
@@ -70,6 +72,7 @@ impl Geometry {
             let (w, stress, tangent) = placed.respond(energy, state)?;
             let v = v * state.thickness();
             response.energy += v * w;
+            // This stress resists motions out of the cell, which the in-plane energy sees to second order alone.
             let second = placed.f.try_inverse()? * stress;
             for (a, ga) in grad.chunks_exact(d).enumerate() {
                 let pull: Vec<f64> = (0..d).map(|k| (0..d).map(|l| stress[(k, l)] * ga[l]).sum()).collect();
@@ -83,6 +86,7 @@ impl Geometry {
                     for (k, own) in placed.along.iter().enumerate() {
                         for (m, other) in placed.along.iter().enumerate() {
                             let inside: f64 = pairs().map(|(l, q, g)| g * tangent[(3 * k + l, 3 * m + q)]).sum();
+                            // The term of `second` is on the whole diagonal; along the cell the in-plane tangent has it already.
                             let entry = if k == m { inside - out } else { inside };
                             for (i, j) in (0..space).flat_map(|i| (0..space).map(move |j| (i, j))) {
                                 block[(i, j)] += entry * own[i] * other[j];
@@ -102,6 +106,7 @@ impl Geometry {
     pub(super) fn forces_in_space(&self, energy: &Energy, state: State, x: &[f64], force: &mut [f64]) -> bool {
         let (d, space) = (self.dimension, x.len() / self.nodes);
         force.fill(0.0);
+        // The in-plane part of F has a positive determinant by construction, so that no shape is inverted.
         for (grad, v) in self.weighted() {
             let Some(placed) = Placed::of(grad, x, d, space) else { return false };
             let stress = match free_axes(state) {
@@ -124,6 +129,7 @@ impl Geometry {
     pub fn bend(&self, x: &[f64]) -> f64 {
         let (d, space) = (self.dimension, x.len() / self.nodes);
         let strain =
+            // A cell without tangents is bent as much as one can be.
             |(grad, _)| Placed::of(grad, x, d, space).map_or(1.0, |placed| (placed.f - Matrix3::identity()).norm());
         if space == d { 0.0 } else { self.weighted().map(strain).fold(0.0, f64::max) }
     }

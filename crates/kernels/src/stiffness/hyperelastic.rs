@@ -90,6 +90,7 @@ impl EnergyFunction {
     pub fn new(name: &str, material: Material, function: Arc<dyn StressFunction>) -> Result<EnergyFunction> {
         let own = EnergyFunction { name: name.into(), material, function };
         let mut at_rest = [Matrix3::identity()];
+        // The function is asked once before any work: an error in it is told at once.
         own.ask(&mut at_rest)?;
         let stress = at_rest[0].norm();
         if stress > AT_REST * material.young() {
@@ -105,6 +106,7 @@ impl EnergyFunction {
 
     fn ask(&self, f: &mut [Matrix3<f64>]) -> Result<()> {
         let asked: Vec<[f64; 9]> = f.iter().map(|f| std::array::from_fn(|i| f[(i / 3, i % 3)])).collect();
+        // An entry that the function leaves unwritten is refused as not finite.
         let mut stresses = vec![[f64::NAN; 9]; asked.len()];
         self.function.stresses(&asked, &mut stresses)?;
         for ((f, p), asked) in f.iter_mut().zip(&stresses).zip(&asked) {
@@ -120,15 +122,18 @@ impl EnergyFunction {
 
     /// Sets the free stretches, all equal, to those that leave no stress along them, by Newton steps whose slopes are differences.
     fn relax(&self, f: &mut [Matrix3<f64>], free: &[usize]) -> Result<()> {
+        // On entry the stretch along free axes is any; the search begins at rest.
         f.iter_mut().for_each(|f| free.iter().for_each(|&k| f[(k, k)] = 1.0));
         let stretched = |f: &Matrix3<f64>, share: f64| {
             let mut f = *f;
             free.iter().for_each(|&k| f[(k, k)] *= 1.0 + share);
             f
         };
+        // The free stretches are equal, so that one number, the work of all of them, is brought to zero.
         let pull = |p: &Matrix3<f64>| free.iter().map(|&k| p[(k, k)]).sum::<f64>();
         let mut moving: Vec<usize> = (0..f.len()).collect();
         for _ in 0..STEPS {
+            // The value and both sides of all shapes are asked for at once: a call of the function may cost more than its arithmetic.
             let shares = [0.0, -STEP, STEP];
             let mut asked: Vec<_> = moving.iter().flat_map(|&q| shares.map(|share| stretched(&f[q], share))).collect();
             self.ask(&mut asked)?;
@@ -171,6 +176,7 @@ impl Hyperelastic for EnergyFunction {
 
     fn stresses(&self, state: State, f: &mut [Matrix3<f64>]) -> Result<()> {
         let free = free_axes(state);
+        // Solids and plane strain have no free stretch, and F is complete as it is.
         if !free.is_empty() {
             self.relax(f, free)?;
         }

@@ -41,6 +41,7 @@ impl Geometry {
                 [] => energy.respond(&f),
                 _ => without_stress(energy, f, free)?,
             };
+            // The norm is finite only where every entry is: one test instead of 81.
             if !(w.is_finite() && tangent.norm().is_finite()) {
                 return None;
             }
@@ -76,6 +77,7 @@ impl Geometry {
         force.fill(0.0);
         for (grad, v) in self.weighted() {
             let f = deformation(grad, x, d);
+            // The determinant is tested before the stress, which an energy with a logarithm may not have there.
             if f.determinant() < upright {
                 return false;
             }
@@ -113,6 +115,7 @@ impl Geometry {
     /// The gradients of the quadrature points that have a weight, `[nodes × dimension]`, and their volumes.
     pub(super) fn weighted(&self) -> impl Iterator<Item = (&[f64], f64)> {
         let points = self.gradients.chunks_exact(self.nodes * self.dimension).zip(&self.volumes);
+        // Points of the volumetric rule alone have no weight in the energy.
         points.map(|(grad, v)| (grad, *v)).filter(|(_, v)| *v != 0.0)
     }
 }
@@ -147,6 +150,7 @@ impl Geometry {
 /// `F = Σ_a x_a ∇N_aᵀ`, extended by the identity for planes and rods.
 fn deformation(grad: &[f64], x: &[f64], d: usize) -> Matrix3<f64> {
     let mut f = Matrix3::identity();
+    // The identity stays in the directions that a plane or a rod does not have.
     (0..d).for_each(|k| f[(k, k)] = 0.0);
     for (x, g) in x.chunks_exact(d).zip(grad.chunks_exact(d)) {
         for k in 0..d {
@@ -184,6 +188,7 @@ pub(super) fn without_stress(
         // Some fifty rounding errors of the stretch; the condensed tangent is that of no stress.
         let stretch = free.iter().map(|&k| f[(k, k)]).fold(1.0, f64::max);
         if change.abs() <= 1e-14 * stretch {
+            // The free stretches follow the others: `C_ab − C_af C_fb/C_ff`, with the sums over the free axes because these are equal.
             let mut condensed = tangent;
             for row in 0..9 {
                 for column in 0..9 {

@@ -72,6 +72,7 @@ impl<T: Scalar> Geometry<T> {
     pub(crate) fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let x = &x.as_chunks::<D>().0[..n];
         let mut positive = true;
+        // Squares are compared, because Hadamard's bound has a root.
         let flat = T::exact(T::delicate().powi(2));
         let reference = table.gradients.chunks_exact(n * D);
         let physical = self.gradients.chunks_exact_mut(n * D);
@@ -82,6 +83,7 @@ impl<T: Scalar> Geometry<T> {
             let j = jacobian(x, dn);
             let (adjugate, determinant) = adjugate(&j);
             let least = squared_bound(&j).scaled(&flat);
+            // All points are worked out in any case: a branch for each would cost more, and lanes differ.
             positive &= determinant.exceeds(&determinant.zero()) && determinant.clone().squared().exceeds(&least);
             // ∂N_a/∂x_k = Σ_l ∂N_a/∂ξ_l (J⁻¹)_lk
             let inverse = multiple(&(determinant.one() / &determinant), &adjugate);
@@ -194,6 +196,7 @@ impl Geometry {
             let j = jacobian(x.as_chunks::<D>().0, dn.as_chunks::<D>().0);
             let (_, determinant) = adjugate(&j);
             let bound = squared_bound(&j);
+            // Products of lengths beyond 1e51 overflow, and the test by them says nothing.
             let flat = if bound > 0.0 && bound.is_finite() {
                 determinant * determinant <= f64::delicate().powi(2) * bound
             } else {
@@ -215,6 +218,7 @@ impl Geometry {
 
     fn tangled(&self, table: &Tabulation) -> Fault {
         let at = |q: usize| {
+            // A point of the volumetric rule alone has no volume in the other.
             let w = table.weights[q];
             if w == 0.0 { self.volumetric[q] / table.volumetric[q] } else { self.volumes[q] / w }
         };

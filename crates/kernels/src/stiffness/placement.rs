@@ -56,6 +56,7 @@ impl Placement {
             let (done, rest) = self.frame.split_at_mut(l * space);
             let tangent = &mut rest[..space];
             tangent.fill(0.0);
+            // Points without a weight, those of the volumetric rule alone, do not turn the plane.
             for (dn, w) in table.gradients.chunks_exact(table.nodes * d).zip(&table.weights) {
                 for (dn, x) in dn.chunks_exact(d).zip(self.spatial.chunks_exact(space)) {
                     tangent.iter_mut().zip(x).for_each(|(t, x)| *t += w * dn[l] * x);

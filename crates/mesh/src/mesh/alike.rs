@@ -67,6 +67,7 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
     let key = |item: usize| {
         set.clear();
         points(item, &mut set);
+        // A sum of mixed numbers does not depend on the order in which a cell names its points, and needs no sorting.
         let hash = set.iter().fold(0u64, |sum, &p| sum.wrapping_add(mix(p as u64)));
         let lowest = set.iter().copied().min().unwrap_or(0) as u64;
         (lowest << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item as u64
@@ -74,12 +75,14 @@ fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>),
     let keys: Vec<u64> = (0..count).map(key).collect();
     // No more than the bits of all points.
     let lowest = |key: &u64| key.checked_shr(of_item + of_hash).unwrap_or(0) as usize;
+    // Counts of 32 bits take half of the memory; sides of more than 2³² would not fit into it by far.
     let mut next = vec![0_u32; keys.iter().map(lowest).max().map_or(0, |most| most + 2)];
     keys.iter().for_each(|key| next[lowest(key) + 1] += 1);
     (1..next.len()).for_each(|point| next[point] += next[point - 1]);
     let mut sorted = vec![0; count];
     for key in &keys {
         let place = &mut next[lowest(key)];
+        // The lists are then sorted on all threads; the keys have no equal ones, so that the order is the same in each run.
         sorted[*place as usize] = *key;
         *place += 1;
     }

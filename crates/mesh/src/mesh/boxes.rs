@@ -73,6 +73,7 @@ impl BoxMesh {
         mesh.blocks.push(CellBlock { element: self.element.clone(), connectivity });
         mesh.groups = self.groups(&mesh);
         mesh.orient(false)?;
+        // Simplices of a cube come in both orientations by construction, which is no fault of a file that should be told.
         mesh.reversed = 0;
         mesh.quality.pieces = Some(mesh.pieces().len());
         mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());
@@ -92,6 +93,7 @@ impl BoxMesh {
         }
         self.size.iter().try_for_each(|size| range::positive("size", *size, "m").map(|_| ()))?;
         self.origin.iter().try_for_each(|x| range::bounded("origin", *x, "m").map(|_| ()))?;
+        // Counts of a user may overflow the product, which then is above any limit.
         let total = self.cells.iter().try_fold(1usize, |a, &n| a.checked_mul(n)).unwrap_or(usize::MAX);
         if total == 0 || total > MOST_CELLS {
             let expected = format!("1 to {MOST_CELLS} cells in all");

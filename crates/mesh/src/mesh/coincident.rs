@@ -39,9 +39,11 @@ pub(super) fn first_near(points: &[[f64; 3]], unit: f64, width: f64) -> Vec<usiz
         for i in range(0) {
             for j in range(1) {
                 for k in range(2) {
+                    // A list in two arrays needs no memory for each bin.
                     let mut other = bins.get(&[i, j, k]).copied().unwrap_or(usize::MAX);
                     while other != usize::MAX {
                         if distance(&points[other], x) <= unit {
+                            // The least number wins, so that the result does not depend on the order of bins.
                             found = found.min(first[other]);
                         }
                         other = before[other];

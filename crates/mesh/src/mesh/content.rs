@@ -30,11 +30,13 @@ const OTHERS: [(&str, &str, &str); 10] = [
 /// What a file is whose content begins with these bytes; `None` if they do not say.
 pub(super) fn content(bytes: &[u8]) -> Option<Content> {
     let bytes = &bytes[..bytes.len().min(BEGINNING)];
+    // Editors of Windows begin a text with this mark.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let known = |name: &str| MESH_FORMATS.iter().find(|format| format.name == name).map(Content::Known);
     if bytes.starts_with(b"\x93NUMPY") {
         return known("NumPy, labels of voxels");
     }
+    // The beginning may end inside a character.
     let text = String::from_utf8_lossy(bytes).to_lowercase();
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.clone().next()?;
@@ -52,6 +54,7 @@ pub(super) fn content(bytes: &[u8]) -> Option<Content> {
     if first == "ply" {
         return known("PLY");
     }
+    // The counts may stand in the same line.
     if ["off", "coff", "noff", "stoff", "cnoff"].contains(&first.split_whitespace().next()?) {
         return known("OFF");
     }
@@ -64,12 +67,14 @@ pub(super) fn content(bytes: &[u8]) -> Option<Content> {
     {
         return Some(Content::Other(name, way));
     }
+    // After the decks of LS-DYNA, whose keywords begin with a star too.
     if is_abaqus(&text) {
         return known("Abaqus and CalculiX");
     }
     if is_nastran(&text) {
         return known("Nastran");
     }
+    // Files of other programs begin with this word too.
     if first.starts_with("solid") && text.contains("facet normal") {
         return known("STL");
     }

@@ -40,6 +40,7 @@ impl Mesh {
         let inertia: Matrix3<f64> =
             arms.iter().map(|a| Matrix3::identity() * a.norm_squared() - a * a.transpose()).sum();
         let turn = inertia.try_inverse().expect("the directors of a joint are not on one line") * Vector3::from(moment);
+        // Forces across the arms do all of the moment: along them they would only stretch the directors.
         for (director, arm) in directors.into_iter().zip(arms) {
             add(forces, director, turn.cross(&arm).into(), 1.0);
             add(forces, joint, turn.cross(&arm).into(), -1.0);
@@ -56,6 +57,7 @@ impl Mesh {
         let about = dot(&moment, &along);
         let force = cross(along, arm).map(|f| f * about / dot(&arm, &arm));
         add(forces, director, force, 1.0);
+        // The part along the edge is the director's; a pair on the ends has the rest, and its lever is the edge.
         let pair = cross(std::array::from_fn(|k| moment[k] - about * along[k]), along).map(|f| f / length);
         for (end, sign) in [(a, -1.0), (b, 1.0)] {
             add(forces, end, force, -0.5);

@@ -70,6 +70,7 @@ impl Mesh {
                 return unsupported(format!("one that is folded onto itself at {middle:?} m"));
             }
             let length = distance(self.point(*a), self.point(*b));
+            // The comparison is negated so that a thickness that is not a number is refused.
             if !(thinnest >= THINNEST * length) {
                 let problem = format!(
                     "expected a sheet of at least {THINNEST:e} of its edges, found a thickness of {thinnest:.3e} m at an edge of {length:.3e} m: its bending is lost in \

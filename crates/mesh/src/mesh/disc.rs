@@ -39,9 +39,11 @@ impl DiscMesh {
     /// Rings with `points` points in all, including the central one, and `rim` points on the last ring; the others grow
     /// as evenly as whole numbers allow, `n_r ≈ c r`. The mesh has `2 points − 2 − rim` triangles.
     pub fn rings_of(points: usize, rings: usize, rim: usize) -> Vec<usize> {
+        // Too few points leave rings without any, which `build` refuses.
         let inner = points.saturating_sub(1 + rim);
         let last = rings.saturating_sub(1);
         // The number of points up to ring r.
+        // Rounded to the nearest and then subtracted, so that the rings together have all the points. A single ring has no inner ones.
         let up_to = |r: usize| (inner * r * (r + 1) + last * (last + 1) / 2) / (last * (last + 1)).max(1);
         (1..=last).map(|r| up_to(r) - up_to(r - 1)).chain([rim]).collect()
     }
@@ -56,6 +58,7 @@ impl DiscMesh {
         }
         range::positive("radius", self.radius, "m")?;
         range::largest("height", [self.height], "m")?;
+        // Counts of a user: their sum may be larger than any number here.
         let total = self.rings.iter().try_fold(1usize, |sum, n| sum.checked_add(*n)).unwrap_or(usize::MAX);
         if self.rings.is_empty() || self.rings.iter().any(|n| *n < 3) || total > MOST_POINTS {
             let expected = format!("rings of three points or more, {MOST_POINTS} in all at most");
@@ -77,6 +80,7 @@ impl DiscMesh {
         let cells = (0..mesh.cell_count()).map(|cell| CellIndex { block: 0, cell }).collect();
         mesh.groups.insert("body".into(), Group { points: (0..total).collect(), cells, ..Group::default() });
         mesh.orient(false)?;
+        // Nobody has numbered these cells, so none is to be told of as reversed.
         mesh.reversed = 0;
         mesh.quality.pieces = Some(mesh.pieces().len());
         mesh.quality.coincident = Places::of(&mesh).map(|places| places.coincident());

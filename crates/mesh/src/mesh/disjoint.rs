@@ -14,6 +14,7 @@ impl DisjointSets {
     /// The member that represents the set of `member`. Paths to it are halved on the way.
     pub fn root(&mut self, mut member: usize) -> usize {
         while self.parent[member] != member {
+            // Without it chains would grow with the number of joins, and a search with them.
             self.parent[member] = self.parent[self.parent[member]];
             member = self.parent[member];
         }

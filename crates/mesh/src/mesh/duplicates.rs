@@ -39,6 +39,7 @@ impl Mesh {
             );
             return Err(Error::expected("cells", "each cell once", found));
         }
+        // A group must not lose a place because its cell is the one that goes.
         let kept: HashMap<CellIndex, CellIndex> = repeated.into_iter().collect();
         for group in self.groups.values_mut() {
             group.cells.iter_mut().for_each(|cell| *cell = kept.get(cell).copied().unwrap_or(*cell));

@@ -55,6 +55,7 @@ impl Embedding {
             );
         }
         let bins = Bins::of(mesh);
+        // Points are searched for independently and collected in their order.
         let found: Vec<Option<Found>> = points.par_chunks_exact(d).map(|x| bins.find(mesh, x)).collect();
         let (mut rows, mut cells, mut outside) = (Vec::with_capacity(found.len()), Vec::with_capacity(found.len()), 0);
         let mut multiples = Vec::with_capacity(found.len());
@@ -134,6 +135,7 @@ impl Bins {
     fn of(mesh: &Mesh) -> Bins {
         let of_body = mesh.cell_indices().filter(|cell| mesh.is_of_body(*cell));
         let boxes: Vec<CellBox> = of_body.map(|cell| CellBox::of(mesh, cell)).collect();
+        // Bins as wide as the mean box: a cell is in few of them, and a bin has few cells.
         let mean =
             boxes.iter().map(|of| distance(&of.around(0), &of.around(1))).sum::<f64>() / boxes.len().max(1) as f64;
         let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
@@ -282,6 +284,7 @@ fn local(mesh: &Mesh, cell: CellIndex, x: &[f64]) -> Option<(usize, Vec<f64>)> {
                 }
             }
         }
+        // A singular Jacobian is that of a place far outside, where a curved cell is folded.
         let step = jacobian.lu().solve(&rest)?;
         // Cells are of size one: a place this far away does not return.
         if !step.iter().all(|step| step.is_finite()) || at.iter().any(|at| at.abs() > 100.0) {

@@ -28,6 +28,7 @@ impl Mesh {
                 *passed.entry(vec![a, b]).or_default() += if is_forward { 1 } else { -1 };
             }
         }
+        // Each continuation passes an edge the other way: sums of zero are no rim.
         passed.into_iter().filter(|(_, times)| *times != 0).map(|(points, _)| points).collect()
     }
 
@@ -81,6 +82,7 @@ impl Mesh {
             if turned[first].is_some() {
                 continue;
             }
+            // Which way the first cell is turned is free here, and decided for the whole piece below.
             turned[first] = Some(false);
             let mut front = vec![first];
             while let Some(facet) = front.pop() {
@@ -103,6 +105,7 @@ impl Mesh {
                 edges(&loops[facet]).all(|(edge, _)| neighbours.get(&edge).is_some_and(|facets| facets.len() == 2))
             });
             let against = match is_closed {
+                // A normal that points outwards encloses a volume above zero (Gauss).
                 true => self.enclosed(piece.iter().map(|&facet| (&loops[facet][..], turned[facet]))) < 0.0,
                 false => 2 * piece.iter().filter(|&&facet| turned[facet]).count() > piece.len(),
             };
@@ -129,6 +132,7 @@ impl Mesh {
         let mut origin = None;
         let mut volume = 0.0;
         for (corners, is_turned) in facets {
+            // From a point of the piece and not from the origin: far from it digits would cancel.
             let origin = *origin.get_or_insert(corners[0]);
             let from = |p: usize| std::array::from_fn::<f64, 3, _>(|k| self.point(p)[k] - self.point(origin)[k]);
             for i in 2..corners.len() {

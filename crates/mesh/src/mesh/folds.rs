@@ -28,6 +28,7 @@ impl Mesh {
                 beside.entry(side.cell).or_default().push((sides[0].cell, overlap));
             }
         });
+        // Nearly all meshes end here, without a walk over the cells.
         if !any {
             return Vec::new();
         }
@@ -53,6 +54,7 @@ impl Mesh {
                 }
             }
             let [one, other] = parts;
+            // Which of two sets is folded over the other cannot be told: the smaller one is most likely the fault.
             folded.extend(if one.len() < other.len() { one } else { other });
         }
         folded.sort_unstable_by_key(|cell| (cell.block, cell.cell));
@@ -107,6 +109,7 @@ impl Mesh {
             let size = dot(&normal, &normal).sqrt() * distance(&centre, origin);
             if height.abs() <= FLAT * size { 0.0 } else { height.signum() }
         };
+        // The sign of the normal, which is not known, cancels in the product.
         height(one.cell) * height(other.cell) > 0.0
     }
 }

@@ -30,6 +30,7 @@ impl Frame {
     /// The system with this origin, a point on its axis z, and one in its half-plane of positive x; `None` if they are on one line.
     pub fn of_axis(system: System, origin: [f64; 3], on_z: [f64; 3], in_xz: [f64; 3]) -> Option<Frame> {
         let z = unit(between(origin, on_z))?;
+        // The third point need not be on the axis x itself: only the half-plane that it is in counts.
         let y = unit(cross(z, between(origin, in_xz)))?;
         Some(Frame { system, origin, axes: [cross(y, z), y, z] })
     }
@@ -66,5 +67,6 @@ fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
 fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
     let length = norm(&v);
     let scaled = v.map(|x| x / length);
+    // Points on one line leave a vector of zero, and huge ones a length that is infinite: neither has a direction.
     (length > 0.0 && dot(&scaled, &scaled).is_finite()).then_some(scaled)
 }

@@ -48,6 +48,7 @@ impl Mesh {
             let mut test = |p: usize| {
                 let x = spatial(self.point(p));
                 let inside = (0..3).all(|k| (low[k] - reach..=high[k] + reach).contains(&x[k]));
+                // Parts of a mesh that are not joined have points at the same places, which are told as coincident and not as hanging.
                 let own = || host.points.iter().any(|q| places.first[*q] == places.first[p]);
                 if inside && !hanging.contains(&p) && !own() && self.lies_on(p, host, reach) {
                     hanging.insert(p);
@@ -140,6 +141,7 @@ impl Mesh {
                 }
                 _ => return false,
             };
+            // A side of no extent has a singular matrix, and no place between its ends.
             if !step.iter().all(|step| step.is_finite()) {
                 return false;
             }

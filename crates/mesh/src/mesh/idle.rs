@@ -53,6 +53,7 @@ impl Kept {
         for face in list.chunks_exact(nodes) {
             let mut corners = [usize::MAX; 4];
             corners.iter_mut().zip(face).for_each(|(corner, &node)| *corner = places[node]);
+            // The same face may begin at any of its corners; turned to the least number it has one name.
             let least = (0..nodes).min_by_key(|&k| corners[k]).unwrap_or(0);
             corners[..nodes].rotate_left(least);
             if !has_area(face, points) {
@@ -73,5 +74,6 @@ fn has_area(face: &[usize], points: &[[f64; 3]]) -> bool {
     let from = |p: usize, q: usize| -> [f64; 3] { std::array::from_fn(|k| points[q][k] - points[p][k]) };
     let (u, v, w) = (from(a, b), from(a, c), from(b, c));
     let longest = [u, v, w].iter().map(|side| dot(side, side)).fold(0.0, f64::max);
+    // The product of two differences of coordinates has a few roundings of the square of the longest side.
     norm(&cross(u, v)) > 4.0 * f64::EPSILON * longest
 }

@@ -42,6 +42,7 @@ impl Mesh {
         for (nodes, gyration) in block.cells().zip(&gyration) {
             let along: [f64; 3] = std::array::from_fn(|k| self.point(nodes[1])[k] - self.point(nodes[0])[k]);
             let radius = gyration.sqrt();
+            // The comparison is negated so that a radius that is not a number is refused.
             if !(radius >= THINNEST * norm(&along)) {
                 let problem = format!(
                     "expected a rod whose radius of gyration is at least {THINNEST:e} of its length, found {radius:.3e} m of {:.3e} m: its bending is lost in rounding \
@@ -86,6 +87,7 @@ fn axes_of(rods: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
     // The mean of the rods, each turned to the side of the first one.
     let mut mean = [0.0; 3];
     for rod in &rods {
+        // A rod has no direction of its own: with the other sign two rods of one line would cancel.
         let sign = dot(rod, rods.first()?).signum();
         mean.iter_mut().zip(rod).for_each(|(m, r)| *m += sign * r);
     }
@@ -100,6 +102,7 @@ fn axes_of(rods: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
 /// Two unit vectors at right angles to a unit vector and to each other.
 pub fn axes_across(along: [f64; 3]) -> [[f64; 3]; 2] {
     // The axis of the space that is farthest from it.
+    // The product with the axis that is nearly along the vector would be of rounding.
     let far = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
     let first = unit(cross(along, std::array::from_fn(|k| if k == far { 1.0 } else { 0.0 })));
     [first, cross(along, first)]

@@ -50,6 +50,7 @@ impl Mesh {
         let mut tangents: Vec<[f64; 3]> = Vec::new();
         for _ in 1..self.cell_dimension() {
             let rests = points.iter().map(|&p| without(from(at(p), origin), &tangents));
+            // The farthest point gives a tangent that is not of rounding.
             tangents.push(unit(rests.max_by(|a, b| product(*a, *a).total_cmp(&product(*b, *b)))?)?);
         }
         let nodes = self.cell_nodes(side.cell);

@@ -53,6 +53,7 @@ fn shortest_edge(mesh: &Mesh) -> f64 {
             block.element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
         for nodes in block.cells() {
             let lengths = edges.iter().map(|[a, b]| distance(mesh.point(nodes[*a]), mesh.point(nodes[*b])));
+            // Nodes at one place have an edge without length, which says nothing of how near points may be.
             shortest = lengths.filter(|length| *length > 0.0).fold(shortest, f64::min);
         }
     }

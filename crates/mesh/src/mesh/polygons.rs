@@ -34,6 +34,7 @@ pub(super) fn triangles(corners: &[[f64; 3]]) -> Option<Vec<[usize; 3]>> {
     while left.len() > 3 {
         let n = left.len();
         let ear = |i: usize| [left[(i + n - 1) % n], left[i], left[(i + 1) % n]];
+        // A corner inside an ear would be cut off with it.
         let is_free = |ear: &[usize; 3]| !left.iter().any(|&p| !ear.contains(&p) && is_inside(&flat, *ear, flat[p]));
         let best = (0..n)
             .filter(|&i| quality(&flat, ear(i)) > 0.0 && is_free(&ear(i)))
@@ -59,6 +60,7 @@ fn laid_flat(corners: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
         (0..3).for_each(|k| normal[k] += part[k]);
     }
     let area = norm(&normal);
+    // An area of less is the rounding of its sum, and its normal has no digits.
     if !(area > f64::EPSILON.sqrt() * extent * extent) {
         return None;
     }
@@ -66,6 +68,7 @@ fn laid_flat(corners: &[[f64; 3]]) -> Option<Vec<[f64; 2]>> {
     if from.iter().any(|v| dot(&normal, v).abs() > FLAT * extent) {
         return None;
     }
+    // The corner that is farthest in the plane gives an axis with all digits.
     let along = from.iter().max_by(|a, b| norm(&across(normal, **a)).total_cmp(&norm(&across(normal, **b))))?;
     let first = across(normal, *along);
     let length = norm(&first);
@@ -107,6 +110,7 @@ fn is_round(flat: &[[f64; 2]]) -> bool {
         let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
         turns += (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
     }
+    // The sum of the turns is a whole number of revolutions but for rounding: a star turns twice round.
     (turns - std::f64::consts::TAU).abs() < 1e-6
 }
 
@@ -114,6 +118,7 @@ fn is_round(flat: &[[f64; 2]]) -> bool {
 fn is_inside(flat: &[[f64; 2]], [a, b, c]: [usize; 3], p: [f64; 2]) -> bool {
     let (a, b, c) = (flat[a], flat[b], flat[c]);
     let square = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).powi(2) + (p[1] - q[1]).powi(2);
+    // A corner that is on the border but for rounding must keep the ear from being cut.
     let least = -f64::EPSILON.sqrt() * (square(a, b) + square(b, c) + square(c, a));
     p != a && p != b && p != c && [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| area(from, to, p) >= least)
 }
@@ -122,6 +127,7 @@ fn is_inside(flat: &[[f64; 2]], [a, b, c]: [usize; 3], p: [f64; 2]) -> bool {
 fn crosses(flat: &[[f64; 2]]) -> bool {
     let n = flat.len();
     let side = |i: usize| (flat[i], flat[(i + 1) % n]);
+    // Touching counts as meeting: ears beside a point of touch have no area.
     let parts = |(a, b): ([f64; 2], [f64; 2]), (c, d): ([f64; 2], [f64; 2])| area(a, b, c) * area(a, b, d) <= 0.0;
     let is_apart = |i: usize, j: usize| j > i + 1 && !(i == 0 && j == n - 1);
     let overlap = |p: ([f64; 2], [f64; 2]), q: ([f64; 2], [f64; 2])| {

@@ -206,11 +206,13 @@ impl Mesh {
     fn settle_orientation(&mut self, skip: bool) -> Result<()> {
         let turned = self.orient(skip)?;
         let of_body: usize = self.body_blocks().map(|(_, block)| block.cells().len()).sum();
+        // A mesh that is numbered the other way round as a whole has no folds to look for.
         if turned.is_empty() || turned.len() == of_body {
             return Ok(());
         }
         let folded = self.folded();
         if folded.is_empty() {
+            // Only told: nothing lies there twice, so that the orders of the nodes alone differ.
             self.quality.turned = Some(self.named(&turned));
             return Ok(());
         }
@@ -224,6 +226,7 @@ impl Mesh {
             return Err(Error::expected("cells", "cells that lie on both sides of what they share", found));
         }
         let is_turned: HashSet<CellIndex> = turned.into_iter().collect();
+        // Those that are left out are no longer cells that were reversed.
         self.reversed = is_turned.len() - folded.iter().filter(|cell| is_turned.contains(cell)).count();
         self.quality.folded = folded.len();
         self.remove(&folded).map(drop)
@@ -250,11 +253,13 @@ impl Mesh {
                 let at = CellIndex { block: index, cell };
                 let twice = |(i, node): (usize, &usize)| nodes[..i].contains(node);
                 let fault = match (set(&self.points, nodes), &element.reflection) {
+                    // A node that is there twice comes first: the Jacobian can still be positive at every point where it is taken.
                     _ if nodes.iter().enumerate().any(twice) => Some(Fault::Collapsed),
                     (Ok(()), _) => continue,
                     (Err(Fault::Reversed), Some(reflection)) => {
                         let other: Vec<usize> = reflection.iter().map(|&place| nodes[place]).collect();
                         nodes.copy_from_slice(&other);
+                        // Measured again: a cell can be reversed at some points only, and then no order of its nodes helps.
                         let fault = set(&self.points, nodes).err();
                         turned.extend(fault.is_none().then_some(at));
                         fault
@@ -280,6 +285,7 @@ impl Mesh {
         self.quality.skipped += faulty.len();
         let cells: Vec<CellIndex> = faulty.into_iter().map(|(cell, _)| cell).collect();
         let new = self.remove(&cells)?;
+        // The cells have moved up by those that were removed before them.
         Ok(turned.into_iter().map(|at| CellIndex { cell: new[at.block][at.cell], ..at }).collect())
     }
 }
@@ -313,6 +319,7 @@ pub(super) fn check_size(coordinates: impl Iterator<Item = f64>) -> Result<()> {
 
 /// The numbers of the points in the file, if there is one.
 fn numbering(source: &MeshSource) -> Option<Numbering> {
+    // Points that a reader has made itself have no numbers in the file.
     let known = source.numbers.len() == source.points.len();
     known.then(|| Numbering { origin: source.origin, nodes: source.numbers.clone() })
 }
@@ -331,11 +338,13 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
         Format::Gmsh => s.gmsh,
         Format::Vtk => s.vtk,
     };
+    // Those of the user come before those that the program has, so that a type of cell can get other functions.
     let element = match own.iter().find(serves) {
         Some(element) => element.clone(),
         None => match SHIPPED.iter().find(|s| shipped_number(s) == Some(i64::from(number))) {
             Some(shipped) => Arc::new(Element::shipped(shipped)?),
             None => {
+                // A block of cells without nodes is to be named, not divided by.
                 let cells = block.connectivity.len() / block.nodes_per_cell.max(1);
                 let known: Vec<_> = SHIPPED.iter().map(|s| s.name).collect();
                 let expected = format!("cells of {} or of an element file you name", known.join(", "));
@@ -359,6 +368,7 @@ fn element_for(format: Format, block: &SourceBlock, own: &[Arc<Element>]) -> Res
 
 /// Whether all used points have the same z.
 fn in_one_plane(source: &MeshSource) -> bool {
+    // Only points of cells: a file of Gmsh can keep the centres of its arcs, which may lie anywhere.
     let used = || source.blocks.iter().flat_map(|b| &b.connectivity).map(|&p| source.points[p]);
     let range = |k: usize| used().fold((f64::MAX, f64::MIN), |(lo, hi), p| (lo.min(p[k]), hi.max(p[k])));
     let (lo, hi) = range(2);

@@ -123,6 +123,7 @@ impl NetworkShard<'_> {
         };
         write_with(path, |to| {
             let mut to = CrcWriter::new(to);
+            // The lengths are in the header, so that a reader finds the table without reading the shares.
             serde_json::to_writer(&mut to, &header)?;
             to.write_all(b"\n")?;
             let at = |p: usize| &self.points[p * d..(p + 1) * d];
@@ -196,6 +197,7 @@ impl Source {
     /// Whether the checksum at the end of a file of this length is that of what is before it.
     fn is_whole(&self, length: u64) -> io::Result<bool> {
         let mut file = BufReader::new(File::open(&self.path)?);
+        // The length has been compared with the header, which has room for the checksum: the difference is not below zero.
         let mut contents = CrcReader::new(file.by_ref().take(length - CHECKSUM));
         io::copy(&mut contents, &mut io::sink())?;
         let sum = contents.crc().sum();
@@ -268,6 +270,7 @@ impl Shares<'_> {
 fn each_sum(sources: &[Source], mut visit: impl FnMut(&Stored) -> io::Result<()>) -> io::Result<()> {
     let mut files = sources.iter().map(Source::shares).collect::<io::Result<Vec<_>>>()?;
     let mut heads = files.iter_mut().map(Shares::next).collect::<io::Result<Vec<_>>>()?;
+    // Of equal points the shard with the lower number comes first: sums do not depend on the order in which files are named.
     let order = |(file, head): (usize, &Option<Stored>)| Some(Reverse((head.as_ref()?.share.points, file)));
     let mut waiting: BinaryHeap<_> = heads.iter().enumerate().filter_map(order).collect();
     let mut sum: Option<Stored> = None;
@@ -276,6 +279,7 @@ fn each_sum(sources: &[Source], mut visit: impl FnMut(&Stored) -> io::Result<()>
             match &mut sum {
                 Some(sum) if sum.share.points == points => sum.share.add(&share.share),
                 _ => {
+                    // Files are sorted: once other points come, a sum has all of its shares.
                     sum.iter().try_for_each(&mut visit)?;
                     sum = Some(share);
                 }

@@ -78,6 +78,7 @@ pub fn period_tensor(
     let own = |dof: usize| owner(dof / d) * d + dof % d;
     let mut folded = DMatrix::zeros(count * d, u.ncols());
     for (dof, row) in forces.row_iter().enumerate() {
+        // The force on a point and those on its images are forces on one point.
         (0..u.ncols()).for_each(|case| folded[(own(dof), case)] += row[case]);
     }
     let inner = folded_entries(k, own);
@@ -104,6 +105,7 @@ pub fn folded_entries(entries: &Entries, own: impl Fn(usize) -> usize) -> Entrie
 pub fn of_points(specimen: &Specimen, part: &[bool], volume: f64) -> DMatrix<f64> {
     let share = |points: &[usize]| {
         let inside = points.iter().filter(|&&p| part[specimen.owner(p)]).count();
+        // Equal shares add up to one over all parts, so that their mean is the tensor of the whole.
         inside as f64 / points.len() as f64
     };
     let lengths = specimen.network.lengths.iter().map(|spring| share(&spring.points));

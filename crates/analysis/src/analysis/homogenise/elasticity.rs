@@ -37,9 +37,11 @@ impl Elasticity {
     /// What a tensor in Kelvin's notation says of a body in this state; its unit is Pa.
     pub fn of(c: &DMatrix<f64>, state: State) -> Elasticity {
         let d = state.dimension();
+        // Tensors of solutions are symmetric but for rounding, which eigenvalues of symmetric matrices take for granted.
         let symmetric = (c + c.transpose()) * 0.5;
         let eigenvalues = symmetric.clone().symmetric_eigenvalues();
         let floor = NOTHING * eigenvalues.amax();
+        // The comparison is negated so that an eigenvalue that is not a number counts as soft.
         let soft_strains = eigenvalues.iter().filter(|value| !(**value > floor)).count();
         let found = constants(&symmetric, state).filter(|_| soft_strains == 0);
         let along = || -> Option<Vec<f64>> {
@@ -74,6 +76,7 @@ fn isotropic(c: &DMatrix<f64>, d: usize) -> DMatrix<f64> {
     let volume = DMatrix::from_fn(size, size, |i, j| if i < d && j < d { 1.0 / d as f64 } else { 0.0 });
     let shape = DMatrix::identity(size, size) - &volume;
     let part = |projection: &DMatrix<f64>, count: usize| match count {
+        // A rod has one strain, and no change of shape.
         0 => projection * 0.0,
         _ => projection * (projection.component_mul(c).sum() / count as f64),
     };
@@ -101,6 +104,7 @@ fn zener(c: &DMatrix<f64>, d: usize) -> Option<f64> {
     });
     let is_cubic = (c - &cubic).amax() <= CUBIC * c.amax();
     let below = along - across;
+    // Where both are equal a strain meets no resistance, and the ratio has no value.
     (is_cubic && below.abs() > NOTHING * mean.amax()).then_some(shear / below)
 }
 

@@ -48,6 +48,7 @@ pub fn respond(
     let raised = System::new(&raised, support)?.placed(points, d);
     let (factor, is_stable) = match raised.cholesky()? {
         Some(factor) => (factor, true),
+        // A motion that releases energy has no Cholesky factor; the equilibrium is found all the same, and told as unstable.
         None => (raised.general()?.ok_or_else(unbalanced)?, false),
     };
     let free = system.free();
@@ -59,6 +60,7 @@ pub fn respond(
         let mut best = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let residual = norm(&left);
+            // Rounding ends the corrections: a residual that does not fall any more is what is left of the digits.
             if residual <= (ENOUGH * size).max(NONE * NONE * scale) || size <= NONE * scale || !(residual < best) {
                 break;
             }

@@ -35,6 +35,7 @@ impl Tension {
         let (mut springs, mut largest) = (0, 0.0f64);
         let mut sizes = vec![0.0; specimen.count()];
         each_pull(&specimen.network, &specimen.points, |points, pull, constant, measure, gradient| {
+            // The comparison is negated so that a pull that is not a number is left to the sums, where it shows.
             if !(pull.abs() > ROUNDING * (constant * measure).abs()) {
                 return;
             }
@@ -59,6 +60,7 @@ impl Tension {
             (0..all.len() / d).map(|p| all[p * d + k] * at(p)).sum::<f64>() / volume
         });
         let stress = basis(d).iter().map(|strain| virial.component_mul(strain).sum()).collect();
+        // Without a pull at rest there is nothing that could be unbalanced, and 0/0 otherwise.
         let unbalanced = if springs > 0 && most > 0.0 { unbalanced / most } else { 0.0 };
         Some(Tension { springs, largest, unbalanced, stress })
     }
@@ -78,6 +80,7 @@ fn each_pull(network: &Network, points: &[f64], mut visit: impl FnMut(&[usize], 
     for spring in &network.lengths {
         let [a, b] = spring.points.map(|p| &points[p * d..(p + 1) * d]);
         let length = distance(a, b);
+        // Two points at one place have no direction: the spring pulls neither of them.
         let n: Vec<f64> = a.iter().zip(b).map(|(a, b)| if length > 0.0 { (b - a) / length } else { 0.0 }).collect();
         let gradient: Vec<f64> = n.iter().map(|n| -n).chain(n.iter().copied()).collect();
         visit(&spring.points, spring.pull(length)[1], spring.constant, length, &gradient);

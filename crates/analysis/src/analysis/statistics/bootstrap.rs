@@ -48,6 +48,7 @@ pub fn ratio_interval(a: &[f64], b: &[f64]) -> Interval {
 
 /// Draws as many values as there are, each from all of them.
 fn resampled(values: &[f64], random: &mut Random) -> Vec<f64> {
+    // The product may round up to the number of values.
     let draw = |_| values[((random.unit() * values.len() as f64) as usize).min(values.len() - 1)];
     (0..values.len()).map(draw).collect()
 }

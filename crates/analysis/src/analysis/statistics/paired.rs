@@ -50,6 +50,7 @@ impl Paired {
     /// The comparison of figures above zero, in pairs; `None` without any.
     pub fn of(first: &[f64], second: &[f64]) -> Option<Paired> {
         let pairs = first.iter().zip(second).filter(|(a, b)| **a > 0.0 && **b > 0.0 && a.is_finite() && b.is_finite());
+        // Logarithms make a ratio and its inverse differences of one size.
         let logs: Vec<f64> = pairs.map(|(a, b)| (a / b).ln()).collect();
         if logs.is_empty() {
             return None;
@@ -103,6 +104,7 @@ pub fn signed_rank(differences: &[f64]) -> f64 {
         return (2.0 * share_below(n, smaller as usize)).min(1.0);
     }
     let variance = (n * (n + 1) * (2 * n + 1)) as f64 / 24.0 - ties / 48.0;
+    // Half a rank is the correction for continuity: the sum of ranks takes whole values.
     let z = ((smaller - all / 2.0).abs() - 0.5).max(0.0) / variance.sqrt();
     2.0 * beyond(z)
 }
@@ -126,6 +128,7 @@ fn share_below(n: usize, most: usize) -> f64 {
     let mut ways = vec![0.0; total + 1];
     ways[0] = 1.0;
     for rank in 1..=n {
+        // From the top down, so that each rank is counted once.
         for sum in (rank..=total).rev() {
             ways[sum] += ways[sum - rank];
         }
@@ -140,6 +143,7 @@ pub fn adjust(probabilities: &[f64]) -> Vec<f64> {
     order.sort_by(|a, b| probabilities[*a].total_cmp(&probabilities[*b]));
     let (mut adjusted, mut least) = (vec![0.0; order.len()], 0.0f64);
     for (done, place) in order.iter().enumerate() {
+        // Probabilities must not fall along the order: a comparison is no better than one that is worse by itself.
         least = least.max(probabilities[*place] * (order.len() - done) as f64).min(1.0);
         adjusted[*place] = least;
     }

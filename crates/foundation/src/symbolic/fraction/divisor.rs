@@ -34,6 +34,7 @@ impl Polynomial {
         let (least_a, least_b) = (a.monomial_content(), b.monomial_content());
         let least: Vec<u32> = least_a.iter().zip(&least_b).map(|(a, b)| *a.min(b)).collect();
         let divisor = Polynomial::monomial(least.clone(), BigRational::one());
+        // A single term has no divisors but powers of the variables, which `least` has.
         if a.terms.len() == 1 || b.terms.len() == 1 {
             return [divisor, a.lowered(&least), b.lowered(&least)];
         }
@@ -53,6 +54,7 @@ impl Polynomial {
 /// The greatest common divisor of two primitive polynomials, and the quotient of each by it.
 fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3] {
     let one = || vec![(0, BigInt::one())];
+    // Where one divides the other, which sums of fractions often bring about, no prime is needed.
     if let Some(quotient) = layout.quotient(a, b) {
         return [b.clone(), quotient, one()];
     }
@@ -60,6 +62,8 @@ fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3]
         return [a.clone(), one(), quotient];
     }
     let leading = |p: &Packed| p[p.len() - 1].1.clone();
+    // The leading coefficient of the divisor is not known before, but divides this
+    // number: images are scaled to it, and what it has too much is taken out at the end.
     let lead = leading(a).gcd(&leading(b));
     let mut modulus = BigInt::one();
     let mut lifted = BTreeMap::<u128, BigInt>::new();
@@ -86,8 +90,10 @@ fn divisor_and_cofactors(a: &Packed, b: &Packed, layout: &Layout) -> [Packed; 3]
         modulus *= field.prime();
         let mut divisor: Packed = lifted.iter().filter(|(_, c)| !c.is_zero()).map(|(k, c)| (*k, c.clone())).collect();
         make_primitive(&mut divisor);
+        // A division that fails says that more primes are needed, or that this one was unlucky.
         let Some(left_a) = layout.quotient(a, &divisor) else { continue };
         let Some(left_b) = layout.quotient(b, &divisor) else { continue };
+        // Unlucky values may have given a divisor that is too small, so that the quotients are asked again.
         let [more, left_a, left_b] = divisor_and_cofactors(&left_a, &left_b, layout);
         return [product(&divisor, &more), left_a, left_b];
     }
@@ -123,11 +129,13 @@ fn image_divisor(a: &[(u128, u64)], b: &[(u128, u64)], widths: &[u32], field: &m
     let (lead_a, lead_b) = (leading(&a), leading(&b));
     let lead = field.divisor(lead_a.clone(), lead_b.clone());
     let degree = |p: &Grouped| p.iter().map(|(_, c)| c.len()).max().unwrap_or(0);
+    // The scaled divisor has at most this degree in the last variable, for which so many points and one more suffice.
     let enough = degree(&a).min(degree(&b)) + lead.len();
     let mut modulus = vec![1];
     let mut found = BTreeMap::<u128, Vec<u64>>::new();
     loop {
         let at = field.random();
+        // Such a value lowers the degree of an image.
         if field.value(&lead_a, at) == 0 || field.value(&lead_b, at) == 0 {
             continue;
         }
@@ -200,6 +208,7 @@ fn take_content(p: &mut Grouped, field: &Field) -> Vec<u64> {
     let mut content = Vec::new();
     for (_, c) in p.iter() {
         content = field.divisor(c.clone(), content);
+        // A content of one cannot become smaller.
         if content.len() == 1 {
             return content;
         }

@@ -16,6 +16,7 @@ const BITS: u32 = 61;
 impl Field {
     /// The fields whose primes are below 2⁶¹, from the largest prime down.
     pub fn all() -> impl Iterator<Item = Field> {
+        // An odd number is taken from 2⁶¹, because an even one leaves an even number.
         (1..1 << 20).step_by(2).map(|below| Field { below, state: below }).filter(Field::is_field)
     }
 
@@ -38,6 +39,8 @@ impl Field {
 
     fn reduce(&self, x: u128) -> u64 {
         let fold = |x: u128| (x & ((1 << BITS) - 1)) + (x >> BITS) * u128::from(self.below);
+        // A product has at most 123 bits, the first fold leaves 82 of them and
+        // the second less than the prime and 2⁴¹: one subtraction completes it.
         let (x, prime) = (fold(fold(x)) as u64, self.prime());
         if x >= prime { x - prime } else { x }
     }
@@ -79,6 +82,7 @@ impl Field {
 
     /// The integer of least magnitude with the residue `a`.
     pub fn least(&self, a: u64) -> i64 {
+        // Coefficients of either sign are known once twice their size is below the modulus.
         if a > self.prime() / 2 { a as i64 - self.prime() as i64 } else { a as i64 }
     }
 
@@ -96,6 +100,7 @@ impl Field {
     /// The greatest common divisor of two polynomials; its last coefficient is one.
     pub fn divisor(&self, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
         while !b.is_empty() {
+            // A remainder that is a number has no divisor but numbers.
             if b.len() == 1 {
                 return vec![1];
             }

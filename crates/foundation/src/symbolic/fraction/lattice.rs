@@ -32,6 +32,7 @@ impl Lattice {
                 row.iter_mut().for_each(|e| *e = -*e);
             }
             for (_, above) in done {
+                // The entries above a pivot are made the least that are not negative, which keeps the exponents of the new variables small.
                 let times = above[*pivot].div_euclid(row[*pivot]);
                 subtract(above, times, row);
             }
@@ -98,6 +99,8 @@ fn insert(mut vector: Vec<i64>, rows: &mut [Vec<i64>], order: &[usize]) {
             rows[v] = vector;
             return;
         }
+        // Euclid's algorithm on whole numbers: the row keeps the greatest common
+        // divisor of both entries, and the vector goes on without this variable.
         while vector[v] != 0 {
             let times = rows[v][v] / vector[v];
             subtract(&mut rows[v], times, &vector);

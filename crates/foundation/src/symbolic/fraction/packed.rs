@@ -56,6 +56,7 @@ impl Layout {
     /// `a/b`, if that is a polynomial with integer coefficients.
     pub fn quotient(&self, a: &Packed, b: &Packed) -> Option<Packed> {
         let ((first, start), (last, lead)) = (b.first()?, b.last()?);
+        // The lowest terms decide many divisions that fail, before a tree of terms is built.
         if a.first().is_some_and(|(key, c)| key < first || !c.is_multiple_of(start)) {
             return None;
         }
@@ -64,6 +65,7 @@ impl Layout {
         let room = self.degrees(a).into_iter().zip(self.degrees(b)).map(|(a, b)| a.checked_sub(b));
         let room: Vec<u32> = room.collect::<Option<_>>()?;
         let mut rest: BTreeMap<u128, BigInt> = a.iter().cloned().collect();
+        // Terms are taken from the highest down, as the leading term of the divisor asks.
         let mut quotient = Vec::new();
         while let Some((key, c)) = rest.pop_last() {
             if c.is_zero() {

@@ -148,6 +148,7 @@ impl Polynomial {
         if leading.is_some_and(|(_, c)| c.is_negative()) {
             above = -above;
         }
+        // A prime that divides all numerators divides no denominator, because each coefficient is in lowest terms.
         BigRational::new_raw(above, below)
     }
 
@@ -195,6 +196,7 @@ impl Polynomial {
         if self.is_zero() {
             return Some(Polynomial::default());
         }
+        // One layout for both, so that their keys can be compared and subtracted.
         let layout = Layout::new((0..self.variables()).map(|v| self.degree_in(v).max(divisor.degree_in(v))));
         let ((c, a), (d, b)) = (self.packed(&layout), divisor.packed(&layout));
         Some(Polynomial::unpacked(&layout.quotient(&a, &b)?, &(c / d), &layout))
@@ -233,6 +235,7 @@ impl Polynomial {
         };
         let rest = self.divided_by(&content).expect("a content divides");
         let mut factors = [content.split(), rest.split()].concat();
+        // Factors are listed in an order that does not depend on how they were found, so that formulas are printed alike.
         let first = |f: &Polynomial| std::cmp::Reverse(f.terms.keys().rev().cloned().collect::<Vec<_>>());
         factors.sort_by_cached_key(|f| (f.terms.len(), f.degree(), first(f)));
         factors
@@ -316,6 +319,7 @@ impl Mul for &Polynomial {
     type Output = Polynomial;
 
     fn mul(self, other: &Polynomial) -> Polynomial {
+        // Exponents add up in a product: with so many bits none carries into the next.
         let degrees = (0..self.variables()).map(|v| [self, other].map(|p| p.degree_in(v)).iter().sum());
         let layout = Layout::new(degrees);
         let ((c, a), (d, b)) = (self.packed(&layout), other.packed(&layout));

@@ -33,6 +33,7 @@ pub fn relax(cell: &Cell) {
     let [mu, mean, left, taken] = ["mu", "mean", "left", "taken"].map(|name| body.parameter(name));
     let forces = body.array("forces", size, Role::Output);
     let relaxed = body.array("relaxed", pairs, Role::Output);
+    // An array is needed where either loop is one in the code: its index is not known while the code is written.
     let unrolled = cell.plan.springs && cell.plan.points;
     let mut sums = Room::new(body, "forces_of_cell", size, !unrolled);
     let mut present = Present::new(cell);

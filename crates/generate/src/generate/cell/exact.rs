@@ -67,6 +67,7 @@ pub fn exact(cell: &Cell, volume: VolumeSprings, lambda: &Value, mu: &Value) -> 
         }
         let constant = constants.get(body, s);
         let least = &(&own.get(body, i) * &own.get(body, j)) * &rounding;
+        // Squares are compared, which needs no root, as the kernel of the library does.
         let kept = constant.clone().squared().select(&least, &constant, &zero);
         constants.set(body, s, &kept);
     });

@@ -13,6 +13,7 @@ pub fn value(expression: &Expr, at: &[Value], any: &Value) -> Value {
         Expr::Power(base, exponent) => value(base, at, any).power(Expr::Number(exponent.clone()).evaluate(&[])),
         Expr::Call(Function::Step, argument) => {
             let argument = value(argument, at, any);
+            // The step is one at zero, so that zero must not exceed the argument.
             any.like(0.0).select(&argument, &any.like(0.0), &any.like(1.0))
         }
         Expr::Call(function, argument) => value(argument, at, any).call(*function),

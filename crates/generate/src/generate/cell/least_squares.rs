@@ -53,6 +53,7 @@ struct Linear {
 pub fn least_squares(cell: &Cell, weight: LeastSquares, lambda: &Value, mu: &Value) -> Room {
     let (body, plan, d) = (&cell.body, cell.plan, cell.dimension());
     let (lengths, m) = (cell.springs.pairs().len(), cell.springs.len());
+    // Springs between the same two nodes share a block, and have equations together.
     let is_decoupled = weight == LeastSquares::Blocks && lengths == m && !has_parallel(cell.springs.pairs());
     let is_array = !plan.springs || !plan.equations && !is_decoupled;
     let linear = Linear::of(cell, weight);
@@ -65,6 +66,7 @@ pub fn least_squares(cell: &Cell, weight: LeastSquares, lambda: &Value, mu: &Val
     cell.each_length(|s, i, j| {
         let edge = cell.edge(i, j);
         let square = dot(&edge, &edge);
+        // Code for simulations must end with a status where the library would have numbers that are not finite.
         body.guard(&square, &zero);
         squares.set(body, s, &(&one / &square));
         edge.iter().enumerate().for_each(|(k, e)| edges.set(body, &(s * d) + k, e));

@@ -64,6 +64,7 @@ pub fn moduli(name: String, comment: Vec<String>, state: State) -> Function {
             [&(&modulus * &poisson) / &(&above * &less), &modulus / &(&two * &above)]
         }
     };
+    // The guard asks for a number below the largest one: neither an infinite one nor NaN passes.
     body.guard(&body.number(f64::MAX), &(&lambda.select(&body.number(0.0), &lambda, &lambda.negated()) + &mu));
     body.store(moduli, 0, &lambda);
     body.store(moduli, 1, &mu);

@@ -40,6 +40,7 @@ impl Cell<'_> {
     /// The springs on contents at quadrature points: calls `visit(s, c, ∇c)` for each.
     fn each_point_spring(&self, mut visit: impl FnMut(&Index, &Value, &[Value])) {
         let (points, first) = (self.springs.points(), self.springs.pairs().len());
+        // Without such springs the loop over the points would be code that does nothing.
         if points.is_empty() {
             return;
         }
@@ -101,6 +102,7 @@ pub fn forces(cell: &Cell, is_exact: bool) {
     };
     let tension = |s: &Index, measure: &Value| &body.entry(constants, s) * &(measure - &body.entry(rests, s));
     let pull = |sums: &mut Room, tension: &Value, gradient: &[Value]| {
+        // Slopes that are known to be zero would be lines that add nothing.
         let at = gradient.iter().enumerate().filter(|(_, slope)| slope.as_number() != Some(0.0));
         at.for_each(|(i, slope)| sums.add(body, i, &(tension * slope).negated()));
     };

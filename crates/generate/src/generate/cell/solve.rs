@@ -18,10 +18,12 @@ pub fn solve(body: &Body, unrolled: bool, m: usize, matrix: &mut Room, b: &mut R
     // Afterwards the diagonal holds 1/D.
     body.each(unrolled, 0, m, |j| {
         let pivot = matrix.get(body, &(j * m) + j);
+        // The pivot is compared with the entry before the elimination, by the rule of the library.
         body.guard(&pivot, &(&diagonal.get(body, j) * &least));
         let inverse = &one / &pivot;
         diagonal.set(body, j, &inverse);
         let known = b.get(body, j);
+        // The right-hand side goes along with the elimination: the factor L need not be kept.
         body.each(unrolled, j + 1, m, |i| {
             let factor: Value = &matrix.get(body, &(j * m) + i) * &inverse;
             let less = &b.get(body, i) - &(&factor * &known);

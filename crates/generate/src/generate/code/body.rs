@@ -88,6 +88,7 @@ impl Body {
         };
         match known {
             Some(number) => Node::of_number(number),
+            // The number of writes tells readings before and after a write apart: they are not one value.
             None => Node::Entry { array, at, writes: state.writes[array] },
         }
     }
@@ -139,6 +140,7 @@ impl Body {
         work(&Index::variable(variable));
         let mut state = self.0.borrow_mut();
         if let Some((body, own)) = state.open.pop() {
+            // What was computed in the loop has no value after it.
             own.iter().for_each(|node| _ = state.known.remove(node));
             state.forget_entries();
             state.step(Statement::Loop { variable, from, to, body });

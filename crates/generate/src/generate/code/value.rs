@@ -92,6 +92,7 @@ impl Value {
     /// `−self`.
     pub fn negated(&self) -> Value {
         match self.node() {
+            // Signs are moved outwards and cancel there: equal values become one node only if they are written alike.
             Node::Negate(a) => self.other(a),
             Node::Subtract(a, b) => self.of(Node::Subtract(b, a)),
             Node::Number(bits) => self.like(-f64::from_bits(bits)),
@@ -109,6 +110,7 @@ impl Value {
 
     /// `self` to a constant exponent.
     pub fn power(&self, exponent: f64) -> Value {
+        // Products are exact to their rounding and cheap up to some multiplications; a power is a call of a library.
         let whole = exponent.fract() == 0.0 && exponent.abs() <= 64.0;
         if exponent < 0.0 {
             return self.like(1.0) / &self.power(-exponent);
@@ -141,6 +143,7 @@ impl Value {
     pub fn select(&self, other: &Value, yes: &Value, no: &Value) -> Value {
         match (self.as_number(), other.as_number()) {
             (Some(a), Some(b)) => if a > b { yes } else { no }.clone(),
+            // Equal operations are one node, so that equal numbers of nodes are equal values.
             _ if yes.number == no.number => yes.clone(),
             _ => self.of(Node::Select([self.number, other.number, yes.number, no.number])),
         }
@@ -160,6 +163,7 @@ impl Add<&Value> for Value {
                 self - &b
             }
             (Node::Negate(a), _) => other.clone() - &self.other(a),
+            // The sum has no order: `a + b` and `b + a` become one node.
             _ => self.of(Node::Add(self.number.min(other.number), self.number.max(other.number))),
         }
     }

@@ -34,6 +34,7 @@ impl<T: Packed> Factors<T> {
             || {
                 for s in 0..m {
                     let row = &mut gram[s * m..=s * m + s];
+                    // With a unit diagonal one tolerance serves the slopes of short and of long springs.
                     scale[s] = one.clone() / &row[s].clone().sqrt();
                     for (entry, other) in row.iter_mut().zip(&*scale) {
                         *entry = entry.clone() * &(scale[s].clone() * other);
@@ -62,6 +63,8 @@ impl<T: Packed> Factors<T> {
         part.gram.resize(n * n, rhs[0].zero());
         part.rhs.clear();
         part.rhs.resize(n, rhs[0].zero());
+        // All lanes are factorised with the order of the largest set. An
+        // identity below the equations of the others leaves them as they are.
         part.gram.iter_mut().step_by(n + 1).for_each(|entry| *entry = entry.one());
         for (&lane, set) in sets() {
             for (i, &s) in set.iter().enumerate() {
@@ -94,6 +97,7 @@ impl<T: Packed> Equations<T> for Factors<T> {
 
     #[inline(always)]
     fn solve(&mut self, state: &mut State<T>, limits: &T) -> bool {
+        // Lanes with an infinite limit have ended or wait: their constants stay as they are.
         let lanes: Vec<usize> = (0..T::COUNT).filter(|&lane| limits.as_slice()[lane].is_finite()).collect();
         if !self.solve_part(state, &lanes) {
             return false;

@@ -99,6 +99,7 @@ impl<T: Packed, E: Equations<T>> Search<'_, T, E> {
     #[inline(always)]
     fn run(&mut self, k: &[T], lanes: &[usize]) -> bool {
         let mut all: Vec<Own> = lanes.iter().map(|&lane| self.own(k, lane)).collect();
+        // A residual beside a number that is not finite would never be below its limit.
         if !all.iter().all(|own| own.square.is_finite()) {
             return false;
         }
@@ -149,11 +150,13 @@ impl<T: Packed, E: Equations<T>> Search<'_, T, E> {
         };
         let wrong: Vec<usize> = (0..self.state.rhs.len()).filter(is_wrong).collect();
         if wrong.is_empty() {
+            // Factors leave nothing to refine, whereas an iteration that was ended early goes on to all digits once its signs are right.
             own.stage = if own.stage == Stage::Judging && !E::EXACT { Stage::Judged } else { Stage::Ended };
             return true;
         }
         own.stage = Stage::Judging;
         let Some(exchanged) = own.exchanges.exchange(&wrong) else { return false };
+        // A constant that leaves is zero, and one that enters begins there.
         for &s in exchanged {
             self.state.free[s].as_mut_slice()[lane] = f64::from(u8::from(own.exchanges.positive[s]));
             self.state.constants[s].as_mut_slice()[lane] = 0.0;

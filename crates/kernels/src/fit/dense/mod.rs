@@ -106,6 +106,7 @@ fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]
         let diagonal = row[s].choose(&row[s], &one);
         // The quotient is not in the chain from pivot to pivot.
         least = least.least(&(pivot.clone() / &diagonal));
+        // The choice is one of values and no branch, because lanes may differ.
         let pivot = (pivot.clone() - &diagonal.scaled(&floor)).choose(&pivot, &huge);
         inverse[s] = one.clone() / &pivot;
     }
@@ -210,6 +211,7 @@ pub fn mirror<T: Scalar>(a: &mut [T], n: usize) {
 
 /// A limit that is half the digits of `f64`, in numbers of another precision.
 pub fn at_half<T: Real>(limit: f64) -> f64 {
+    // `epsilon` is half a unit of the last digit, twice of which is `f64::EPSILON`: the limit stays as it is in `f64`.
     limit * (2.0 * T::epsilon() / f64::EPSILON).sqrt()
 }
 
@@ -221,6 +223,7 @@ pub fn at_rounding<T: Real>(limit: f64) -> f64 {
 /// The step that takes the first κ to zero.
 #[inline(always)]
 pub fn longest_step<T: Real>(kappa: &[T], step: &[T]) -> T {
+    // Where no κ falls, nothing limits the step.
     let mut longest = kappa[0].constant(&f64::MAX);
     for (kappa, step) in kappa.iter().zip(step) {
         let fall = step.negated();

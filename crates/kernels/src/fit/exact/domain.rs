@@ -117,6 +117,7 @@ impl ExactDomains {
         let mut constant = 0.0;
         let mut parameters = vec![0.0; if self.form.law.is_some() { 2 } else { 1 }];
         content_spring(&mean, self.shares.points, &weight, [&weight, &weight], &mut constant, &mut parameters);
+        // The kernel writes `k c₀`. Laws measure the content against that at rest.
         let rest = if self.form.law.is_some() { weight } else { parameters.remove(0) / constant };
         DomainSprings { pairs: edges(&geometry, mean.lengths), areas: mean.areas * weight, constant, rest, parameters }
     }

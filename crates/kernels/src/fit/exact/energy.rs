@@ -49,6 +49,7 @@ impl ExactEnergy {
         // At equal I1 and J the energy grows with I2 by μ s/2, which gives the share s of a law.
         let [a, b] = [[3.0, 3.0, 1.0], [3.0, 4.0, 1.0]].map(|at| law.of_invariants(at));
         let share = (b? - a?) / (mu / 2.0);
+        // A share outside of its range is that of no energy: the default stays and fails the comparison.
         let candidates = ExactEnergy::all().map(|energy| energy.with_share(share).unwrap_or(energy));
         candidates.into_iter().find(|energy| energy.is_that_of(law))
     }
@@ -58,6 +59,7 @@ impl ExactEnergy {
         let Moduli { lambda, mu } = law.moduli();
         let size = SAME * (lambda.abs() + mu);
         let value = |at: [f64; 3]| law.of_invariants(at).map(|value| value - self.value(at, [lambda, mu]));
+        // A value that is not a number compares as false, and the law counts as another one.
         DEFORMATIONS.iter().all(|at| value(*at).is_some_and(|difference| difference.abs() <= size))
     }
 

@@ -53,6 +53,7 @@ impl PackedWork for ExactBatch<'_> {
     fn run<T: Packed>(mut self, zero: T) -> Self::Output {
         let (n, m) = (self.element.nodes(), self.springs.len());
         let cells = self.connectivity.len() / n;
+        // An empty block has no cells to divide by.
         let p = self.parameters.len() / cells.max(1);
         let table = &self.element.tabulation;
         let mut packing = Packing::new(&zero, self.element, self.points);
@@ -72,6 +73,7 @@ impl PackedWork for ExactBatch<'_> {
             let (constants, parameters) = numbers.split_at_mut(m);
             if let BlockValues::Each(all) = self.coefficients {
                 let of_lane = |lane| &all[cell + if lane < count { lane } else { 0 }];
+                // Lanes without a cell have the numbers of the first one, as their nodes have: all lanes stay finite.
                 (0..T::COUNT).for_each(|lane| coefficients.set_lane(lane, of_lane(lane)));
             }
             if packing.gather(nodes)
@@ -204,6 +206,7 @@ impl ExactBatch<'_> {
         let mut springs = constants.iter_mut().zip(parameters.chunks_exact_mut(count));
         for &q in &self.springs.points {
             if let Some((constant, parameters)) = springs.next() {
+                // A point that serves the volumetric rule alone has no volume in the other rule.
                 let content = volumes[q].magnitude().choose(&volumes[q], &volumetric[q]);
                 let volumes = [&volumes[q], &volumetric[q]];
                 content_spring(coefficients, self.shares.points, &content, volumes, constant, parameters);
@@ -265,6 +268,7 @@ impl ExactBatch<'_> {
             let least = ROUNDING * metric.amax();
             let mixed = pairs.map(|pair| if metric[pair].abs() > least { metric[pair] } else { 0.0 });
             for k in 0..3 {
+                // By `2 n_k·n_l = |n_k + n_l|² − |n_k|² − |n_l|²` each mixed term goes to a sum and is taken off two squares.
                 let others = pairs.iter().zip(mixed).filter(|((a, b), _)| *a == k || *b == k);
                 constants[k] = metric[(k, k)] - others.map(|(_, mixed)| mixed).sum::<f64>();
                 if constants[k].abs() <= least {
@@ -316,6 +320,7 @@ fn stiffen_in<T: Real, const D: usize>(n: usize, geometry: &Geometry<T>, mu: &T,
     for a in 0..n {
         for b in a + 1..n {
             let least = (own[a].clone() * &own[b]).scaled(&(ROUNDING * ROUNDING));
+            // Only the value vanishes: dual numbers keep the derivative, which is not zero at a right angle.
             pairs[s] = (pairs[s].clone().squared() - &least).choose(&pairs[s], &pairs[s].vanished());
             s += 1;
         }

@@ -114,6 +114,7 @@ fn fit_block<'a>(
         material.state().check(element.dimension()).map_err(|e| e.at_key("state"))?;
         coefficients.push(Coefficients::of(fit.energy, *material, fit.large)?);
     }
+    // A body without cells has no material to ask for a form.
     let (Some(first), Some(some)) = (material.values().first(), coefficients.first()) else {
         return Ok(CellFits::new(Springs::exact(element, false, false)));
     };
@@ -125,6 +126,7 @@ fn fit_block<'a>(
             Error::expected("volume", expected, format!("\"{}\"", fit.volume.name())).of_kind(ErrorKind::Unsupported)
         );
     }
+    // The content of a line is its length: a spring on that of the cell would be a second one between the same nodes.
     let volume = if element.dimension() == 1 { VolumeSprings::Points } else { fit.volume };
     let springs = Springs::exact(element, some.areas > 0.0, fit.of_cells(element));
     let shares = volume.shares(springs.points.is_empty());
@@ -172,6 +174,7 @@ const FLAT: f64 = 1e-9;
 /// A cell is bent, or has no area.
 pub fn check_flat(element: &Element, points: &[f64], connectivity: &[usize]) -> Result<()> {
     let (d, space, n) = (element.dimension(), element.space(), element.nodes());
+    // A simplex is flat by itself, and where the dimensions agree there is no direction out of the cell.
     if d == space || n <= d + 1 {
         return Ok(());
     }

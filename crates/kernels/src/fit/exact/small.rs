@@ -41,6 +41,7 @@ impl<'a> ExactKernel<'a> {
             springs,
             points: &[],
             connectivity: &[],
+            // The kernel is asked for one geometry, whose coefficients are an argument: the block has no cells.
             coefficients: BlockValues::Each(&[]),
             has_law: false,
             shares: self.shares,

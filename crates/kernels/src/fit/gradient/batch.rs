@@ -117,6 +117,7 @@ impl<T: Packed> Seeded<T> for Dual<1, Dual<1, T>> {
     #[inline(always)]
     fn seeded(value: T, [along, other]: [T; 2]) -> Dual<1, Dual<1, T>> {
         let none = value.zero();
+        // The two changes are in two levels, so that the product of both has the mixed derivative and no second one of either.
         Dual { value: Dual { value, slopes: [along] }, slopes: [Dual { value: other, slopes: [none] }] }
     }
 
@@ -147,6 +148,7 @@ impl<'a> Batch<'a, '_> {
         let (n, d) = (element.nodes(), element.dimension());
         let changes = self.changes();
         let cell = |lane: usize| first + if lane < count { lane } else { 0 };
+        // The numbers of the cells are looked up once, without memory of their own: registers of 512 bits have 8 lanes.
         let mut lanes = [const { 0usize }; 64];
         (0..T::COUNT).for_each(|lane| lanes[lane] = cell(lane));
         let lanes = &lanes[..T::COUNT];
@@ -161,6 +163,7 @@ impl<'a> Batch<'a, '_> {
                 let mut number = zero.clone();
                 for (value, cell) in number.as_mut_slice().iter_mut().zip(lanes) {
                     let nodes = &self.nodes[cell * n..];
+                    // Changes are relative to that of the first node, as positions are: constants do not depend on where a cell is.
                     *value = all[nodes[a] * d + k] - all[nodes[0] * d + k];
                 }
                 number
@@ -259,6 +262,7 @@ impl<'a> Batch<'a, '_> {
                         let cell = self.start + first + if lane < count { lane } else { 0 };
                         *value = all[cell * width + i];
                     }
+                    // Weights do not change along the change of the inputs.
                     *number = N::seeded(value, [zero.clone(), zero.clone()]);
                 }
             }
@@ -302,6 +306,7 @@ impl<'a> Batch<'a, '_> {
                 && write(count, first, &slopes.x, slopes.x.len(), self.into.first)
                 && write(count, first, &slopes.moduli, 2, self.into.second);
             if !is_sound {
+                // What was written for these cells is overwritten when they are done again one by one.
                 refused.push((first, count));
             }
         }

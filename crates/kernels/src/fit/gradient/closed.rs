@@ -103,6 +103,7 @@ impl<T: Real> LeastSquaresCell<'_, T> {
             for s in 0..m {
                 let ([i, j], p) = (pairs[s], &self.p[s]);
                 let stretch = along.clone() * &q[s];
+                // The work of two gradients has slopes in both; those of one gradient twice are shorter.
                 if self.weight == ClosedWeight::OffDiagonal {
                     let (y, z) = (&grad[i], &grad[j]);
                     let p = p.clone().scaled(&-2.0);
@@ -151,6 +152,7 @@ impl<T: Real> LeastSquaresCell<'_, T> {
                 }
             }
             // across = μ v, along = λ w + across
+            // `along` contains `across`, so that its slope counts for both.
             let of_across = of_across + &of_along;
             *of_v = of_v.clone().plus_product(&of_across, &self.moduli.mu);
             *of_w = of_w.clone().plus_product(&of_along, &self.moduli.lambda);
@@ -175,12 +177,14 @@ impl<T: Real> LeastSquaresCell<'_, T> {
                         if ends != 0 {
                             factor = factor.plus_product(&h2, &zero.constant(&ends.into()));
                         }
+                        // A diagonal entry is there once, and one beside it twice.
                         let share = if s == t { (self.p[s].clone() * &self.k[s]).negated() } else { self.share(s, t) };
                         let cosine = dot(&d[s], &d[t]);
                         let squared = cosine.squared() * &(q[s].clone() * &q[t]);
                         let of_factor = share.clone() * &factor * &squared * &two;
                         add(&mut of_d[s], &of_factor, &images[t]);
                         add(&mut of_images[t], &of_factor, &d[s]);
+                        // `n_s·n_s` is one and has no slope.
                         if s != t {
                             add_cosine(&zero, [s, t], &(share * &factor.squared()), d, q, of_d, of_q);
                         }

@@ -49,6 +49,7 @@ fn coupled<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>, k: &mut [T], 
 
 /// The tensile and angular stiffness of the edges of a triangle, `[edges × edges]`, J/m⁴.
 fn triangle<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>) -> Vec<T> {
+    // The paper writes the law with twice the shear modulus.
     let (lambda, mu, area) = (bulk.moduli.lambda.clone(), bulk.moduli.mu.clone() * 2.0, cell.content.clone());
     let squares: Vec<T> = cell.lengths.iter().map(|l| l.clone() * l.clone()).collect();
     let Some(total) = squares.iter().cloned().reduce(|sum, square| sum + square) else { return Vec::new() };
@@ -69,6 +70,7 @@ fn triangle<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>) -> Vec<T> {
 fn tetrahedron<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>) -> Vec<T> {
     let square = |a: usize, b: usize| {
         let place = cell.pairs.iter().position(|pair| *pair == [a, b] || *pair == [b, a]).unwrap_or(0);
+        // All six edges of a tetrahedron are among the pairs, so that each one is found.
         cell.lengths[place].clone() * cell.lengths[place].clone()
     };
     let product = |a: usize, b: usize| match a == b {
@@ -84,6 +86,7 @@ fn tetrahedron<T: Quantity>(cell: &CellShape<T>, bulk: &Elasticity<T>) -> Vec<T>
         minor / determinant.clone()
     };
     // Row and column 0 from Σ_a g_a = 0.
+    // A zero of the kind of number, which formulas have no other way to.
     let mut g: Vec<T> = vec![determinant.clone() * 0.0; 16];
     for a in 1..4 {
         for b in 1..4 {

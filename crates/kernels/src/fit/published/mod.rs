@@ -104,6 +104,7 @@ fn fit_block<'a>(
         content += shape.content;
         constants(method, cover.cell, &shape, bulks.at(cell), &mut fits.constants[cell * m..(cell + 1) * m]);
     })?;
+    // This constant follows from the content of the whole body, which is known only after all cells.
     if method == Method::MacielUniform {
         let BlockValues::Uniform(bulk) = &bulks else {
             let expected = "one material in all cells: the method has one constant for the whole body";

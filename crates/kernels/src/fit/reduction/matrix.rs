@@ -21,6 +21,7 @@ impl<T: Real> Reduced<T> {
         self.set_mix(weight, x);
         self.mix_matrix::<D>(n, r);
         self.set_lengths(springs, x);
+        // The rows of `mix` add up to zero, which took out the translations; the rotations are left.
         self.take_out_rotations::<D>(n);
         if weight.divides_by_stiffness() {
             self.divide_by_stiffness();
@@ -32,6 +33,7 @@ impl<T: Real> Reduced<T> {
     pub(super) fn mix_matrix<const D: usize>(&mut self, n: usize, r: &[T]) {
         let (full, size) = ((n - 1) * D, n * D);
         let zero = self.size.zero();
+        // `C R` and then `(C R) Cᵀ`: two products of matrices cost less than a sum over four indices.
         let mut half = vec![zero.clone(); full * size];
         for (i, row) in self.mix.chunks_exact(n).enumerate() {
             for k in 0..D {

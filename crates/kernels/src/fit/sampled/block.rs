@@ -62,6 +62,7 @@ impl<'a, 'c> Drawn<'a, 'c> {
     /// Those of [`SampledCell::placed`] and [`SampledCell::sample`].
     pub fn new(cell: &'a SampledCell<'c>, part: Part, indices: Vec<usize>) -> Result<Drawn<'a, 'c>> {
         let (mut held, mut values) = (Vec::new(), 0);
+        // The first blocks are kept and the later ones drawn each time, so that the number of a block is its place.
         for indices in indices.chunks(SHAPES) {
             if values > MOST_HELD {
                 break;
@@ -94,6 +95,7 @@ impl<'a, 'c> Drawn<'a, 'c> {
 impl Block {
     fn draw(cell: &SampledCell, part: Part, indices: &[usize]) -> Result<Block> {
         let (seen, springs) = (cell.seen(), cell.len());
+        // Lanes are always full, for which no loop needs a rest.
         let shapes = indices.len().next_multiple_of(SIDE);
         let mut forces = vec![0.0; seen * shapes];
         let mut measures = vec![0.0; springs * shapes];
@@ -118,6 +120,7 @@ impl Block {
         }
         let rows = |(measures, gradient): (&[f64], &[f64])| {
             let row = |place: usize| &gradient[place * shapes..(place + 1) * shapes];
+            // A spring pulls at its own nodes alone: the other rows of its gradient are zero at every shape.
             let places: Vec<usize> = (0..seen).filter(|&place| row(place).iter().any(|g| *g != 0.0)).collect();
             let gradient = places.iter().flat_map(|&place| row(place)).copied().collect();
             Rows { measures: measures.to_vec(), places, gradient }
@@ -129,6 +132,7 @@ impl Block {
         for s in 0..springs.len() {
             for t in 0..=s {
                 let products = products(&springs[s], &springs[t], shapes);
+                // Gradients of springs without a common node are orthogonal at all shapes, and most pairs are such.
                 if products.iter().any(|product| *product != 0.0) {
                     pairs.push((s, t, products));
                 }
@@ -169,6 +173,7 @@ impl Block {
             wanted[0] |= chosen.iter().all(|chosen| !chosen);
             let one =
                 AskedResponse { c: &self.springs[s].measures, rest: cell.rest(s), parameters: own, wanted, results };
+            // A law that is a function is called once for all its springs, because a call into Python costs more than the arithmetic.
             match asked.iter_mut().find(|(known, _)| std::ptr::eq(*known, law)) {
                 Some((_, springs)) => springs.push(one),
                 None => asked.push((law, vec![one])),
@@ -262,6 +267,7 @@ impl Add<'_, '_> {
                 for (j, v) in of_t.clone().enumerate().filter(|(_, v)| chosen[*v]) {
                     let sum = sum_of_products(zero, &image, &laws[*t][row(1 + j)]);
                     gram[u * count + v] += sum;
+                    // The pair of a spring with itself fills both triangles by its own two loops.
                     if s != t {
                         gram[v * count + u] += sum;
                     }

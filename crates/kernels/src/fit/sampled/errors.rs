@@ -65,6 +65,7 @@ impl FamilySums {
 
 /// The root of a ratio; infinite if the springs have no finite force, and NaN if the shapes have none.
 fn relative(square: f64, size: f64) -> f64 {
+    // Forces that are not finite are worse than any error, and must not pass as one without shapes.
     if square.is_finite() { (square / size).sqrt() } else { f64::INFINITY }
 }
 
@@ -103,6 +104,7 @@ impl SampledCell<'_> {
         let total = self.shapes(part);
         let mut all = Evaluation::default();
         for round in (0..total).step_by(BLOCK * BLOCKS) {
+            // The parts are added in the order of the shapes, so that sums are the same on any number of threads.
             let firsts: Vec<usize> = (round..total.min(round + BLOCK * BLOCKS)).step_by(BLOCK).collect();
             let block = |first: usize| self.evaluate_some(part, first..(first + BLOCK).min(total), unknowns, data);
             let parts: Vec<Result<Evaluation>> = firsts.into_par_iter().map(block).collect();
@@ -177,6 +179,7 @@ impl SampledCell<'_> {
     /// The least det F, and the least and the largest principal stretch, over the quadrature points.
     fn strains(&self, placed: &Placed) -> (f64, [f64; 2]) {
         let mut all = Vec::new();
+        // Inverted points are measured too: the limit is for shapes that a fit may see.
         self.geometry.deformations(&placed.x, f64::NEG_INFINITY, &mut all);
         let d = self.dimension();
         let (mut content, mut stretches) = (f64::INFINITY, [f64::INFINITY, 0.0f64]);

@@ -109,6 +109,7 @@ impl Draw<'_> {
     /// λ of the amplitude from this coordinate.
     fn ratio(&self, coordinate: usize) -> f64 {
         let a = self.amplitude(coordinate);
+        // Amplitudes of a and −a are inverse stretches, and no amplitude makes a stretch of zero or below.
         if a < 0.0 { 1.0 / (1.0 - a) } else { 1.0 + a }
     }
 
@@ -139,12 +140,14 @@ impl Draw<'_> {
             (true, _) => vector(&direction[d..]),
             (false, 3) => {
                 // Any axis across e, turned about it at random.
+                // The axis of the smallest component is farthest from e: the product with it does not vanish.
                 let least = (0..3).fold(0, |best, k| if e[k].abs() < e[best].abs() { k } else { best });
                 let across = e.cross(&Vector3::from_fn(|k, _| f64::from(u8::from(k == least))));
                 Rotation3::from_axis_angle(&Unit::new_normalize(e), TAU * (self.number)(1)) * across
             }
             (false, _) => Vector3::new(-e[1], e[0], 0.0),
         };
+        // A second axis that is given need not be across the first.
         [e, (second - e * e.dot(&second)).normalize()]
     }
 }
@@ -205,6 +208,7 @@ impl Resting<'_> {
                     let (along, over) = (e.dot(&x), f.dot(&x));
                     let (sine, cosine) = (curvature * along).sin_cos();
                     // sin(κs)/κ and (cos(κs) − 1)/κ, also at κ = 0.
+                    // `cos x − 1 = −2 sin²(x/2)` keeps its digits where x is small.
                     let half = (curvature * along / 2.0).sin();
                     let (arc, sag) = if curvature == 0.0 {
                         (along, 0.0)
@@ -225,6 +229,7 @@ impl Resting<'_> {
     fn moved(&self, map: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Vec<f64> {
         let d = self.dimension;
         let nodes = self.rest.len() / d;
+        // Torsion and bending turn about the middle of the cell; homogeneous deformations differ by a translation only.
         let centre = |k: usize| self.rest.iter().skip(k).step_by(d).sum::<f64>() / nodes as f64;
         let centre = Vector3::from_fn(|k, _| if k < d { centre(k) } else { 0.0 });
         let place = |x: &[f64]| {

@@ -58,6 +58,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
     let descent = Descent { bounds, eliminated: &eliminated, nonnegative };
     let total = cell.shapes(Part::Trained);
     let all = Drawn::new(cell, Part::Trained, (0..total).collect())?;
+    // There are `seen` equations in each shape.
     let few = FEW[0].max((FEW[1] * cell.count()).div_ceil(cell.seen()));
     // More than half of the shapes would save little.
     let few = match starts > 1 && 2 * few < total {
@@ -92,6 +93,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
             continue;
         }
         let square = end.sums.sums.square;
+        // Ends are told apart by their sums: other parameters with the same sum are as good.
         let same = |(other, _): &(End, f64)| (other.sums.sums.square - square).abs() <= EQUAL * square;
         // The first start may be on other shapes than the rest.
         let first = usize::from(start > 0 && of_starts[0].0.is_some());
@@ -143,12 +145,14 @@ fn start_of(cell: &SampledCell, outer: &[bool], start: usize, bounds: &[[f64; 2]
     let places = cell.each_parameter(|_, i| i);
     let numbers = Numbers { index: start, seed: cell.fit.sampling.seed };
     let value = |(i, &[lower, upper]): (usize, &[f64; 2])| {
+        // Linear parameters follow from least squares wherever the search begins.
         if outer[i] {
             return 0f64.clamp(lower, upper);
         }
         let share = if start == 0 { 0.5 } else { numbers.number(places[i]) };
         let value = match lower.is_finite() && upper.is_finite() {
             true => lower + share * (upper - lower),
+            // Exponents and rates are of unknown size: even shares of the logarithm try all sizes alike.
             false => STARTS[0] * (STARTS[1] / STARTS[0]).powf(share),
         };
         value.clamp(lower, upper)

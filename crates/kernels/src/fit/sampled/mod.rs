@@ -80,6 +80,7 @@ pub fn fit_sampled(
     fit: &SampledFit,
     progress: &mut dyn FnMut(usize),
 ) -> Result<SampledFits> {
+    // A sum without springs has no unknown to fit.
     if springs.is_empty() {
         return Err(Error::expected("springs", "at least one spring to fit", "none"));
     }
@@ -96,6 +97,7 @@ pub fn fit_sampled(
     state.check(element.dimension())?;
     let n = element.nodes();
     let cells = connectivity.len() / n;
+    // By translation alone: shapes are drawn along axes in space, which do not turn with a cell.
     let Congruence { representatives, shapes } = Congruence::by_translation(element, points, connectivity)?;
     let mut alike: Vec<Vec<&[usize]>> = vec![Vec::new(); representatives.len()];
     connectivity.chunks_exact(n).zip(&shapes).for_each(|(nodes, &shape)| alike[shape].push(nodes));
@@ -127,6 +129,7 @@ pub fn fit_sampled(
     let chosen: Vec<(usize, Vec<&[usize]>)> = representatives.into_iter().zip(alike).collect();
     for round in chosen.chunks(CHUNK * 4 * rayon::current_num_threads()) {
         let parts: Vec<Result<Vec<CellFit>>> = round.par_chunks(CHUNK).map(chunk).collect();
+        // Parts are in the order of the cells, so that the first faulty cell is told and the lists do not depend on threads.
         for part in parts {
             fitted.extend(part?);
         }
@@ -217,6 +220,7 @@ impl SampledCell<'_> {
             Force::Laws(_) if self.has_functions() && self.is_squared() => self.iterated()?,
             _ => self.direct()?,
         };
+        // A law that was taken for linear at a few values must be so at the optimum, where its derivatives were used.
         for s in 0..self.len() {
             let own = self.of_spring(s, &unknowns);
             self.law(s).map_or(Ok(()), |law| law.check_linear(self.rest(s), own))?;
@@ -249,6 +253,8 @@ impl SampledCell<'_> {
     }
 
     fn direct(&self) -> Result<(Vec<f64>, CellFit)> {
+        // The two unknowns are constants of springs at both ends of the range
+        // of rest measures: none below zero keeps the rest measure in between.
         let bounded = self.fit.nonnegative || self.fit.force == Force::FreeRest;
         let sums = self.sums(Part::Trained, &vec![0.0; self.count()])?;
         let squares = || if bounded { solve_nonnegative(&sums.normal) } else { sums.normal.solve() };
@@ -285,6 +291,7 @@ impl SampledCell<'_> {
     /// The equations of all shapes of the fit, for objectives that normal equations cannot express.
     fn all_equations(&self) -> Result<(Vec<f64>, Vec<f64>)> {
         let (shapes, count, seen) = (self.shapes(Part::Trained), self.count(), self.seen());
+        // Counts of a user may overflow a product, which then is above any limit.
         if shapes.saturating_mul(seen).saturating_mul(count) > MOST_NUMBERS {
             let expected = format!("at most {} shapes in this norm", MOST_NUMBERS / (seen * count));
             return Err(Error::expected("shapes", expected, shapes).of_kind(ErrorKind::Limit));

@@ -85,6 +85,7 @@ impl Descent<'_> {
             let tried = end.unknowns.iter().zip(&step).zip(self.bounds);
             let tried = tried.map(|((p, d), b)| (p + d).clamp(b[0], b[1])).collect();
             // A law may have no value far from the start.
+            // The linear parameters follow at each trial: the sum is a function of the others alone.
             let after = self.at(shapes, tried)?;
             let gain = (sums.square - after.sums.sums.square) / promise;
             // A gain of one is what the quadratic model promises. Near one the model is trusted more, and with hardly
@@ -145,6 +146,7 @@ impl Descent<'_> {
         let count = normal.size();
         let gram = |i: usize, j: usize| normal.gram[i * count + j];
         let hessian = |i: usize, j: usize| gram(i, j) - bends[i * count + j];
+        // The right-hand side is the direction in which the sum falls: an unknown at its bound that it pushes outward stays.
         let is_pushed = |i: usize| {
             let ([lower, upper], p, slope) = (self.bounds[i], end.unknowns[i], normal.rhs[i]);
             (p <= lower && slope <= 0.0) || (p >= upper && slope >= 0.0)
@@ -169,6 +171,7 @@ impl Descent<'_> {
         let damped = &s + DMatrix::from_diagonal(&DVector::from_fn(left.len(), |i, _| damping * diagonal(i)));
         let mut d = DVector::zeros(left.len());
         let mut free: Vec<usize> = (0..left.len()).collect();
+        // Each pass takes at least one unknown to its bound, so that there are no more passes than unknowns.
         while !free.is_empty() {
             let matrix = damped.select_rows(&free).select_columns(&free);
             let rest = &slope - &damped * d.map_with_location(|i, _, d: f64| if free.contains(&i) { 0.0 } else { d });
@@ -187,6 +190,7 @@ impl Descent<'_> {
         }
         let mut step = vec![0.0; count];
         left.iter().zip(d.iter()).for_each(|(&i, d)| step[i] = *d);
+        // The promise is that of the quadratic model without the damping, with which the fall is compared.
         Some((step, 2.0 * slope.dot(&d) - d.dot(&(&s * &d))))
     }
 }

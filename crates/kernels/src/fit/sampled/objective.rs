@@ -77,6 +77,7 @@ impl ResidualObjective {
             }
             Ok((value, slope))
         };
+        // The value without springs is the size to which decreases are relative: at the optimum it may be zero.
         let scale = self.ask(residuals.rhs, residuals.shape)?.0.abs();
         let found = minimize(value, squares, start, scale)?;
         found.ok_or_else(|| {
@@ -89,6 +90,7 @@ impl ResidualObjective {
     }
 
     fn ask(&self, residuals: &[f64], shape: [usize; 3]) -> Result<(f64, Vec<f64>)> {
+        // A function that leaves an entry unwritten is found out by the proof.
         let mut gradient = vec![f64::NAN; residuals.len()];
         let value = self.function.value(residuals, shape, &mut gradient)?;
         Ok((value, gradient))
@@ -104,6 +106,7 @@ impl ResidualObjective {
             let expected = format!("finite numbers from \"{}\"", self.name);
             return Err(Error::expected("norm", expected, found).of_kind(ErrorKind::Infeasible));
         }
+        // The random direction is as large as the forces: steps along both are then alike.
         let size = dot(b, b).sqrt() / (b.len().max(1) as f64).sqrt();
         let random: Vec<f64> = (0..b.len()).map(|i| size * (2.0 * unit_at(1, i as u64, 0) - 1.0)).collect();
         for direction in [b, &random] {
@@ -116,6 +119,7 @@ impl ResidualObjective {
             let difference = (above - below) / (2.0 * STEP);
             // Slopes that change a lot within the step, and values that hardly differ from rounding, prove nothing.
             let rough = (after - before).abs() + 1e-12 * value.abs() / STEP;
+            // The comparison is negated so that slopes that are not numbers prove nothing.
             if !((difference - along).abs() <= SAME * along.abs().max(difference.abs()) + rough) {
                 let found = format!("one with the slope {along:.6e} where differences have {difference:.6e}");
                 return Err(Error::expected("norm", format!("the gradient of the value of \"{}\"", self.name), found));

@@ -45,6 +45,7 @@ impl ShapeForces<'_, '_> {
         let mut all = vec![Placed::default(); numbers.len()];
         let mut limits = vec![FLAT; numbers.len()];
         let mut waiting: Vec<usize> = (0..numbers.len()).collect();
+        // All shapes of a round are asked of the energy at once: a call into Python costs more than the stresses of a shape.
         for halvings in 0..HALVINGS {
             let (mut f, mut left, mut asked) = (Vec::new(), Vec::new(), Vec::new());
             for &i in &waiting {
@@ -64,6 +65,7 @@ impl ShapeForces<'_, '_> {
             self.energy.stresses(self.state, &mut f)?;
             for (i, points, x) in asked {
                 let mut force = vec![0.0; x.len()];
+                // An energy may have no finite stress at a shape that is upright: less of the deformation is tried there too.
                 match self.geometry.forces_of(&f[points], self.state, &mut force) {
                     true => all[i] = Placed { x, force, share: places[i].share, is_reduced: halvings > 0 },
                     false => left.push(i),

@@ -61,6 +61,7 @@ pub fn minimize(
         let Some(step) = step(&curvature, &slopes, &at, quadratic.nonnegative) else {
             return Ok(Some(Found { unknowns: at, converged: false }));
         };
+        // `−slope − ½ bend` is what the quadratic model falls by along the whole step.
         let (slope, bend) = (dot(&slopes, &step), dot(&step, &product(&curvature, &step)));
         let promise = -slope - 0.5 * bend;
         // The first promise is that of the quadratic function alone, and says nothing of this one.
@@ -80,6 +81,7 @@ pub fn minimize(
             if !is_flat && promise > ROUNDING * scale.max(own.abs()) {
                 return Ok(Some(Found { unknowns: at, converged: false }));
             }
+            // A slope of zero is that of a maximum or of a saddle as well.
             let Some(lower) = lower_beside(&mut value, &at, own, scale, quadratic.nonnegative)? else {
                 return Ok(Some(Found { unknowns: at, converged: true }));
             };
@@ -92,6 +94,7 @@ pub fn minimize(
         // The first step shows how the function bends beside the quadratic one: their ratio scales all of B, before
         // single entries are updated.
         if !is_scaled {
+            // A function that bends down along the first step says nothing of its size: the curvature stays.
             let (met, expected) = (dot(&change, &moved), dot(&moved, &product(&curvature, &moved)));
             if met > 0.0 && expected > 0.0 {
                 curvature.iter_mut().for_each(|entry| *entry *= met / expected);
@@ -134,6 +137,7 @@ fn lower_beside(
 fn step(curvature: &[f64], slopes: &[f64], at: &[f64], nonnegative: bool) -> Option<Vec<f64>> {
     let known = product(curvature, at).iter().zip(slopes).map(|(image, slope)| image - slope).collect();
     let normal = Normal::new(curvature.to_vec(), known);
+    // The step is found as its end, because the bounds are those of the parameters and not of their changes.
     let (end, rank) = if nonnegative { solve_nonnegative(&normal) } else { normal.solve() };
     (rank != Rank::Unsolved).then(|| end.iter().zip(at).map(|(end, at)| end - at).collect())
 }
@@ -143,6 +147,7 @@ fn update(curvature: &mut [f64], moved: &[f64], change: &mut [f64]) {
     let count = moved.len();
     let image = product(curvature, moved);
     let (expected, met) = (dot(moved, &image), dot(moved, change));
+    // A step without curvature divides by zero below.
     if !(expected > 0.0) {
         return;
     }

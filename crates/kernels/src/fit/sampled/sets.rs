@@ -40,6 +40,7 @@ impl<'a> Sets<'a> {
         // The weight of a set is that of all its shapes together, and on average a shape has that of one set alone.
         let total: f64 = weights.iter().sum();
         let share = |(weight, shapes): (&f64, &Shapes)| weight / total * count as f64 / shapes.count().max(1) as f64;
+        // One set alone has the share one to the last bit, whatever its weight.
         let shares = if sets.len() == 1 { vec![1.0] } else { weights.iter().zip(&sets).map(share).collect() };
         Sets { sets, shares, count }
     }

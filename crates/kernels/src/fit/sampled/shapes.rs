@@ -42,6 +42,7 @@ impl<'a> Shapes<'a> {
         let seed = sampling.seed_of(part);
         let families = if let Source::Families(families) = &sampling.source { families.len() } else { 1 };
         let most = if is_divided && part == Part::HeldOut { sampling.held_out } else { sampling.shapes };
+        // A sequence that is laid out for more shapes has the same first ones: shorter fits see the beginning of longer ones.
         let laid = sampling.laid.unwrap_or(most).max(most);
         let sequence = Sequence::new(sampling.design, seed, families, laid);
         let mut own = Shapes { sampling, drawing, part, is_divided, sequence, count: 0 };
@@ -111,6 +112,7 @@ impl<'a> Shapes<'a> {
     /// The state of shape i, and the cell that has it.
     fn state(&self, states: usize, i: usize) -> (usize, usize) {
         let count = states * self.drawing.cells.len();
+        // Consecutive shapes fall on different cells and states.
         let place = self.chosen(i) * STRIDE % count;
         (place % states, place / states)
     }

@@ -34,6 +34,7 @@ pub fn scales(cell: &SampledCell, unknowns: &[f64]) -> Vec<f64> {
 
 /// The largest difference of two parameters, relative to their scales.
 pub fn distance(unknowns: &[f64], best: &[f64], scales: &[f64]) -> f64 {
+    // Equal parameters have the distance zero, also where their scale is zero.
     let one = |((p, b), scale): ((&f64, &f64), &f64)| if p == b { 0.0 } else { (p - b).abs() / scale.max(p.abs()) };
     unknowns.iter().zip(best).zip(scales).map(one).fold(0.0, f64::max)
 }

@@ -41,10 +41,12 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let v = svd.v_t.expect("it was asked for");
     let largest = svd.singular_values.max();
     let rank = svd.singular_values.iter().filter(|s| **s > FREE * largest).count();
+    // No direction leaves all active eigenvectors as they are: the optimum is unique.
     if rank == kappa.len() {
         return false;
     }
     // The right singular vectors beyond the rank, including those that a thin decomposition omits.
+    // nalgebra's thin decomposition has no vectors beyond the smaller dimension.
     let range = v.rows(0, rank).transpose();
     let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
     let free = projection.symmetric_eigen();
@@ -71,6 +73,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     for length in [1.0, 0.99, 0.9, 0.5] {
         let moved: Vec<f64> = kappa.iter().zip(step.iter()).map(|(k, d)| k + length * d).collect();
         let value = problem.error(&moved).symmetric_eigenvalues().amax() + problem.rounding(&moved);
+        // The value is computed anew with its rounding: the directions alone prove nothing.
         if value <= t * (1.0 + KEPT) {
             *optimum = Optimum { kappa: moved, value: t.max(value), ..*optimum };
             return true;
@@ -103,6 +106,7 @@ fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVec
     for weight in WEIGHTS {
         for _ in 0..STEPS {
             let e = at(&w);
+            // Rounding at the border may leave e outside, where the barrier has no value: the last point is kept.
             let Some((above, below)) = sides(&e) else { return w };
             let (a, b) = (above.inverse(), below.inverse());
             let images: Vec<_> = changes.iter().map(|d| (&a * d, &b * d)).collect();

@@ -45,6 +45,7 @@ impl<T: Real> Spectral<T> {
         let definite = definite.least(&factorize(&mut self.b.matrix, p, 0.0, &mut self.b.pivots));
         // y = N⁻¹ r, r_I = Σ hᵀ Z h; only what exceeds zero where κ ≥ 0
         let y = &mut self.newton[..c];
+        // The Newton step has been used up above, and its room serves as y.
         for entry in y.iter_mut() {
             *entry = zero.clone();
         }
@@ -55,6 +56,7 @@ impl<T: Real> Spectral<T> {
         }
         if self.nonnegative {
             for entry in y.iter_mut() {
+                // With κ ≥ 0 a product below zero only strengthens the inequality: the bound needs no correction for it.
                 *entry = entry.greatest(&zero);
             }
         }
@@ -68,6 +70,7 @@ impl<T: Real> Spectral<T> {
             value = value.minus_product(y, &inner(h, &self.a.images[row]));
             size = size.plus_product(&y.magnitude(), &inner(h, h));
         }
+        // The bound zero always holds: a pair that is not positive proves nothing more.
         definite.choose(&(value / &size).greatest(&zero), &zero)
     }
 }

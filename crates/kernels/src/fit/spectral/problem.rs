@@ -37,6 +37,7 @@ pub struct Spectrum {
 impl Spectrum {
     fn new(p: usize, value: impl Fn(usize) -> f64, entry: impl Fn(usize, usize) -> f64) -> Spectrum {
         let mut order: Vec<usize> = (0..p).collect();
+        // Active eigenvalues are at both ends of the order, where they are ranges.
         order.sort_by(|&i, &j| value(j).total_cmp(&value(i)));
         let values = DVector::from_fn(p, |i, _| value(order[i]));
         Spectrum { values, vectors: DMatrix::from_fn(p, p, |k, i| entry(order[i], k)) }
@@ -78,6 +79,7 @@ impl<'a> Problem<'a> {
             nonnegative: solver.nonnegative,
             gram: all(&solver.gram[..c * c]),
             pivots: all(&solver.gram_pivots),
+            // Of the two causes the worse one decides.
             rounding: ROUNDINGS * f64::EPSILON / quality.min(lane(&reduced.softest)),
         }
     }
@@ -150,6 +152,7 @@ impl<'a> Problem<'a> {
             value -= moved[unknown] * form(&self.r, &h);
             size += moved[unknown].abs() * h.norm_squared();
         }
+        // What rounding of R̂ may have added is taken off: the bound must not be above what is proved.
         (value / size - self.rounding * self.r.trace()).max(0.0)
     }
 }

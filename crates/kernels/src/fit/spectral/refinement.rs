@@ -32,6 +32,7 @@ const WIDTHS: [f64; 5] = [1.0, 1e1, 1e-1, 1e2, 1e-2];
 /// Improves κ, value and bound as far as rounding allows, or leaves them unchanged; each is verified independently. An
 /// optimum of less than `EXACT` is not refined.
 pub fn refine(problem: &Problem, optimum: &mut Optimum) {
+    // An optimum of zero has no eigenvalues at ±t apart from rounding; the negation takes what is not a number along.
     if !(optimum.value > EXACT) {
         return;
     }
@@ -59,6 +60,7 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
         let Some((step, t)) = active.step(problem) else { break };
         let size = step.amax();
         // Half of the last step if the steps only oscillate by rounding.
+        // Quadratic convergence more than halves each step: one that does not is the noise of rounding, or a wrong set.
         if !(size < 0.5 * last) {
             break;
         }
@@ -75,6 +77,7 @@ fn converge(problem: &Problem, mut active: Active, mut kappa: Vec<f64>, optimum:
         // Not by the decrease of the value: at a flat optimum κ can still gain digits when t cannot.
         if is_inside && value <= optimum.value + rounding {
             let bound = problem.bound(&active.x, &active.y);
+            // A bound once proved stays proved, whatever later points prove.
             *optimum = Optimum { kappa: kappa.clone(), value, bound: optimum.bound.max(bound) };
             // Value and bound carry a rounding each, and the value that is foreseen has one added.
             if is_near && value - bound < CLOSED * value + 3.0 * rounding {
@@ -117,6 +120,7 @@ impl Active {
         if !(values.amax() < t) {
             return None;
         }
+        // Scaled so that the traces of both add up to one, as those of a dual pair do.
         let mu = 1.0 / values.iter().map(|e| 1.0 / (t - e) + 1.0 / (t + e)).sum::<f64>();
         let near = |distance: f64| distance * distance < width * width * mu * t;
         active.above = values.iter().filter(|e| near(t - **e)).count();
@@ -172,6 +176,7 @@ impl Active {
             let mut row = f + 1;
             for side in &mut sides {
                 for &(a, b) in &side.pairs {
+                    // The equations weight entries beside the diagonal by √2, so that the norm of a pair is that of its matrix.
                     side.multipliers[(a, b)] += solution[row] / weight(a, b);
                     side.multipliers[(b, a)] = side.multipliers[(a, b)];
                     row += 1;
@@ -286,6 +291,7 @@ fn combination(q: &DMatrix<f64>, u: &DMatrix<f64>) -> DMatrix<f64> {
 
 /// Removes the negative part of a symmetric matrix.
 fn make_positive(a: &mut DMatrix<f64>) {
+    // A factor is cheap and mostly exists, so that eigenvalues are computed only where it does not.
     if a.is_empty() || Cholesky::new(a.clone()).is_some() {
         return;
     }
@@ -295,6 +301,7 @@ fn make_positive(a: &mut DMatrix<f64>) {
 
 /// The solution, of least norm if there are several; None if a distance of eigenvalues was zero.
 fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
+    // An eigenvalue beside the active ones at ±t has an infinite reciprocal distance.
     if !system.iter().all(|entry| entry.is_finite()) {
         return None;
     }

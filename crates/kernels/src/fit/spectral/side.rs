@@ -37,6 +37,7 @@ impl<T: Real> ShiftedMatrix<T> {
             }
             self.matrix[i * p + i] = self.matrix[i * p + i].clone() + t;
         }
+        // No floor: a pivot that is not positive must show that t is too small.
         factorize(&mut self.matrix, p, 0.0, &mut self.pivots)
     }
 

@@ -25,10 +25,12 @@ pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Op
         bounded.iter().for_each(|&j| optimum.unknowns[j] = optimum.unknowns[j].max(0.0));
         optimum
     };
+    // Most cells keep the bounds by themselves, and the conic solver takes many times as long as the equations.
     if below(&free.unknowns).is_empty() {
         return (clamped(free), true);
     }
     let near = interior_point(problem, bounded);
+    // Without a conic solution the signs of the free optimum are the best guess; the result then counts as not reached.
     let mut zero = near.as_ref().map_or_else(|| below(&free.unknowns), |(_, zero)| zero.clone());
     loop {
         let set: Vec<usize> = all.iter().copied().filter(|j| !zero.contains(j)).collect();
@@ -40,6 +42,7 @@ pub fn solve_bounded(problem: &Problem, bounded: &[usize], free: Optimum) -> (Op
             let reached = near.is_some_and(|(u, _)| problem.square(&optimum.unknowns) <= problem.square(&u) + most);
             return (optimum, reached);
         }
+        // The set of zeros only grows: there are no more rounds than unknowns.
         zero.extend(wrong);
     }
 }
@@ -59,6 +62,7 @@ fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>,
     };
     let optimum = Programme {
         quadratic: dense(&seen.tr_mul(&seen).upper_triangle()),
+        // The solver's tolerances are for numbers of the size of one.
         linear: seen.tr_mul(&problem.b).iter().map(|b| -b / size).collect(),
         constraints: dense(&-basis.select_rows(bounded)),
         limits: vec![0.0; bounded.len()],
@@ -67,6 +71,7 @@ fn interior_point(problem: &Problem, bounded: &[usize]) -> Option<(DVector<f64>,
     .optimum()?;
     let w = size * DVector::from_column_slice(&optimum.variables[..n]);
     let pairs = optimum.multipliers.iter().zip(&optimum.slacks);
+    // At the optimum one of multiplier and slack is zero: the larger one tells which.
     let zero = bounded.iter().zip(pairs).filter(|(_, (z, s))| z > s).map(|(&j, _)| j).collect();
     Some((basis * w, zero))
 }

@@ -72,6 +72,7 @@ impl<'a> Cells<'a> {
             measures: springs.iter().map(|s| s.measure).collect(),
         };
         let basis = deformations(x, geometry.dimension);
+        // All that follows is dimensionless: limits hold for any unit and size.
         let r = r / sizes.stiffness;
         let view = View::of(self.weight, x, geometry.dimension, &r, &basis);
         let view = view.ok_or("its stiffness is not positive definite")?;
@@ -80,6 +81,7 @@ impl<'a> Cells<'a> {
 
         let every: Vec<usize> = (0..unknowns.len()).collect();
         let free = problem.solve(&every);
+        // Springs of rest length zero alone, for example, always pull and have no balance.
         if free.freedom == 0 {
             let problem = "only springs without force are in equilibrium with these rest measures";
             return Err(format!("{problem}: expected more springs, such as one on the content"));
@@ -160,6 +162,7 @@ fn equations(
             c.column_mut(j).axpy(pull, &forces[s], 1.0);
         }
         let norm = a.column(j).norm();
+        // An unknown without effect has a column of zeros, which stays unscaled and is found dependent.
         if norm > 0.0 {
             scales[j] = 1.0 / norm;
         }

@@ -12,6 +12,7 @@ const DEPENDENT: f64 = 5e-7;
 /// Orthonormal columns that span the `u` with `C u = 0`: the last columns of Q in `Cᵀ P = Q R`, where R has no rows.
 pub fn null_space(c: &DMatrix<f64>) -> DMatrix<f64> {
     let (p, n) = c.shape();
+    // A matrix without columns has no decomposition.
     if n == 0 {
         return DMatrix::zeros(0, 0);
     }
@@ -31,6 +32,7 @@ pub fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
 /// The `u` of least `‖b − A u‖`, of least norm if there are several; and whether there are.
 pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) {
     let n = a.ncols();
+    // Without equations every unknown is free: zero is the one of least norm.
     if n == 0 || a.nrows() == 0 {
         return (DVector::zeros(n), n > 0);
     }
@@ -57,6 +59,7 @@ pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) 
 }
 
 /// The number of pivots before the first that counts as zero.
+// Pivoting orders the pivots by size, so that the first small one ends the rank.
 fn rank(r: &DMatrix<f64>, least: f64) -> usize {
     let pivots = || (0..r.nrows().min(r.ncols())).map(|i| r[(i, i)].abs());
     let first = pivots().next().unwrap_or(0.0);

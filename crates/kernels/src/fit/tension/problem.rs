@@ -26,6 +26,7 @@ impl Problem {
     pub fn basis(&self, set: &[usize]) -> DMatrix<f64> {
         let n = self.a.ncols();
         let size = |j: usize| self.c.column(j).norm();
+        // Unknowns without a force are in balance by themselves. Their zero columns would spoil the pivots of the others.
         let (pulling, free): (Vec<usize>, Vec<usize>) = set.iter().partition(|&&j| size(j) > 0.0);
         // In terms of the forces f_j = ‖C_j‖ u_j, so that the remainder of the null space is relative to the largest
         // force.
@@ -33,6 +34,7 @@ impl Problem {
         forces.column_iter_mut().for_each(|mut column| column /= column.norm());
         let mut balanced = null_space(&forces);
         balanced.row_iter_mut().zip(&pulling).for_each(|(mut row, &j)| row /= size(j));
+        // Dividing the rows has made the columns oblique.
         let balanced = orthonormal(balanced);
         let mut basis = DMatrix::zeros(n, free.len() + balanced.ncols());
         free.iter().enumerate().for_each(|(column, &j)| basis[(j, column)] = 1.0);

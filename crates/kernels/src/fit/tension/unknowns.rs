@@ -36,6 +36,7 @@ pub fn unknowns(springs: &Springs, rest: Rest, tied: bool, sizes: &Sizes) -> Vec
     let members: Vec<Vec<usize>> = match tied {
         true => {
             let of_group = |group| (0..springs.len()).filter(|&s| springs.groups[s] == group).collect();
+            // A group that this element has no springs of has no unknown.
             (0..springs.names.len()).map(of_group).filter(|group: &Vec<usize>| !group.is_empty()).collect()
         }
         false => (0..springs.len()).map(|s| vec![s]).collect(),
@@ -48,6 +49,7 @@ fn of_members(members: &[usize], on_lengths: bool, rest: Rest, sizes: &Sizes) ->
     let Sizes { stiffness, extent, gradients, measures } = sizes;
     let mean = |values: &[f64]| {
         let own: Vec<f64> = members.iter().map(|&s| values[s]).collect();
+        // The root mean square is positive where a single gradient is.
         norm(&own) / (own.len() as f64).sqrt()
     };
     let (g, c) = (mean(gradients), mean(measures));

@@ -28,6 +28,7 @@ impl View {
             Weight::None => View::Motions(plain()),
             // W = h + (1 − h) C Cᵀ, with C an orthonormal basis of the linear motions.
             Weight::Modal(higher) => {
+                // Translations are among these motions; the deformations that are seen have none of them.
                 let linear = linear_motions(x, dimension).qr().q();
                 let h = higher.value();
                 let seen = deformations.tr_mul(&linear) * linear.transpose();
@@ -45,6 +46,7 @@ impl View {
     pub fn rows(&self) -> usize {
         match self {
             View::Motions(p) => p.nrows() * (p.nrows() + 1) / 2,
+            // Half of the entries outside the blocks of the diagonal.
             View::Blocks { dimension, size } => size * (size - dimension) / 2,
         }
     }
@@ -123,6 +125,7 @@ pub fn deformations(x: &[f64], dimension: usize) -> DMatrix<f64> {
 fn linear_motions(x: &[f64], dimension: usize) -> DMatrix<f64> {
     let (d, n) = (dimension, x.len() / dimension);
     let mean: Vec<f64> = (0..d).map(|l| x.chunks_exact(d).map(|x| x[l]).sum::<f64>() / n as f64).collect();
+    // Positions in units of the spread make motions and translations of about one size, whatever the unit of lengths is.
     let spread = x.iter().enumerate().map(|(i, x)| (x - mean[i % d]).powi(2)).sum::<f64>().sqrt();
     DMatrix::from_fn(n * d, d * (d + 1), |row, column| {
         let (a, k, l) = (row / d, column / d, column % d);

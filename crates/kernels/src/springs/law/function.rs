@@ -89,11 +89,13 @@ impl Function {
         let mut own = Function { function, outer: Vec::new() };
         let mut outer = vec![false; parameters];
         for i in 0..parameters {
+            // Being linear in each of two parameters is not enough: in a product they must not be eliminated together.
             let others: Vec<usize> = (0..i).filter(|&j| outer[j]).collect();
             outer[i] = own.is_straight(i, parameters) && others.into_iter().all(|j| own.is_apart(i, j, parameters));
         }
         // Without its outer parameters the force vanishes.
         let inner: Vec<f64> = outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
+        // A force that is left without the outer parameters would be lost in a sum over them.
         if own.tried(&inner).iter().any(|t| *t != 0.0) {
             outer.fill(false);
         }
@@ -113,6 +115,7 @@ impl Function {
 
     /// T at each measure.
     pub fn forces(&self, c: &[f64], rest: f64, parameters: &[f64]) -> Vec<f64> {
+        // What a function leaves unwritten is not finite and is refused.
         let mut forces = vec![f64::NAN; c.len()];
         self.function.forces(c, rest, parameters, &mut forces);
         forces
@@ -251,6 +254,7 @@ struct Plan<'p, 'a> {
 
 impl Plan<'_, '_> {
     fn ask(&mut self, parameters: Vec<f64>) -> usize {
+        // Differences share many of their points, above all the middle.
         let own = &self.asked[self.first..];
         if let Some(known) = own.iter().position(|one| one.parameters == parameters) {
             return self.first + known;
@@ -288,6 +292,7 @@ impl Plan<'_, '_> {
     fn second(&mut self, parameters: &[f64], [i, j]: [usize; 2]) -> Combination {
         let outer = &self.function.outer;
         match [outer[i], outer[j]] {
+            // A force that is linear in two parameters whose effects add up has no mixed derivative.
             [true, true] => Combination { terms: Vec::new(), divisor: 1.0 },
             [true, false] => self.first(&self.function.unit(parameters, i), j),
             [false, true] => self.first(&self.function.unit(parameters, j), i),
@@ -298,6 +303,7 @@ impl Plan<'_, '_> {
                 Combination { terms, divisor: 12.0 * h * h }
             }
             [false, false] => {
+                // A difference of the second order suffices: this derivative only steers the search.
                 let h = step(parameters[j]);
                 let above = self.first(&moved(parameters, j, h), i);
                 let below = self.first(&moved(parameters, j, -h), i);
@@ -322,6 +328,7 @@ fn balanced([a, b, c, d]: [&[f64]; 4]) -> bool {
 
 /// The step of a difference in the measure.
 fn measure_step(c: f64, rest: f64) -> f64 {
+    // A measure at rest of zero has no size that a step could be relative to.
     STEP * if rest == 0.0 { c.abs() } else { rest.abs() }
 }
 

@@ -32,6 +32,7 @@ pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result
         raw.starts.push(at.start);
         // The sum makes no difference between the zeros of both signs.
         let (first, earlier) =
+            // Places of a table are compared by their bits: rows that differ in the last digit are two places.
             *known.entry(raw.places[index].map(|x| (x + 0.0).to_bits())).or_insert((index, at.start));
         let of = |place: usize| &raw.values[place * components..(place + 1) * components];
         match of(first) == of(index) {

@@ -39,6 +39,7 @@ impl Locator {
                     let start = self.bins.partition_point(|(bin, _)| *bin < [i, j, k]);
                     for &(_, point) in self.bins[start..].iter().take_while(|(bin, _)| *bin == [i, j, k]) {
                         let away = distance(&self.points[point], &x);
+                        // A nearer point replaces all that were equally near before.
                         if away < nearest {
                             found.clear();
                         }

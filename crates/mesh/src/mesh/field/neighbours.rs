@@ -24,6 +24,7 @@ impl Neighbours {
         let extents: Vec<f64> = (0..3).map(|k| high[k] - low[k]).filter(|extent| *extent > 0.0).collect();
         let volume: f64 = extents.iter().product();
         let side = match extents.len() {
+            // All points are at one place, for which bins of any width serve.
             0 => 1.0,
             d => (volume * CROWD / points.len() as f64).powf(1.0 / d as f64),
         };
@@ -75,11 +76,13 @@ impl Neighbours {
         for shell in 0.. {
             self.each_bin(middle, shell, |point| found.push((point, distance(&self.points[point], x))));
             // Points of later shells are at least this far from the position.
+            // Bins that were not visited are at least so far from the nearest place in the box, which is `away` from the position.
             let reach = shell as f64 * self.side - away;
             if found.len() == self.points.len() || found.iter().filter(|(_, d)| *d <= reach).count() >= count {
                 break;
             }
         }
+        // Equally near points are in the order of their numbers: means over neighbours are the same in each run.
         found.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         found.truncate(count);
         found

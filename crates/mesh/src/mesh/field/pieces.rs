@@ -44,6 +44,7 @@ fn arrays(piece: &Piece, holder: Holder) -> &[DataArray] {
 fn middles(piece: &Piece) -> Result<Vec<[f64; 3]>> {
     let mut start = 0;
     let middle = |(cell, end): (usize, &u64)| {
+        // An end beyond the machine's numbers is one that the list of nodes does not have.
         let end = usize::try_from(*end).unwrap_or(usize::MAX);
         let nodes = piece.connectivity.get(start..end).filter(|nodes| !nodes.is_empty());
         start = end;

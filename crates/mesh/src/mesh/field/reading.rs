@@ -37,6 +37,7 @@ impl Reading<'_> {
     /// A length of the file in m; `None` if it is not measured.
     pub fn length(&self, value: f64) -> Result<Option<f64>> {
         let length = value * self.scale;
+        // Infinite lengths are refused here too; NaN compares as false and means not measured.
         if length.abs() > range::LARGEST {
             let found = format!("found {value:?} times the scale {:?}", self.scale);
             return Err(Error::new(format!("expected a length of at most {:e} m, {found}", range::LARGEST)));

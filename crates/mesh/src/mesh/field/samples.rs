@@ -142,6 +142,7 @@ impl Samples {
                 None => error.followed_by(format!("; missing = {:?} leaves out places without a value", values[at])),
                 Some(_) => error,
             };
+            // A mark of the order of bytes is no part of the text in which rows were counted.
             let line = starts.get(place).map(|start| line_from(text.strip_prefix('\u{feff}').unwrap_or(text), *start));
             return Err(line.into_iter().fold(error, Error::on_line));
         }
@@ -214,12 +215,14 @@ impl Samples {
         let (low, high) = near.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (place, _)| {
             (low.min(value(*place)), high.max(value(*place)))
         });
+        // Equal numbers stay what they are to the last bit: a body of one material gets one constant for all cells.
         if low == high {
             return low;
         }
         let d = x.len();
         let row = |i: usize, k: usize| {
             let (place, distance) = near[i];
+            // Relative to the nearest place: weights are at most one, in any unit.
             let weight = least / distance;
             weight * if k == 0 { 1.0 } else { (self.neighbours.point(place)[k - 1] - x[k - 1]) / farthest }
         };
@@ -227,6 +230,7 @@ impl Samples {
         let b = DVector::from_fn(near.len(), |i, _| least / near[i].1 * value(near[i].0));
         // Places in a line or a plane leave slopes across it open: the least ones are taken.
         let found = a.svd(true, true).solve(&b, 1e-9);
+        // A plane beyond its places goes on without end; within their range a modulus stays possible.
         found.map_or(value(first), |plane| plane[0]).clamp(low, high)
     }
 }

@@ -92,6 +92,7 @@ impl Scattered {
     fn known(self, dimension: usize) -> Scattered {
         let rows = self.places.chunks_exact(dimension).zip(self.displacements.chunks_exact(dimension));
         let mut known = Scattered::default();
+        // A place without any direction would be searched for in the mesh to no end.
         for (place, moved) in rows.filter(|(_, moved)| moved.iter().any(Option::is_some)) {
             known.places.extend(place);
             known.displacements.extend(moved);

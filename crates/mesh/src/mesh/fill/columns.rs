@@ -31,6 +31,7 @@ const MOST_ENTRIES: usize = 50_000_000;
 impl<'a> Columns<'a> {
     pub fn of(surface: &'a Surface) -> Columns<'a> {
         let extent = [0, 1].map(|k| surface.high[k] - surface.low[k]);
+        // About as many bins as triangles, of which each then has a few.
         let mut side = (surface.triangles.len() as f64).sqrt().clamp(1.0, 2000.0);
         loop {
             let counts = [side as usize; 2];
@@ -53,6 +54,7 @@ impl<'a> Columns<'a> {
             let low = [0, 1].map(|k| self.bin(k, end(k, f64::min)));
             let high = [0, 1].map(|k| self.bin(k, end(k, f64::max)));
             entries += (high[0] - low[0] + 1) * (high[1] - low[1] + 1);
+            // Large triangles are in many bins: with wider bins there are fewer entries. One bin for all always serves.
             if entries > MOST_ENTRIES {
                 return self.counts == [1, 1];
             }
@@ -85,6 +87,7 @@ impl<'a> Columns<'a> {
     fn crossings(&self, x: f64, y: f64, found: &mut Vec<Crossing>) {
         found.clear();
         let at = [x, y];
+        // Bins at the border would take places outside of the box for their own.
         if (0..2).any(|k| at[k] < self.surface.low[k] || at[k] > self.surface.high[k]) {
             return;
         }
@@ -143,6 +146,7 @@ impl<'a> Columns<'a> {
             let volume = orient3d(a, b, c, Coord3D { x, y, z: z + k as f64 * step });
             volume * f64::from(crossing.sign) > 0.0
         };
+        // The guess is rounded and may be off by a few steps; exact signs correct it.
         let guess = ((crossing.height - z) / step).clamp(0.0, count as f64);
         let mut k = guess as usize;
         while k < count && is_below(k) {
@@ -159,6 +163,7 @@ impl<'a> Columns<'a> {
 fn side(a: [f64; 3], b: [f64; 3], x: f64, y: f64) -> i32 {
     let value = orient2d(Coord { x: a[0], y: a[1] }, Coord { x: b[0], y: b[1] }, Coord { x, y });
     // The derivatives of the determinant along ε and ε².
+    // The sign of the first that is not zero is that of the point moved by `(ε, ε²)`, however small ε is.
     let order = [value, a[1] - b[1], b[0] - a[0]];
     order.into_iter().find(|value| *value != 0.0).map_or(0, |value| if value > 0.0 { 1 } else { -1 })
 }

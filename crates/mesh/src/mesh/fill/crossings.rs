@@ -57,10 +57,12 @@ pub(super) fn each_crossing(surface: &Surface, columns: &Columns, mut visit: imp
     'squares: for (square, triangles) in columns.squares() {
         boxes.clear();
         boxes.extend(triangles.iter().map(|&index| (index, ends(surface, index))));
+        // Sorted by their lower ends, boxes that begin above the end of one need not be compared with it.
         boxes.sort_unstable_by(|(i, a), (j, b)| a[0][2].total_cmp(&b[0][2]).then(i.cmp(j)));
         for (n, (i, a)) in boxes.iter().enumerate() {
             for (j, b) in boxes[n + 1..].iter().take_while(|(_, b)| b[0][2] <= a[1][2]) {
                 compared += 1;
+                // What has been found is told as a least number: the search is for a message and must end.
                 if compared > MOST_PAIRS {
                     break 'squares;
                 }
@@ -92,6 +94,7 @@ fn crossing(surface: &Surface, i: u32, j: u32) -> Option<([f64; 3], bool)> {
     for (of, through) in [(a, b), (b, a)] {
         for k in 0..3 {
             let edge = [of[k], of[(k + 1) % 3]];
+            // Neighbours meet in what they share, which is no crossing.
             if edge.iter().any(|p| through.contains(p)) {
                 continue;
             }
@@ -111,6 +114,7 @@ fn passing([p, q]: [[f64; 3]; 2], [a, b, c]: [[f64; 3]; 3]) -> Option<([f64; 3],
         let [a, b, c, d] = x.map(|[x, y, z]| Coord3D { x, y, z });
         orient3d(a, b, c, d)
     };
+    // Signs are exact: an edge that ends in the plane of a triangle touches it.
     let (from, to) = (volume([a, b, c, p]), volume([a, b, c, q]));
     if !(from < 0.0 && to > 0.0 || from > 0.0 && to < 0.0) {
         return None;

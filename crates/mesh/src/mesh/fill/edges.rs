@@ -19,6 +19,7 @@ pub(super) fn passes(triangles: &[[usize; 3]]) -> Vec<Pass> {
             passes.push(Pass { edge: [a.min(b), a.max(b)], triangle: triangle as u32, is_up: a < b });
         }
     }
+    // The key has no equal ones but for triangles that pass an edge twice: the order is the same in each run.
     passes.sort_unstable_by_key(|pass| (pass.edge, pass.triangle));
     passes
 }

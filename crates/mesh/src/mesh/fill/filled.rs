@@ -93,6 +93,7 @@ impl Filled {
     /// or more, or half of it or less.
     pub(super) fn another_body(&self) -> Option<(f64, String)> {
         self.excess().filter(|excess| !(-50.0..=100.0).contains(excess))?;
+        // A plate has the volume of its area times its thickness, and two sides: the quotient is half of the thickness.
         let most = self.surface_volume / self.surface_area;
         Some((most, format!("{:.3e} m³ of {:.3e} m³", self.volume, self.surface_volume)))
     }

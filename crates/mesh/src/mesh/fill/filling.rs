@@ -91,10 +91,12 @@ impl FillMesh {
         })?;
         let (mut mesh, mut filled) = self.lay(edge, &surface, &columns, &patterns)?;
         (filled.scale, filled.repair) = (scale, repair);
+        // A crossing near a faulty place is most likely its cause, and is the one that is told.
         let faulty = filled.overlaps.or(filled.inverted).map(|(_, place)| place);
         filled.crossings = crossings(source, &surface, &columns, faulty, faulty.is_some());
         self.layers.check(&filled)?;
         filled.cells = mesh.cell_count();
+        // Too coarse a lattice has no cell inside; an empty mesh would fail later with no hint at that.
         if filled.cells == 0 {
             let needs = match self.boundary {
                 FillBoundary::Stepped => "cells whose centres are inside the surface",
@@ -141,6 +143,7 @@ impl FillMesh {
             branched: surface.branched,
             ..Filled::default()
         };
+        // Without the forecast an edge in the wrong unit would fill the memory before it is refused.
         forecast(edge, surface, patterns.len())?;
         let grid = Grid::around(surface, edge);
         let mesh = match self.boundary {
@@ -163,6 +166,7 @@ impl FillMesh {
     /// The mesh of the cells, without those that hang on others by an edge or a corner alone.
     fn stepped(&self, grid: &Grid, patterns: &[Pattern], cells: &[([i32; 3], u8)], filled: &mut Filled) -> Mesh {
         let corner = |cube: &[i32; 3], c: &[i32; 3]| -> [i32; 3] { std::array::from_fn(|k| 2 * cube[k] + c[k]) };
+        // Corners are compared as whole numbers, without any rounding.
         let mut known: HashMap<[i32; 3], usize> = HashMap::new();
         let mut corners: Vec<Vec<usize>> = Vec::with_capacity(cells.len());
         for (cube, pattern) in cells {
@@ -224,6 +228,8 @@ fn forecast(edge: f64, surface: &Surface, of_cube: usize) -> Result<()> {
     if cells <= 1.2 * MOST_CELLS as f64 && cubes <= MOST_CUBES {
         return Ok(());
     }
+    // The advice is rounded up to two digits, and a fiftieth more than fits
+    // exactly, because the volume tells the number of cells only about.
     let fits = edge * (cells / MOST_CELLS as f64).max(cubes / MOST_CUBES).cbrt() * 1.02;
     let digit = 10f64.powf(fits.log10().floor() - 1.0);
     let fits = (fits / digit).ceil() * digit;
@@ -269,6 +275,7 @@ fn inside(columns: &Columns, grid: &Grid, patterns: &[Pattern], filled: &mut Fil
                     }
                     filled.note(*winding, || centre(k));
                 }
+                // The forecast is by the volume alone; the count of what is inside is the one that binds.
                 if cells.len() > MOST_CELLS {
                     return Err(too_many());
                 }

@@ -8,6 +8,7 @@ const DIGITS: usize = 4;
 
 /// A place in m as words in the unit of the file, with `scale` metres per unit: `(-58.25, 1.2, 0.1234) mm`.
 pub(super) fn place(at: [f64; 3], scale: f64) -> String {
+    // Zero is added so that −0 is printed as 0.
     let [x, y, z] = at.map(|x| rounded(x / scale + 0.0, DIGITS));
     format!("({x}, {y}, {z}) {}", unit(scale))
 }

@@ -58,6 +58,7 @@ pub(super) fn smooth(
     filled.loose = keep.iter().filter(|keep| !**keep).count();
     let cells: Vec<Vec<usize>> = cells.into_iter().zip(keep).filter(|(_, keep)| *keep).map(|(cell, _)| cell).collect();
     let corners = |cell: &Vec<usize>| -> [[f64; 3]; 4] { std::array::from_fn(|a| places[cell[a]]) };
+    // The corners of cut cells are in any order, which the mesh turns alike only later.
     filled.volume = cells.iter().map(|cell| volume(&corners(cell)).abs()).sum();
     filled.angles = cells.iter().flat_map(|cell| dihedral_angles(&corners(cell))).fold(None, |ends, angle| {
         let [least, largest] = ends.unwrap_or([angle; 2]);
@@ -97,6 +98,7 @@ fn sites_inside(grid: &Grid, columns: &Columns, filled: &mut Filled) -> Result<H
     let mut inside = HashSet::new();
     let mut crossings: Vec<Crossing> = Vec::new();
     let mut windings = Vec::new();
+    // The lattice is two lattices of cubes, of corners and of centres.
     for of_centres in [0, 1] {
         for i in grid.along(0) {
             for j in grid.along(1) {

@@ -56,10 +56,12 @@ impl<'a> Snapping<'a> {
                 let (near, length) = if is_long(*edge) { (NEAR_LONG, 2.0) } else { (NEAR_SHORT, 3f64.sqrt()) };
                 (share < near).then_some((share * length, *edge))
             };
+            // Lengths are compared and not shares, because the edges of a site have two lengths.
             let Some((_, nearest)) = edges.iter().filter_map(from_site).min_by(|a, b| a.0.total_cmp(&b.0)) else {
                 continue;
             };
             moved.insert(site, between(grid, nearest, cuts[&nearest]));
+            // The site is on the surface now, so that none of its edges crosses it.
             for edge in edges {
                 cuts.remove(&edge);
             }
@@ -91,6 +93,7 @@ impl<'a> Snapping<'a> {
         let mut cubes = BTreeSet::new();
         for site in self.inside.iter().filter(|site| self.side(**site) == Side::Inside) {
             // A tetrahedron reaches from its cube into the next along one axis.
+            // Sites below zero need rounding down: division alone rounds them towards zero.
             let [x, y, z] = site.map(|s| s.div_euclid(2));
             for i in 0..8 {
                 let back = |k: i32| i >> k & 1;

@@ -102,8 +102,11 @@ impl Mesh {
             chosen.cells = chosen.cells.take().map(divided);
         }
         fine.drop_unused_points();
+        // The count that is told is that of the file, not of the nodes that no part took over.
         fine.unused_points = self.unused_points;
+        // The parts of a curved cell can be reversed where the cell itself is not at the points of its own rule.
         fine.orient(false).map_err(|e| e.followed_by(" after the cells were divided"))?;
+        // The cells of the file were reversed before they were divided.
         fine.reversed = self.reversed;
         if self.quality.coincident.is_some() {
             fine.quality.coincident = Places::of(&fine).map(|places| places.coincident());
@@ -192,6 +195,7 @@ struct Glue {
 impl Glue {
     /// The point where the shape functions of a cell have these values.
     fn point(&mut self, values: &[(usize, f64)], nodes: &[usize], fine: &mut Mesh) -> usize {
+        // A point where only one function does not vanish is that node.
         if let [(a, _)] = values {
             return nodes[*a];
         }

@@ -51,6 +51,7 @@ impl Compression {
         let mut data = vec![0; size];
         let mut rest = bytes;
         let mut zlib = Decompress::new(true);
+        // Without data the size of a block may be zero, which no chunk can be.
         for (i, (output, &length)) in data.chunks_mut(block.max(1)).zip(compressed).enumerate() {
             let (input, after) = rest.split_at(length);
             rest = after;

@@ -70,11 +70,13 @@ impl Division {
         };
         let (below, above) = (known(bottom), known(top));
         let first = match (below, above) {
+            // In a hexagon the diagonal from the third place on is the same one backwards; in a pentagon each place has its own.
             (Some(a), Some(b)) if a % 3 != b % 3 || (n == 5 && a != b) => {
                 return Err(STACK);
             }
             (below, above) => below.or(above).unwrap_or(0),
         };
+        // The cells on both bases are to divide theirs along it too.
         for base in [bottom, top] {
             self.diagonals.insert(key(base), [base[first], base[(first + 3) % n]]);
         }

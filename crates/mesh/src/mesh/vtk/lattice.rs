@@ -21,6 +21,7 @@ impl Lattice {
     /// An axis has no points, or there are more points than can be numbered.
     pub fn new(points: [u64; 3]) -> Result<Lattice> {
         let shown = || Error::expected("dimensions", "three counts of points above zero", format!("{points:?}"));
+        // A count that cannot be numbered here is refused like none.
         let counts = points.map(|count| usize::try_from(count).unwrap_or(0));
         let all = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
         match all {
@@ -35,6 +36,7 @@ impl Lattice {
 
     /// The number of cells along each axis; 1 along a flat one.
     pub fn cells(&self) -> [usize; 3] {
+        // Not zero, so that the product is the number of cells of the plane or line.
         self.0.map(|points| (points - 1).max(1))
     }
 

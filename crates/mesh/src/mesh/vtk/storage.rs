@@ -85,6 +85,7 @@ impl Storage {
         header.chunks_exact(self.width()).map(move |bytes| {
             let fold = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
             let number = if self.big_endian { bytes.iter().fold(0, fold) } else { bytes.iter().rev().fold(0, fold) };
+            // Larger than any file, and refused as such where it is compared with what is stored.
             usize::try_from(number).unwrap_or(usize::MAX)
         })
     }
@@ -100,6 +101,7 @@ impl Storage {
         if let Some(compression) = self.compression {
             return self.open_blocks(stored, first, compression);
         }
+        // A header can claim any number, so nothing may overflow from here on.
         let stored_size = stored.length(first.saturating_add(width));
         if stored_size > stored.bytes.len() {
             let room = if stored.in_base64 { stored.bytes.len() / 4 * 3 } else { stored.bytes.len() };
@@ -112,6 +114,7 @@ impl Storage {
     /// A header has the number of blocks, their size, the size of the last one (0 if it is as large as the others), and
     /// the compressed sizes of all blocks.
     fn open_blocks(self, stored: Stored<'_>, count: usize, compression: Compression) -> Result<Data<'_>> {
+        // The count itself, the size of the blocks and that of the last one stand before the compressed sizes.
         let length = count.saturating_add(3).saturating_mul(self.width());
         if stored.length(length) > stored.bytes.len() {
             let found = stored.bytes.len();

@@ -275,14 +275,17 @@ impl Arrays<'_> {
 
     /// The bytes of a binary array.
     fn decoded<'s>(&mut self, array: &ArrayTag, count: u64, stored: Stored<'s>, alone: bool) -> Result<Cow<'s, [u8]>> {
+        // An array without numbers may have no header either.
         if alone && stored.bytes.is_empty() && count == 0 {
             return Ok(Cow::Borrowed(&[]));
         }
         let data = self.document.storage.open(stored)?;
+        // Only an element of its own shows where its array ends; in appended data the next one follows.
         if alone && data.stored_size != stored.bytes.len() {
             let expected = format!("{} characters of base64", data.stored_size);
             return Err(Error::new(format!("expected {expected}, found {}", stored.bytes.len())));
         }
+        // Several arrays may point at the same stored bytes, so that all together are limited, before memory is taken.
         let most = ALWAYS_ALLOWED.saturating_add(MOST_GROWTH.saturating_mul(self.document.size() as u64));
         self.size = self.size.saturating_add(data.size as u64).saturating_add(data.stored_size as u64);
         if self.size > most {

@@ -106,6 +106,7 @@ impl Sums {
                     add(&mut sums.affine[i][j], bond.shell, strained(a) * strained(b), square * UNIT * UNIT);
                 }
             }
+            // A bond pulls its ends apart: their unknowns enter its elongation with opposite signs.
             let ends = [(bond.from, -1), (bond.to, 1)];
             for (a, sign) in ends {
                 for row in 0..d {
@@ -169,7 +170,9 @@ impl Sums {
     /// `A − Fᵀ K⁻¹ F`, by elimination of the unknowns of all points but the first, which is where it is.
     fn relax(&mut self, lattice: &NamedLattice) -> Result<()> {
         let Sums { affine, force, inner, .. } = self;
+        // The first point is held: a translation of all points has no energy, and would leave a pivot of zero.
         let mut left: Vec<usize> = (lattice.dimension()..inner.len()).collect();
+        // Pivots are taken where they are not zero: the matrix is that of energies, where a zero on the diagonal is a row of zeros.
         while let Some(at) = left.iter().position(|&row| !inner[row][row].is_zero()) {
             let pivot = left.remove(at);
             for i in 0..affine.len() {

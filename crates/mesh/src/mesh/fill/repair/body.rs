@@ -30,6 +30,7 @@ pub(super) fn largest(pieces: &[Piece]) -> usize {
     let size = |piece: &Piece| (piece.volume.abs(), piece.area);
     let larger = |a: &usize, b: &usize| {
         let ((volume, area), (other, of_other)) = (size(&pieces[*a]), size(&pieces[*b]));
+        // Of equal pieces the first one wins: `max_by` alone would take the last.
         volume.total_cmp(&other).then(area.total_cmp(&of_other)).then(b.cmp(a))
     };
     (0..pieces.len()).max_by(larger).unwrap_or(0)
@@ -46,6 +47,7 @@ pub(super) fn parts(triangles: &Triangles, pieces: &[Piece]) -> Result<Vec<Part>
     // An open sheet is no part of a body, wherever it is.
     let solid: Vec<usize> =
         (0..pieces.len()).filter(|&p| p == largest || pieces[p].open_share() <= MOST_OPEN).collect();
+    // A single piece is the body, and no crossings need to be looked for.
     if pieces.len() == 1 {
         return Ok(parts);
     }
@@ -60,8 +62,10 @@ pub(super) fn parts(triangles: &Triangles, pieces: &[Piece]) -> Result<Vec<Part>
     let surface = Surface::closed(surface)?;
     let columns = Columns::of(&surface);
     for p in (0..pieces.len()).filter(|p| !of_body.contains(p)) {
+        // One corner decides for the piece: pieces that pass through the body have been joined to it before.
         let [corner, ..] = triangles.corners[pieces[p].triangles[0]];
         let is_inside = columns.winding(triangles.points[corner]) > 0;
+        // The volumes have signs: those of opposite signs have their normals opposite.
         let is_against = pieces[p].volume * pieces[largest].volume < 0.0;
         parts[p] = match (is_inside, is_against && solid.contains(&p)) {
             (false, _) => Part::Fragment,

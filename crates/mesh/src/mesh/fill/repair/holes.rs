@@ -33,6 +33,7 @@ pub(super) fn holes(triangles: &Triangles, passes: &[Pass]) -> Vec<Hole> {
     // A way along the edges; wherever it comes back to one of its points, the loop from there is a hole.
     let mut way: Vec<usize> = Vec::new();
     let mut place: BTreeMap<usize, usize> = BTreeMap::new();
+    // The least point first: holes are found in an order that depends on the surface alone.
     while let Some((&start, _)) = next.first_key_value() {
         let mut at = start;
         loop {
@@ -78,6 +79,7 @@ impl Hole {
             if rest < 3 {
                 break;
             }
+            // The neighbours have changed since this entry was made, and a later one has the chord as it is now.
             if !is_left[i] || neighbours[i] != ends {
                 continue;
             }

@@ -33,6 +33,7 @@ pub(super) fn repaired(mut triangles: Triangles, scale: f64) -> Result<(Surface,
     let whole: f64 = triangles.corners.iter().map(|&t| triangles.area(t)).sum();
     let given_volume = triangles.corners.iter().map(|&t| triangles.volume(t, from)).sum();
     let mut repair = Repair { given_volume, given: triangles.corners.len(), ..Repair::default() };
+    // Welding comes first, because all that follows asks which triangles share an edge.
     let welded = weld(&mut triangles);
     (repair.welded, repair.doubles) = ((welded.corners, welded.distance), welded.doubles);
     let sheets = sheets::leave_out(&mut triangles);
@@ -94,6 +95,7 @@ fn turn_alike(triangles: &mut Triangles, scale: f64) -> Result<(Vec<bool>, usize
     let given = triangles.corners.len();
     let area = |triangles: &Triangles| triangles.corners.iter().map(|&t| triangles.area(t)).sum::<f64>();
     let whole = area(triangles);
+    // Leaving triangles out opens new edges, at which others may turn over; the area that is left bounds the rounds.
     loop {
         let patches = Patches::of(triangles, &passes(&triangles.corners));
         let Some(&one) = patches.twisted.first() else {

@@ -24,6 +24,7 @@ impl Patches {
         // The neighbours across edges of two triangles, and whether one of both is turned the other way.
         let mut neighbours = vec![[(NONE, false); 3]; count];
         let mut add = |of: u32, other: (u32, bool)| {
+            // A triangle has three edges, so that there is room for each neighbour.
             let free = neighbours[of as usize].iter_mut().find(|(other, _)| *other == NONE);
             free.into_iter().for_each(|place| *place = other);
         };
@@ -50,6 +51,7 @@ impl Patches {
                     let other = other as usize;
                     if patches.of[other] == usize::MAX {
                         patches.of[other] = patches.count;
+                        // Two triangles that pass their edge in one direction are turned differently: one of both has to be turned.
                         patches.turned[other] = patches.turned[triangle] ^ is_turned;
                         members.push(other);
                     }

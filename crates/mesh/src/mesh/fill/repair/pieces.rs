@@ -41,6 +41,7 @@ impl Piece {
         for of_edge in by_edge(&passes).filter(is_border) {
             borders[piece_of[of_edge[0].triangle as usize]].extend(of_edge);
         }
+        // The volume of a closed surface does not depend on the place, but its digits do: a corner of the box is near.
         let [from, _] = triangles.ends();
         let piece = |(members, border): (Vec<usize>, Vec<Pass>)| {
             let holes = holes(triangles, &border);

@@ -23,6 +23,7 @@ pub(super) fn leave_out(triangles: &mut Triangles) -> Sheets {
     let mut sheets = Sheets { flat: splinters(triangles), triangles: 0 };
     let passes = passes(&triangles.corners);
     let patches = Patches::of(triangles, &passes);
+    // A single patch is the surface itself.
     if patches.count < 2 {
         return sheets;
     }
@@ -48,6 +49,7 @@ pub(super) fn leave_out(triangles: &mut Triangles) -> Sheets {
         let is_wall = border.iter().all(|edge| counts[edge] == 3);
         if is_once && (is_wall || is_fin && border.iter().any(|edge| counts[edge] > 2)) {
             is_sheet[patch] = true;
+            // What is left out no longer counts at its edges: a wall behind it may be a sheet now, or a side of the body.
             border.iter().for_each(|edge| *counts.entry(*edge).or_default() -= 1);
         }
     }
