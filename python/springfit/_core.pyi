@@ -178,6 +178,7 @@ class Network:
         contents: Sequence[dict[str, Any]],
         masses: NDArray[np.float64] | None = None,
         mesh: Mesh | None = None,
+        facts: str | None = None,
     ) -> Network: ...
     @staticmethod
     def read(
@@ -186,6 +187,8 @@ class Network:
     def changed(
         self, constants: NDArray[np.float64] | None, rest: NDArray[np.float64] | None, others: Sequence[dict[str, Any]]
     ) -> Network: ...
+    @property
+    def facts(self) -> str: ...
     @property
     def dimension(self) -> int: ...
     @property

@@ -52,15 +52,17 @@ def state(net: "Network") -> "tuple[Any, ...]":
             "sampled": net._core.sampled,
         }
     masses, points = net.masses, None if net.mesh is not None else net.points
-    return points, net.springs, net.constants, net.rest, net.contents, masses, net.mesh, facts
+    return points, net.springs, net.constants, net.rest, net.contents, masses, net.mesh, facts, net._core.facts
 
 
-def restored(points: Any, springs: Any, constants: Any, rest: Any, contents: Any, masses: Any, mesh: Any, facts: Any) -> "Network":
+def restored(
+    points: Any, springs: Any, constants: Any, rest: Any, contents: Any, masses: Any, mesh: Any, facts: Any, known: Any = None
+) -> "Network":
     """The network of a pickle."""
     from .springs import Network
 
     points = mesh.points if points is None else points
-    net = Network(points, springs, constants, rest=rest, contents=contents, masses=masses, mesh=mesh)
+    net = Network._given(points, springs, constants, rest=rest, contents=contents, masses=masses, mesh=mesh, known=known)
     net._facts = facts
     return net
 

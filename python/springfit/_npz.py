@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import zipfile
 from typing import Any
@@ -12,8 +13,8 @@ from ._arguments import failure
 from ._core import SpringfitError
 
 
-def read_arrays(path: str) -> "tuple[dict[str, Any], np.ndarray]":
-    """The arguments of :class:`Network` but for the mesh, and the corners of the cells that are simplices."""
+def read_arrays(path: str) -> "tuple[dict[str, Any], np.ndarray, str]":
+    """The arguments of :class:`Network` but for the mesh, the corners of the cells that are simplices, and what is known beside them."""
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
@@ -47,7 +48,13 @@ def read_arrays(path: str) -> "tuple[dict[str, Any], np.ndarray]":
         "contents": contents,
         "masses": masses if masses is not None and len(masses) else None,
     }
-    return given, cells
+    known: "dict[str, Any]" = {}
+    if "thickness" in arrays:
+        state = str(np.ravel(arrays["plane"])[0]) if "plane" in arrays else "stress"
+        known["plane"] = {"state": state, "thickness": float(np.ravel(arrays["thickness"])[0])}
+    if "engine" in arrays:
+        known["engine"] = json.loads(str(np.ravel(arrays["engine"])[0]))
+    return given, cells, json.dumps(known)
 
 
 def mesh_of(points: np.ndarray, cells: np.ndarray) -> "Any | None":

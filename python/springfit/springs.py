@@ -78,7 +78,7 @@ class Network:
         points = matrix("points", points, np.float64)
         groups = given_groups(contents)
         given = (points, ends, k, numbers("rest", rest), groups, numbers("masses", masses))
-        self._keep(_core.Network.of_arrays(*given, None if mesh is None else mesh._core), mesh, GIVEN)
+        self._keep(_core.Network.of_arrays(*given, None if mesh is None else mesh._core, self._known), mesh, GIVEN)
 
     def _keep(self, core: "_core.Network", mesh: "Mesh | None", facts: "dict[str, Any] | None") -> None:
         # Facts are those of networks that were no fit of this process.
@@ -89,6 +89,14 @@ class Network:
     def _of(cls, core: "_core.Network", mesh: "Mesh | None", facts: "dict[str, Any] | None" = None) -> "Network":
         net = cls.__new__(cls)
         net._keep(core, mesh, facts)
+        return net
+
+    @classmethod
+    def _given(cls, *arrays: Any, known: "str | None" = None, **keys: Any) -> "Network":
+        # What is known beside the arrays, as the core writes it.
+        net = cls.__new__(cls)
+        net._known = known
+        net.__init__(*arrays, **keys)  # type: ignore[misc]
         return net
 
     @classmethod
@@ -106,9 +114,9 @@ class Network:
         path = os.fspath(path)
         ending = os.path.splitext(path)[1]
         if ending == ".npz":
-            given, cells = read_arrays(path)
+            given, cells, known = read_arrays(path)
             mesh = mesh_of(given["points"], cells)
-            return cls(**given, mesh=mesh)
+            return cls._given(**given, mesh=mesh, known=known)
         if ending != ".json":
             expected = "a file ending in .json or .npz, which hold a whole network"
             raise failure("path", expected, path, "unsupported")

@@ -12,7 +12,7 @@ use springfit::model::{
     self, Action, BlockStiffness, CompressedRows, Deformation, Elastic, Support, nodal_forces, unheld_bodies,
     unheld_parts,
 };
-use springfit::report::NetworkFile;
+use springfit::report::{NetworkFacts, NetworkFile};
 use springfit::study::{FitOutcome, Outcome};
 use std::sync::Arc;
 
@@ -40,6 +40,8 @@ pub struct GivenBody {
     pub network: model::Network,
     /// `[points]`, kg.
     pub masses: Option<Vec<f64>>,
+    /// What is known beside them.
+    pub facts: NetworkFacts,
 }
 
 impl Body {
@@ -59,7 +61,8 @@ impl Body {
             Source::Given(given) => given.mesh.clone(),
         };
         let masses = self.masses().map(<[f64]>::to_vec);
-        Body::given(GivenBody { mesh, network, masses }, self.has_functions)
+        let facts = self.file().facts();
+        Body::given(GivenBody { mesh, network, masses, facts }, self.has_functions)
     }
 
     /// Evaluates the springs, whose functions may raise exceptions; a function of Python hears signals itself.
@@ -121,7 +124,9 @@ impl Body {
     pub fn file(&self) -> NetworkFile<'_> {
         match &self.source {
             Source::Fitted(outcome) => NetworkFile::of(outcome, &outcome.fits[0]),
-            Source::Given(given) => NetworkFile::with_masses(&given.mesh, &given.network, given.masses.as_deref()),
+            Source::Given(given) => {
+                NetworkFile::with_masses(&given.mesh, &given.network, given.masses.as_deref()).knowing(&given.facts)
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use crate::progress::alone;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use springfit::error::{Error, Result};
-use springfit::material::State;
+use springfit::material::Plane;
 use springfit::model::{LengthSpring, Network, Specimen, Support};
 use springfit::report::{ContentPart, Parts, SpecimenOptions, read_specimen};
 use springfit::springs::distance;
@@ -158,7 +158,7 @@ impl GivenNetwork<'_> {
 }
 
 impl GivenOptions<'_> {
-    fn read(&self, py: Python, specimen: &Specimen) -> PyResult<MeasureOptions> {
+    fn read(&self, py: Python, specimen: &Specimen, own: Option<(Plane, f64)>) -> PyResult<MeasureOptions> {
         let (count, d) = (specimen.count(), specimen.network.dimension);
         let engine = self.engine.as_deref().map(|text| {
             let entry: EngineEntry =
@@ -169,13 +169,16 @@ impl GivenOptions<'_> {
         if !(thickness > 0.0 && thickness.is_finite()) {
             return Err(invalid(py, "thickness", "a length above zero, m", thickness));
         }
-        let state = match (self.plane.as_deref(), d) {
-            (None | Some("stress"), 2) => Some(State::PlaneStress { thickness }),
-            (Some("strain"), 2) => Some(State::PlaneStrain { thickness }),
-            (Some(other), 2) => return Err(invalid(py, "plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
-            (None, _) if self.thickness.is_none() => None,
-            _ => return Err(invalid(py, "plane", "a plane network", format!("one of {d} dimensions"))),
+        let plane = match self.plane.as_deref() {
+            None => None,
+            Some("stress") => Some(Plane::Stress),
+            Some("strain") => Some(Plane::Strain),
+            Some(other) => return Err(invalid(py, "plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
         };
+        if d != 2 && (plane.is_some() || self.thickness.is_some()) {
+            return Err(invalid(py, "plane", "a plane network", format!("one of {d} dimensions")));
+        }
+        let state = MeasureOptions::plane_state(plane, self.thickness, own).filter(|_| d == 2);
         let region = |(name, points): &(String, Vec<usize>)| {
             let mut part = vec![false; count];
             for &p in points {
@@ -193,6 +196,7 @@ impl GivenOptions<'_> {
             regions: self.regions.iter().map(region).collect::<PyResult<_>>()?,
             frequencies: self.frequencies,
             engine: engine.transpose()?,
+            of_engine: None,
             density: self.density,
         })
     }
@@ -214,7 +218,7 @@ pub fn measure_arrays(
     options: GivenOptions,
 ) -> PyResult<String> {
     let specimen = network.specimen(py, mesh.as_deref())?;
-    let options = options.read(py, &specimen)?;
+    let options = options.read(py, &specimen, None)?;
     measured(py, specimen, options)
 }
 
@@ -232,16 +236,8 @@ pub fn measure_file(
         |cell: PyReadonlyArray2<f64>| nalgebra::DMatrix::from_row_slice(cell.shape()[0], cell.shape()[1], &rows(&cell));
     let reading = SpecimenOptions { points, cell: cell.map(vectors), is_periodic: periodic, elements: Vec::new() };
     let mut file = read_specimen(&path, &reading).map_err(|error| raised(py, error))?;
-    let mut options = options.read(py, &file.specimen)?;
-    if let (Some((plane, thickness)), false) = (file.state, options.state.is_none()) {
-        let is_plain = options.state == Some(State::PlaneStress { thickness: 1.0 });
-        if is_plain {
-            options.state = Some(match plane {
-                springfit::material::Plane::Stress => State::PlaneStress { thickness },
-                springfit::material::Plane::Strain => State::PlaneStrain { thickness },
-            });
-        }
-    }
+    let mut options = options.read(py, &file.specimen, file.state)?;
+    options.of_engine = file.engine;
     options.engine = options.engine.or(file.engine.take());
     measured(py, file.specimen, options)
 }

@@ -27,7 +27,7 @@ use springfit::export::{target_named, with_warnings, write_files};
 use springfit::fit::{CellFits, Spread};
 use springfit::mesh;
 use springfit::model::Elastic;
-use springfit::report::{self, NetworkFormat, read_network};
+use springfit::report::{self, NetworkFacts, NetworkFormat, read_network};
 use springfit::study::{Outcome, matrix_errors};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -73,9 +73,9 @@ impl From<Body> for Network {
 
 #[pymethods]
 impl Network {
-    /// Springs from arrays; `contents` are groups with all keys, and `mesh` has the cells on the same points.
+    /// Springs from arrays; `contents` are groups with all keys, `mesh` has the cells on the same points, and `facts` are those of [`Network::facts`].
     #[staticmethod]
-    #[pyo3(signature = (points, springs, constants, rest, contents, masses=None, mesh=None))]
+    #[pyo3(signature = (points, springs, constants, rest, contents, masses=None, mesh=None, facts=None))]
     #[expect(clippy::too_many_arguments, reason = "what a network has")]
     fn of_arrays(
         py: Python,
@@ -86,7 +86,10 @@ impl Network {
         contents: Vec<GivenGroup>,
         masses: Option<PyReadonlyArray1<f64>>,
         mesh: Option<&Mesh>,
+        facts: Option<&str>,
     ) -> PyResult<Network> {
+        let facts = facts.map(serde_json::from_str).transpose();
+        let facts = facts.map_err(|e| invalid(py, "facts", "those of a network in JSON", e))?.unwrap_or_default();
         let [count, d] = [points.shape()[0], points.shape()[1]];
         if !(1..=3).contains(&d) {
             let expected = "an array of shape (points, 1), (points, 2) or (points, 3)";
@@ -104,7 +107,7 @@ impl Network {
         let lengths = GivenLengths { springs: &springs, constants: &constants, rest: rest.as_ref() };
         let network = given_springs::network(py, (&mesh.points, d), &lengths, &contents, &elements)?;
         let masses = masses.map(|masses| given_springs::masses(py, &masses, count)).transpose()?;
-        Ok(Body::given(GivenBody { mesh, network, masses }, false).into())
+        Ok(Body::given(GivenBody { mesh, network, masses, facts }, false).into())
     }
 
     /// The network of a JSON file. `elements` are those of its cells that are not shipped.
@@ -119,9 +122,11 @@ impl Network {
             let has_cells = mesh.is_some();
             let bare = || mesh::Mesh::of_cells(record.dimension, record.points.concat(), Vec::new());
             let mesh = Arc::new(mesh.unwrap_or_else(bare));
+            let known =
+                NetworkFacts { material: record.provenance.material, plane: record.plane, engine: record.engine };
             let fit = record.provenance.fit;
             let facts = (fit.as_ref().map(|fit| fit.name.clone()), fit.map(|fit| fit.status), record.notes);
-            Ok((GivenBody { mesh, network, masses: record.masses }, has_cells, facts))
+            Ok((GivenBody { mesh, network, masses: record.masses, facts: known }, has_cells, facts))
         })?;
         let mesh =
             has_cells.then(|| Mesh::of_library(given.mesh.clone(), &own)).transpose().map_err(|e| raised(py, e))?;
@@ -139,6 +144,12 @@ impl Network {
     ) -> PyResult<Network> {
         let network = springs::changed(py, self.body.network(), constants.as_ref(), rest.as_ref(), &others)?;
         Ok(self.body.with_network(network).into())
+    }
+
+    /// What is known beside points and springs, as JSON.
+    #[getter]
+    fn facts(&self, py: Python) -> PyResult<String> {
+        serde_json::to_string(&self.body.file().facts()).map_err(|e| raised(py, Error::new(e.to_string())))
     }
 
     #[getter]

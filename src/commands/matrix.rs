@@ -71,7 +71,13 @@ impl Matrix {
         let objective = Objective::named(&self.objective, choices).map_err(Error::of_option)?;
         let fit = Fit { nonnegative: self.nonnegative, ..Fit::new(objective) };
         let matrix = read_matrix(&self.matrix)?;
-        let PointTable { points, dimension: d, rows, .. } = read_points(&self.points)?;
+        let PointTable { points, dimension: d, numbers, rows, .. } = read_points(&self.points)?;
+        // Without columns of rows the order of the points is that of the matrix, and numbers may only confirm it.
+        if let (None, Some(at)) = (&rows, numbers.windows(2).position(|pair| pair[1] < pair[0])) {
+            let expected = "points in ascending order, as the rows of the matrix, or their rows in columns rx, ry, rz";
+            let found = format!("{} after {}", numbers[at + 1], numbers[at]);
+            return Err(Error::expected("point", expected, found).in_file(&self.points));
+        }
         let order = matrix.nrows();
         let of_matrix = |e: Error| e.placed(|e| e.in_file(&self.matrix));
         let (matrix, condensed) = match &rows {

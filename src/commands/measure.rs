@@ -6,7 +6,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use serde::Serialize;
 use springfit::error::{Error, ErrorKind, Result};
-use springfit::material::{Plane, State as BodyState};
+use springfit::material::Plane;
 use springfit::model::Specimen;
 use springfit::quantity::Quantity;
 use springfit::report::{
@@ -193,12 +193,7 @@ impl Measure {
             let key = if thickness.is_some() { "--thickness" } else { "--plane" };
             return Err(Error::expected(key, "a plane network", format!("one of {d} dimensions")));
         }
-        let (plane, own) = file.state.unwrap_or((Plane::Stress, 1.0));
-        let thickness = thickness.unwrap_or(own);
-        let state = match self.plane.map_or(plane, Into::into) {
-            Plane::Stress => BodyState::PlaneStress { thickness },
-            Plane::Strain => BodyState::PlaneStrain { thickness },
-        };
+        let state = MeasureOptions::plane_state(self.plane.map(Plane::from), thickness, file.state);
         let density =
             self.density.as_deref().map(|text| Quantity::Density.parse(text).map_err(|e| e.under("--density")));
         let engine = match &self.engine {
@@ -209,10 +204,11 @@ impl Measure {
             volume: self.volume,
             hull: self.hull,
             point_volumes: None,
-            state: (d == 2).then_some(state),
+            state: state.filter(|_| d == 2),
             regions: self.region.iter().map(|text| region(text, &file.specimen)).collect::<Result<_>>()?,
             frequencies: self.frequencies,
             engine,
+            of_engine: file.engine,
             density: density.transpose()?,
         })
     }

@@ -9,7 +9,7 @@ use super::note::{Note, Weight, grouped, ordered};
 use super::quality::quality_lines;
 use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
-use crate::model::Lumping;
+use crate::model::{Lumping, RestTension};
 use crate::solve::{Ending, Standing};
 use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 
@@ -196,10 +196,23 @@ fn of_fit(outcome: &Outcome, fit: &FitOutcome) -> Vec<Note> {
         );
         notes.push(note(Weight::Fit, words));
     }
+    notes.extend(unrest(outcome, fit));
     let troubles = fit.loads.iter().filter_map(|load| trouble(&load.name, &load.followed?));
     notes.extend(troubles.map(|words| note(Weight::Broken, words)));
     notes.extend(standing(outcome, fit).into_iter().map(|words| note(Weight::Broken, words)));
     notes
+}
+
+/// The forces at rest of a network that is in equilibrium are below this share of the largest pull of a spring, to the digits of files.
+const BALANCED: f64 = 1e-5;
+
+/// That a network moves without a load. Only sampled laws of force and rest measures that are fitted can have it so.
+fn unrest(outcome: &Outcome, fit: &FitOutcome) -> Option<Note> {
+    let left = RestTension::of(&fit.network, &outcome.mesh.points).unbalanced;
+    let words = "the network is not at rest in the mesh: its springs pull there, and their forces do not balance, so that it moves without a load. \
+                 Displacements and errors of loads at small deformation are those of its stiffness alone";
+    let figures = format!(": {:.1} % of the largest pull is left at some point", 100.0 * left);
+    (!(left <= BALANCED)).then(|| Note::of_model(Weight::Broken, &fit.fit.name, words).figures(figures))
 }
 
 /// Why a network does not stand, or is not known to.

@@ -2,13 +2,13 @@
 
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
-use crate::material::{CellMap, RelaxationTerm, State};
+use crate::material::{CellMap, Plane, RelaxationTerm, State};
 use crate::mesh::Mesh;
-use crate::model::{Elastic, Network, Support};
+use crate::model::{Elastic, Network, Support, cell_places};
 use crate::network::{
     DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, ListedRecord, Lists, LoadErrorsRecord, MaterialDataRecord,
-    NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord, NodalLoadRecord, ProvenanceRecord,
-    RelaxationRecord, TimedForceRecord, TimedPullRecord,
+    NETWORK_VERSION, NetworkDampingRecord, NetworkFacts, NetworkRecord, NodalForceRecord, NodalLoadRecord, PlaneRecord,
+    ProvenanceRecord, RelaxationRecord, TimedForceRecord, TimedPullRecord,
 };
 use crate::number::finite;
 use crate::report::fit_record::FitRecord;
@@ -29,12 +29,20 @@ pub struct NetworkFile<'a> {
     pub study: Option<(&'a Outcome, &'a FitOutcome)>,
     /// Masses of its points where there is no study, `[points]`, kg.
     pub own_masses: Option<&'a [f64]>,
+    /// What is known of it where there is no study.
+    pub own_facts: Option<&'a NetworkFacts>,
 }
 
 impl<'a> NetworkFile<'a> {
     /// The network of a fit of `outcome`.
     pub fn of(outcome: &'a Outcome, fit: &'a FitOutcome) -> NetworkFile<'a> {
-        NetworkFile { mesh: &outcome.mesh, network: &fit.network, study: Some((outcome, fit)), own_masses: None }
+        NetworkFile {
+            mesh: &outcome.mesh,
+            network: &fit.network,
+            study: Some((outcome, fit)),
+            own_masses: None,
+            own_facts: None,
+        }
     }
 
     /// A network without masses, supports and loads.
@@ -44,7 +52,18 @@ impl<'a> NetworkFile<'a> {
 
     /// A network with these masses, `[points]`, kg, without supports and loads.
     pub fn with_masses(mesh: &'a Mesh, network: &'a Network, masses: Option<&'a [f64]>) -> NetworkFile<'a> {
-        NetworkFile { mesh, network, study: None, own_masses: masses }
+        NetworkFile { mesh, network, study: None, own_masses: masses, own_facts: None }
+    }
+
+    /// The same network, of which this is known.
+    pub fn knowing(self, facts: &'a NetworkFacts) -> NetworkFile<'a> {
+        NetworkFile { own_facts: Some(facts), ..self }
+    }
+
+    /// What is known beside points and springs.
+    pub fn facts(&self) -> NetworkFacts {
+        let Some((outcome, fit)) = self.study else { return self.own_facts.cloned().unwrap_or_default() };
+        NetworkFacts { material: material(outcome), plane: plane(outcome), engine: fit.fit.engine }
     }
 
     /// The masses that were fitted, or those of the motion, or of the density, `[points]`, kg.
@@ -85,10 +104,11 @@ impl<'a> NetworkFile<'a> {
         let of_motion = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
         let of_loads = || outcome?.loads.iter().find_map(|load| load.gravity.as_ref());
         let gravity = of_motion.or_else(of_loads);
+        let facts = self.facts();
         NetworkRecord {
             format: FORMAT.into(),
             version: NETWORK_VERSION,
-            provenance: self.provenance(),
+            provenance: self.provenance(facts.material),
             dimension: d,
             units: units(),
             points: mesh.points.chunks_exact(d).map(<[f64]>::to_vec).collect(),
@@ -103,7 +123,8 @@ impl<'a> NetworkFile<'a> {
             damping: damping(motion),
             motion: motion.map(drive),
             largest_step: self.largest_step(&support),
-            engine: self.study.and_then(|(_, fit)| fit.fit.engine),
+            engine: facts.engine,
+            plane: facts.plane,
             groups: lists.groups,
             measures: lists.measures,
             notes: self.notes(),
@@ -111,27 +132,10 @@ impl<'a> NetworkFile<'a> {
         }
     }
 
-    fn provenance(&self) -> ProvenanceRecord {
+    fn provenance(&self, material: Option<MaterialDataRecord>) -> ProvenanceRecord {
         let outcome = self.study.map(|(outcome, _)| outcome);
         // Paths, and what was typed, need not be printable lines; what is read again is.
         let line = |text: &str| printable(text).into_owned();
-        let material = outcome.and_then(|outcome| {
-            let material = outcome.material.uniform()?;
-            Some(MaterialDataRecord {
-                young: material.young(),
-                poisson: material.poisson(),
-                state: match material.state() {
-                    State::Rod { .. } => "rod",
-                    State::Solid => "solid",
-                    State::PlaneStress { .. } => "plane stress",
-                    State::PlaneStrain { .. } => "plane strain",
-                }
-                .into(),
-                thickness: material.thickness(),
-                density: outcome.material.density().and_then(CellMap::uniform).copied(),
-                law: outcome.law.clone(),
-            })
-        });
         let fit = self.study.map(|(outcome, fit)| summary(&FitRecord::of(outcome, fit)));
         ProvenanceRecord {
             program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
@@ -178,6 +182,46 @@ impl<'a> NetworkFile<'a> {
         let (masses, support) = (self.masses()?, &motion.support);
         Dampers::coefficients_of_ratio(self.network, &self.mesh.points, masses, support, ratio).ok()
     }
+}
+
+/// The material of a body that has the same everywhere.
+fn material(outcome: &Outcome) -> Option<MaterialDataRecord> {
+    let material = outcome.material.uniform()?;
+    Some(MaterialDataRecord {
+        young: material.young(),
+        poisson: material.poisson(),
+        state: match material.state() {
+            State::Rod { .. } => "rod",
+            State::Solid => "solid",
+            State::PlaneStress { .. } => "plane stress",
+            State::PlaneStrain { .. } => "plane strain",
+        }
+        .into(),
+        thickness: material.thickness(),
+        density: outcome.material.density().and_then(CellMap::uniform).copied(),
+        law: outcome.law.clone(),
+    })
+}
+
+/// The state of a plane body or a surface, with its mean thickness `Σ A_e t_e/Σ A_e`.
+fn plane(outcome: &Outcome) -> Option<PlaneRecord> {
+    let state = match outcome.material.state() {
+        State::PlaneStress { .. } => Plane::Stress,
+        State::PlaneStrain { .. } => Plane::Strain,
+        State::Rod { .. } | State::Solid => return None,
+    };
+    let thicknesses = outcome.material.thicknesses();
+    if let Some(&thickness) = thicknesses.uniform() {
+        return Some(PlaneRecord { state, thickness, varies: false });
+    }
+    let (mut area, mut volume) = (0.0, 0.0);
+    for (block, cells) in cell_places(&outcome.mesh).iter().enumerate() {
+        for (cell, (content, _)) in cells.iter().enumerate() {
+            area += content;
+            volume += content * thicknesses.at(block, cell);
+        }
+    }
+    Some(PlaneRecord { state, thickness: volume / area, varies: true })
 }
 
 /// Names the units of lengths, masses, times, forces and the constants of each kind of springs.

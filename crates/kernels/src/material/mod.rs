@@ -29,7 +29,7 @@ use crate::error::{Error, Result};
 use crate::range::positive;
 use crate::scalar::Scalar;
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// How a body of fewer than three dimensions stands for a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,7 +89,7 @@ impl State {
 }
 
 /// The two plane states, by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Plane {
     /// Plane stress.

@@ -89,6 +89,7 @@ impl<'a> ListedRecord<'a> {
             motion: self.motion,
             largest_step: self.largest_step,
             engine: self.engine,
+            plane: self.plane,
             groups: self.groups,
             measures: self.measures,
             notes: self.notes,

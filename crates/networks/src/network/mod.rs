@@ -32,9 +32,9 @@ pub use parts::{ContentPart, HingePart, LengthPart, Parts, simplex_term};
 pub use reader::read_network;
 pub use record::{
     CellBlockRecord, DriveRecord, FORMAT, FitSummaryRecord, HeldRecord, LoadErrorsRecord, MaterialDataRecord,
-    MeasureKind, MeasureRecord, NETWORK_VERSION, NetworkDampingRecord, NetworkRecord, NodalForceRecord,
-    NodalLoadRecord, OriginRecord, ProvenanceRecord, QUADRILATERAL, RelaxationRecord, ShareRecord, SpringRecord,
-    TermRecord, TimedForceRecord, TimedPullRecord, network_schema,
+    MeasureKind, MeasureRecord, NETWORK_VERSION, NetworkDampingRecord, NetworkFacts, NetworkRecord, NodalForceRecord,
+    NodalLoadRecord, OriginRecord, PlaneRecord, ProvenanceRecord, QUADRILATERAL, RelaxationRecord, ShareRecord,
+    SpringRecord, TermRecord, TimedForceRecord, TimedPullRecord, network_schema,
 };
 pub use shard::{Merged, NetworkShard, ShardRun, merge_shards};
 pub use specimen::{PointTable, SpecimenFile, SpecimenOptions, read_points, read_specimen, specimen_endings};

@@ -6,6 +6,7 @@ use super::record::QUADRILATERAL;
 use super::record::{HeldRecord, NetworkRecord, RelaxationRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
+use crate::material::Plane;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::HINGE_POINTS;
@@ -35,6 +36,8 @@ use zip::write::SimpleFileOptions;
 /// | `gravity` | 3, f64 | m/s²; zero where there is none |
 /// | `damping` | f64 | Rayleigh's α, 1/s |
 /// | `relaxation_region`, `relaxation_shear`, `relaxation_bulk`, `relaxation_time`, `relaxation_yield` | r, f64 each | the entry of `[[material]]`, NaN of all; shares of the moduli that relax; s; Pa, 0 without. Absent where nothing relaxes |
+/// | `plane`, `thickness` | 1, text; f64 | "stress" or "strain"; m, the mean where it varies. Of plane bodies and surfaces |
+/// | `engine` | 1, text | the settings of the engine to which the constants belong, as in the JSON file. Absent without them |
 /// | `dt_max` | f64 | the longest explicit step, s; NaN without masses |
 ///
 /// # Errors
@@ -135,6 +138,17 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
         file.real("relaxation_bulk", &count, relaxation.iter().map(|term| term.bulk))?;
         file.real("relaxation_time", &count, relaxation.iter().map(|term| term.time))?;
         file.real("relaxation_yield", &count, relaxation.iter().map(|term| term.yield_stress.unwrap_or(0.0)))?;
+    }
+    if let Some(plane) = &network.plane {
+        let state = match plane.state {
+            Plane::Stress => "stress",
+            Plane::Strain => "strain",
+        };
+        file.texts("plane", &[state])?;
+        file.real("thickness", &[], [plane.thickness])?;
+    }
+    if let Some(engine) = &network.engine {
+        file.texts("engine", &[&serde_json::to_string(engine)?])?;
     }
     file.real("dt_max", &[], [network.largest_step.unwrap_or(f64::NAN)])?;
     Ok(file)

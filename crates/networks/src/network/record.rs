@@ -1,6 +1,7 @@
 //! The record of a network: the keys of its JSON file, for writing, for reading and for the schema.
 
 use crate::engine::Setting;
+use crate::material::Plane;
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -58,6 +59,9 @@ pub struct NetworkRecord<S = Vec<SpringRecord<'static>>, C = Vec<Vec<usize>>> {
     /// It is null of constants that answer like the body where equations are solved to the end.
     #[serde(default)]
     pub engine: Option<Setting>,
+    /// `plane` has the state and the thickness of a plane body or a surface; it is null of others.
+    #[serde(default)]
+    pub plane: Option<PlaneRecord>,
     /// Each entry is a group of springs of an element, from which springs come.
     pub groups: Vec<OriginRecord>,
     /// Each entry is something that springs measure.
@@ -107,6 +111,31 @@ pub struct MaterialDataRecord {
     pub density: Option<f64>,
     /// The law at large deformation has this title; it is null without one.
     pub law: Option<String>,
+}
+
+/// The state of a plane body or a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneRecord {
+    /// The body is in plane `stress` or plane `strain`.
+    pub state: Plane,
+    /// The thickness is in m; where it varies, it is its mean over the area.
+    pub thickness: f64,
+    /// The thickness differs from cell to cell.
+    #[serde(default)]
+    pub varies: bool,
+}
+
+/// What is known of a network beside its points and springs, whoever made it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NetworkFacts {
+    /// The material for which it was made.
+    pub material: Option<MaterialDataRecord>,
+    /// The state of a plane body or a surface.
+    pub plane: Option<PlaneRecord>,
+    /// The settings of the engine to which its constants belong.
+    pub engine: Option<Setting>,
 }
 
 /// The fit that made a network, and its errors.

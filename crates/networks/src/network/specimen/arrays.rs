@@ -13,8 +13,11 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
-/// The arrays of a file by name. Arrays of texts and objects are left out.
-pub struct Arrays(BTreeMap<String, Array>);
+/// The arrays of a file by name, of numbers and of texts. Those of objects are left out.
+pub struct Arrays {
+    numbers: BTreeMap<String, Array>,
+    texts: BTreeMap<String, Vec<String>>,
+}
 
 /// Bytes that the arrays of a file may have together. A header may claim any size, and memory is allocated by it.
 const MOST: u64 = 1 << 36;
@@ -25,7 +28,7 @@ impl Arrays {
             Error::new(format!("expected a ZIP file of arrays of NumPy: {e}")).of_kind(ErrorKind::Syntax)
         };
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| wrong(&e))?;
-        let mut arrays = BTreeMap::new();
+        let (mut numbers, mut texts) = (BTreeMap::new(), BTreeMap::new());
         let mut total = 0u64;
         for index in 0..archive.len() {
             let mut file = archive.by_index(index).map_err(|e| wrong(&e))?;
@@ -46,23 +49,30 @@ impl Arrays {
                 return Err(wrong(&format!("expected {claimed} bytes, found {found}")).at_key(&*name));
             }
             if let Some(array) = parse(&content).map_err(|e| e.at_key(&*name))? {
-                arrays.insert(name, array);
+                numbers.insert(name, array);
+            } else if let Some(own) = parse_texts(&content).map_err(|e| e.at_key(&*name))? {
+                texts.insert(name, own);
             }
         }
-        Ok(Arrays(arrays))
+        Ok(Arrays { numbers, texts })
     }
 
     pub fn get(&self, name: &str) -> Option<&Array> {
-        self.0.get(name)
+        self.numbers.get(name)
     }
 
     pub fn names(&self) -> Vec<&str> {
-        self.0.keys().map(String::as_str).collect()
+        self.numbers.keys().map(String::as_str).collect()
     }
 
     /// The first of several names that there is.
     pub fn first<'a>(&self, names: &[&'a str]) -> Option<(&'a str, &Array)> {
         names.iter().find_map(|name| Some((*name, self.get(name)?)))
+    }
+
+    /// The first of the texts of an array.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.texts.get(name)?.first().map(String::as_str)
     }
 
     /// A list of numbers.
@@ -111,6 +121,17 @@ fn parse(bytes: &[u8]) -> Result<Option<Array>> {
         _ => values,
     };
     Ok(Some(Array { shape, values }))
+}
+
+/// The texts of a file of the format; `None` of others.
+fn parse_texts(bytes: &[u8]) -> Result<Option<Vec<String>>> {
+    let file = NumpyFile::split(bytes)?;
+    // Four bytes for each letter, with zeros behind the last one.
+    let width = file.number()?.strip_prefix("<U").and_then(|letters| letters.parse::<usize>().ok());
+    let Some(size) = width.and_then(|letters| letters.checked_mul(4)).filter(|size| *size > 0) else { return Ok(None) };
+    let letter = |bytes: &[u8; 4]| char::from_u32(u32::from_le_bytes(*bytes)).filter(|letter| *letter != '\0');
+    let text = |bytes: &[u8]| bytes.as_chunks::<4>().0.iter().map_while(letter).collect();
+    Ok(Some(file.data.chunks_exact(size).map(text).collect()))
 }
 
 /// The bytes that a number has, and what reads it from them.

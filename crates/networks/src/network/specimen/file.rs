@@ -40,7 +40,9 @@ pub struct SpecimenOptions {
 impl SpecimenFile {
     /// A lattice by name.
     pub fn of_lattice(specimen: Specimen) -> SpecimenFile {
-        SpecimenFile::plain(specimen, "a lattice by name")
+        // Formulas of plane lattices are those of a thickness of 1 m.
+        let state = (specimen.network.dimension == 2).then_some((Plane::Stress, 1.0));
+        SpecimenFile { state, ..SpecimenFile::plain(specimen, "a lattice by name") }
     }
 
     pub(super) fn plain(specimen: Specimen, format: &'static str) -> SpecimenFile {

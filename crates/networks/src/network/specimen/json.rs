@@ -6,6 +6,7 @@ use crate::material::Plane;
 use crate::model::{Specimen, Support};
 use crate::network::reader::parse;
 use crate::network::record::NodalLoadRecord;
+use crate::text::rounded;
 
 pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
     let record = parse(bytes)?;
@@ -34,11 +35,22 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
         loads,
         ..Specimen::new(network, record.points.concat())
     };
-    let state = record.provenance.material.as_ref().and_then(|material| match material.state.as_str() {
-        "plane stress" => Some((Plane::Stress, material.thickness)),
-        "plane strain" => Some((Plane::Strain, material.thickness)),
-        _ => None,
+    // Files of before have the state where the material is the same everywhere.
+    let of_material = || {
+        record.provenance.material.as_ref().and_then(|material| match material.state.as_str() {
+            "plane stress" => Some((Plane::Stress, material.thickness)),
+            "plane strain" => Some((Plane::Strain, material.thickness)),
+            _ => None,
+        })
+    };
+    let state = record.plane.map(|plane| (plane.state, plane.thickness)).or_else(of_material);
+    let varying = record.plane.filter(|plane| plane.varies).map(|plane| {
+        format!(
+            "the thickness differs from cell to cell: figures are those with its mean, {} m",
+            rounded(plane.thickness, 4)
+        )
     });
     let plain = SpecimenFile::plain(specimen, "springfit, JSON");
-    Ok(SpecimenFile { state, engine: record.engine, notes: record.notes.clone(), ..plain })
+    let notes = varying.into_iter().chain(record.notes.iter().cloned()).collect();
+    Ok(SpecimenFile { state, engine: record.engine, notes, ..plain })
 }

@@ -36,6 +36,26 @@ const STYLES: [(&str, usize, usize); 5] =
 /// equally long, and rounding must not choose between them.
 const SHORTER: f64 = 1e-9;
 
+/// The sections of [`OTHERS`] that hold forces, which the network has not.
+const FORCES: [&str; 5] = ["Angles", "Dihedrals", "Impropers", "Pair Coeffs", "PairIJ Coeffs"];
+/// A mole has this number of particles, exactly.
+const MOLE: f64 = 6.022_140_76e23;
+/// J in an electron volt, exactly.
+const ELECTRON_VOLT: f64 = 1.602_176_634e-19;
+/// The units of LAMMPS, as a header names them: a length in m, an energy in J and a mass in kg.
+const UNITS: [(&str, [f64; 3]); 8] = [
+    // Reduced ones have no size.
+    ("lj", [1.0, 1.0, 1.0]),
+    ("si", [1.0, 1.0, 1.0]),
+    ("cgs", [1e-2, 1e-7, 1e-3]),
+    // Ångström, kilocalories and grams for each mole; a calorie is 4.184 J.
+    ("real", [1e-10, 4184.0 / MOLE, 1e-3 / MOLE]),
+    ("metal", [1e-10, ELECTRON_VOLT, 1e-3 / MOLE]),
+    // Bohr radii, hartrees and atomic mass units (CODATA 2018).
+    ("electron", [5.291_772_109_03e-11, 4.359_744_722_207_1e-18, 1.660_539_066_60e-27]),
+    ("micro", [1e-6, 1e-15, 1e-15]),
+    ("nano", [1e-9, 1e-21, 1e-21]),
+];
 /// A line with its number.
 type Line<'a> = (usize, Vec<&'a str>);
 
@@ -47,6 +67,10 @@ struct Parts<'a> {
     /// xy, xz, yz.
     tilt: [f64; 3],
     sections: HashMap<&'static str, Vec<Line<'a>>>,
+    /// How many atoms and bonds the header promises, and on which line.
+    promised: HashMap<&'static str, (usize, usize)>,
+    /// The sections that hold forces and are left out, and how many lines they have.
+    left_out: Vec<(&'static str, usize)>,
     /// What is said of a section after `#`.
     styles: HashMap<&'static str, &'a str>,
 }
@@ -54,9 +78,16 @@ struct Parts<'a> {
 pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
     let text = std::str::from_utf8(bytes).map_err(|_| Error::new("expected a text").of_kind(ErrorKind::Syntax))?;
     let parts = parse(text)?;
+    let (units, [length, energy, mass]) = units(text)?;
     let ids = |lines: &[Line]| -> Result<HashMap<i64, usize>> {
-        let pairs = lines.iter().enumerate().map(|(at, line)| Ok((integer(line, 0, "number")?, at)));
-        pairs.collect()
+        let mut ids = HashMap::new();
+        for (at, line) in lines.iter().enumerate() {
+            let number = integer(line, 0, "number")?;
+            if ids.insert(number, at).is_some() {
+                return Err(Error::expected("Atoms", "a number of its own for each atom", number).on_line(line.0));
+            }
+        }
+        Ok(ids)
     };
     let section = |name: &'static str| parts.sections.get(name).map(Vec::as_slice).unwrap_or_default();
     let (atoms, bonds) = (section("Atoms"), section("Bonds"));
@@ -64,6 +95,12 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
         let expected = "sections Atoms and Bonds, as read_data of LAMMPS reads them";
         let found = format!("{} atoms and {} bonds", atoms.len(), bonds.len());
         return Err(Error::expected("data file", expected, found).of_kind(ErrorKind::Syntax));
+    }
+    for (name, lines) in [("Atoms", atoms), ("Bonds", bonds)] {
+        if let Some(&(count, line)) = parts.promised.get(name).filter(|(count, _)| *count != lines.len()) {
+            let expected = format!("{count} lines, as line {line} says");
+            return Err(Error::expected(name, expected, lines.len()).of_kind(ErrorKind::Syntax));
+        }
     }
     let (kind_at, x_at) = style(&parts, atoms)?;
     let mut positions = Vec::with_capacity(3 * atoms.len());
@@ -107,7 +144,7 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
     let mut points = Vec::with_capacity(d * atoms.len());
     for (x, n) in positions.chunks_exact(3).zip(moved.chunks_exact(3)) {
         let shift = |k: usize| cell.as_ref().map_or(0.0, |cell| (0..d).map(|l| n[l] as f64 * cell[(l, k)]).sum());
-        points.extend((0..d).map(|k| x[k] + shift(k)));
+        points.extend((0..d).map(|k| length * (x[k] + shift(k))));
     }
     let mut network = Network { dimension: d, ..Network::default() };
     for line in bonds {
@@ -122,10 +159,27 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
             return Err(missing("two atoms", ends[0]));
         }
         // U = K (r − r₀)².
-        network.lengths.push(LengthSpring { points: [i.min(j), i.max(j)], constant: 2.0 * stiffness, rest });
+        let constant = 2.0 * stiffness * energy / (length * length);
+        network.lengths.push(LengthSpring { points: [i.min(j), i.max(j)], constant, rest: length * rest });
     }
+    let cell = cell.map(|cell| cell * length);
+    let masses = masses.map(|masses| masses.into_iter().map(|own| mass * own).collect());
     let specimen = Specimen { masses, ..Specimen::new(network, points) };
-    let mut notes = Vec::new();
+    let mut notes = vec![match units {
+        None => "the first line of the file names no units: they are taken as si, m, N and kg".to_string(),
+        Some("lj") => {
+            "the units of the file are reduced ones (lj): figures are in them, whatever unit is printed".to_string()
+        }
+        Some("si") => "the units of the file are si".to_string(),
+        Some(units) => {
+            format!("the units of the file are {units}: lengths, energies and masses are turned into m, J and kg")
+        }
+    }];
+    if !parts.left_out.is_empty() {
+        let one = |(name, lines): &(&str, usize)| format!("{name} ({lines} lines)");
+        let names: Vec<String> = parts.left_out.iter().map(one).collect();
+        notes.push(format!("the network has the bonds alone; left out with their forces: {}", names.join(", ")));
+    }
     // Image flags have already put the atoms where bonds are whole.
     let crosses = !is_unwrapped && cell.as_ref().is_some_and(|cell| has_shorter_images(&specimen, cell));
     let is_periodic = options.is_periodic.unwrap_or(crosses) && options.cell.is_none();
@@ -182,12 +236,17 @@ fn parse(text: &str) -> Result<Parts<'_>> {
             parts.sections.entry(own).or_default();
             continue;
         }
-        if OTHERS.contains(&name) {
-            section = Some("");
+        if let Some(own) = OTHERS.iter().find(|own| **own == name) {
+            section = Some(own);
+            if FORCES.contains(own) {
+                parts.left_out.push((own, 0));
+            }
             continue;
         }
         match section {
-            Some("") => {}
+            Some(own) if OTHERS.contains(&own) => {
+                parts.left_out.iter_mut().filter(|(name, _)| *name == own).for_each(|(_, lines)| *lines += 1);
+            }
             Some(own) => parts.sections.entry(own).or_default().push((at + 1, words)),
             None => header(&mut parts, &(at + 1, words))?,
         }
@@ -195,11 +254,34 @@ fn parse(text: &str) -> Result<Parts<'_>> {
     Ok(parts)
 }
 
+/// The units that the first line of a file names as `units = real` or `units real`, with their length in m, energy in J and mass in kg.
+fn units(text: &str) -> Result<(Option<&'static str>, [f64; 3])> {
+    let title = text.lines().next().unwrap_or_default();
+    let words: Vec<&str> =
+        title.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !word.is_empty()).collect();
+    let Some(named) = words.iter().position(|word| *word == "units").and_then(|at| words.get(at + 1)) else {
+        return Ok((None, [1.0; 3]));
+    };
+    match UNITS.iter().find(|(name, _)| name == named) {
+        Some((name, factors)) => Ok((Some(name), *factors)),
+        None => {
+            let names: Vec<&str> = UNITS.iter().map(|(name, _)| *name).collect();
+            let expected = format!("one of {}", names.join(", "));
+            Err(Error::expected("units", expected, named).on_line(1).of_kind(ErrorKind::Unsupported))
+        }
+    }
+}
+
 fn header(parts: &mut Parts, line: &Line) -> Result<()> {
     let words = &line.1;
     let axis = ["xlo", "ylo", "zlo"].iter().position(|name| words.get(2) == Some(name));
     if let Some(axis) = axis {
         parts.bounds[axis] = Some([real(line, 0, "box")?, real(line, 1, "box")?]);
+    }
+    if let [count, what @ ("atoms" | "bonds")] = words[..] {
+        let name = if what == "atoms" { "Atoms" } else { "Bonds" };
+        let wrong = || Error::expected(what, "a whole number", format!("\"{count}\"")).on_line(line.0);
+        parts.promised.insert(name, (count.parse().map_err(|_| wrong())?, line.0));
     }
     if words.get(3) == Some(&"xy") {
         for k in 0..3 {

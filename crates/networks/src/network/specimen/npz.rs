@@ -3,7 +3,9 @@
 use super::arrays::{Array, Arrays};
 use super::file::{SpecimenFile, SpecimenOptions, place};
 use crate::element::Element;
+use crate::engine::Setting;
 use crate::error::{Error, ErrorKind, Result};
+use crate::material::Plane;
 use crate::mesh::{Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, Specimen, Support};
 use crate::network::parts::{ContentPart, HingePart, LengthPart, Parts};
@@ -48,7 +50,28 @@ pub fn read(bytes: &[u8], _: &SpecimenOptions) -> Result<SpecimenFile> {
         loads: loads(&arrays, count, d)?,
         ..Specimen::new(network, points)
     };
-    Ok(SpecimenFile::plain(specimen, "arrays of NumPy"))
+    let (state, engine) = (state(&arrays)?, engine(&arrays)?);
+    Ok(SpecimenFile { state, engine, ..SpecimenFile::plain(specimen, "arrays of NumPy") })
+}
+
+/// The state and the thickness of a plane body or a surface.
+fn state(arrays: &Arrays) -> Result<Option<(Plane, f64)>> {
+    let Some(thickness) = arrays.list("thickness", 1)? else { return Ok(None) };
+    if !(thickness[0] > 0.0 && thickness[0].is_finite()) {
+        return Err(Error::expected("thickness", "a length above zero, m", thickness[0]));
+    }
+    match arrays.text("plane") {
+        None | Some("stress") => Ok(Some((Plane::Stress, thickness[0]))),
+        Some("strain") => Ok(Some((Plane::Strain, thickness[0]))),
+        Some(other) => Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
+    }
+}
+
+/// The settings of the engine to which the constants belong.
+fn engine(arrays: &Arrays) -> Result<Option<Setting>> {
+    let read = |text: &str| serde_json::from_str(text);
+    let wrong = |e| Error::expected("engine", "the settings of an engine in JSON", e);
+    arrays.text("engine").map(read).transpose().map_err(wrong)
 }
 
 /// In the plane z is zero, and what are tetrahedra in space are triangles.

@@ -15,6 +15,8 @@ use std::sync::Arc;
 const ENDS: [[&str; 2]; 6] =
     [["i", "j"], ["a", "b"], ["node1", "node2"], ["source", "target"], ["p0", "p1"], ["from", "to"]];
 const CONSTANT: [&str; 4] = ["constant", "k", "stiffness", "ke"];
+/// Names of the column of the number by which springs name a point, the first of which springfit writes.
+const NUMBER: [&str; 8] = ["point", "id", "index", "number", "node", "node_id", "point_id", "vertex"];
 const REST: [&str; 5] = ["rest", "rest_length", "length", "l0", "r0"];
 
 /// The unit of a column that has one.
@@ -99,6 +101,8 @@ pub struct PointTable {
     pub dimension: usize,
     /// `[points × dimension]`, m.
     pub points: Vec<f64>,
+    /// The number by which springs name each point: that of a column `point`, `id`, `node` …, or of its line, from 0.
+    pub numbers: Vec<i64>,
     /// kg, if the table has a column `mass`.
     pub masses: Option<Vec<f64>>,
     /// The rows of a matrix that have the displacements along the axes, from 0, `[points × dimension]`, if the table has columns `rx`, `ry` …
@@ -108,7 +112,7 @@ pub struct PointTable {
 /// Reads a table of points, with the columns x, y and z, m.
 ///
 /// # Errors
-/// The file cannot be read, a column is missing, or an entry is no number; the error names the line.
+/// The file cannot be read, a column is missing, an entry is no number, or two points have the same number; the error names the line.
 pub fn read_points(path: &Path) -> Result<PointTable> {
     let bytes = std::fs::read(path).map_err(|e| Error::io("cannot be read", e).in_file(path))?;
     let read = || {
@@ -117,19 +121,21 @@ pub fn read_points(path: &Path) -> Result<PointTable> {
         if axes.is_empty() || table.rows.is_empty() {
             return Err(Error::expected("columns", "x, y and z of at least one point", table.names()));
         }
-        let (place_of, mass) = (table.column(&["point"]), table.column(&["mass"]));
+        let (number_of, mass) = (table.column(&NUMBER), table.column(&["mass"]));
         let row_columns: Option<Vec<usize>> =
             ["rx", "ry", "rz"][..axes.len()].iter().map(|name| table.column(&[name])).collect();
         let (mut x, mut masses, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut numbers, mut lines) = (Vec::new(), HashMap::new());
         for (at, (line, row)) in table.rows.iter().enumerate() {
-            if let Some(column) = place_of {
-                let own = whole(row.get(column).unwrap_or_default(), "point", *line)?;
-                if own != at as i64 {
-                    return Err(
-                        Error::expected("point", format!("{at}: points stand in order, from 0"), own).on_line(*line)
-                    );
-                }
+            let own = match number_of {
+                Some(column) => whole(row.get(column).unwrap_or_default(), "point", *line)?,
+                None => at as i64,
+            };
+            if let Some(first) = lines.insert(own, *line) {
+                let found = format!("{own}, which line {first} has as well");
+                return Err(Error::expected("point", "a number of its own", found).on_line(*line));
             }
+            numbers.push(own);
             for (k, &column) in axes.iter().enumerate() {
                 x.push(number(row, column, ["x", "y", "z"][k], *line)?);
             }
@@ -148,6 +154,7 @@ pub fn read_points(path: &Path) -> Result<PointTable> {
         Ok(PointTable {
             dimension: axes.len(),
             points: x,
+            numbers,
             masses: has_masses.then_some(masses),
             rows: row_columns.map(|_| rows),
         })
@@ -160,7 +167,17 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
         let expected = "a table of the points beside a table of springs, which has no places";
         return Err(Error::expected("--points", expected, "none"));
     };
-    let PointTable { points, dimension: width, masses, .. } = read_points(path)?;
+    let PointTable { points, dimension: width, numbers, masses, .. } = read_points(path)?;
+    let places: HashMap<i64, usize> = numbers.iter().enumerate().map(|(at, &number)| (number, at)).collect();
+    // Points that are numbered by their lines have the usual words of errors.
+    let is_plain = numbers.iter().enumerate().all(|(at, &number)| number == at as i64);
+    let place_of = |number: i64| match is_plain {
+        true => place("points", number, 0, numbers.len()),
+        false => places
+            .get(&number)
+            .copied()
+            .ok_or_else(|| Error::expected("points", format!("the number of a point in {}", path.display()), number)),
+    };
     let is_plane = width == 3 && points.iter().skip(2).step_by(3).all(|z| *z == 0.0);
     let d = if is_plane { 2 } else { width };
     let points: Vec<f64> = points.chunks_exact(width).flat_map(|x| &x[..d]).copied().collect();
@@ -182,10 +199,8 @@ pub fn read(bytes: &[u8], options: &SpecimenOptions) -> Result<SpecimenFile> {
             None => text(own).split_whitespace().collect(),
         };
         let at = |e: Error| e.on_line(*line);
-        let nodes: SmallVec<[usize; 4]> = named
-            .iter()
-            .map(|text| place("points", whole(text, "points", *line)?, 0, points.len() / d).map_err(at))
-            .collect::<Result<_>>()?;
+        let nodes: SmallVec<[usize; 4]> =
+            named.iter().map(|text| place_of(whole(text, "points", *line)?).map_err(at)).collect::<Result<_>>()?;
         let k = number(row, constant, "constant", *line)?;
         let (unit, is_length) = (text(unit), ["", "length"].contains(&text(kind)));
         if is_length && !unit.is_empty() && unit != OF_LENGTHS {

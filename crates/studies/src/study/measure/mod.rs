@@ -12,7 +12,7 @@ pub use outcome::{MeasuredNetwork, MeasuredRegion, NetworkStability};
 use crate::analysis::homogenise::{Elasticity, Tension, affine, of_body, of_period, of_points};
 use crate::engine::Setting;
 use crate::error::{Error, ErrorKind, Result};
-use crate::material::{CellMap, State};
+use crate::material::{CellMap, Plane, State};
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Specimen, content, lumped_masses};
 use crate::study::fits::EngineLimit;
@@ -36,8 +36,25 @@ pub struct MeasureOptions {
     pub frequencies: usize,
     /// The settings of an engine whose limit is sought.
     pub engine: Option<Setting>,
+    /// The settings of the engine to which the constants belong.
+    pub of_engine: Option<Setting>,
     /// The density of a network without masses, kg/m³; in the plane without a thickness kg/m².
     pub density: Option<f64>,
+}
+
+impl MeasureOptions {
+    /// The state of a plane network: as it is asked for, or as its file says it; plane stress and 1 m where one of both is known alone, and `None`
+    /// where neither is.
+    pub fn plane_state(plane: Option<Plane>, thickness: Option<f64>, own: Option<(Plane, f64)>) -> Option<State> {
+        if plane.is_none() && thickness.is_none() && own.is_none() {
+            return None;
+        }
+        let thickness = thickness.or(own.map(|own| own.1)).unwrap_or(1.0);
+        Some(match plane.or(own.map(|own| own.0)).unwrap_or(Plane::Stress) {
+            Plane::Stress => State::PlaneStress { thickness },
+            Plane::Strain => State::PlaneStrain { thickness },
+        })
+    }
 }
 
 /// The content of a network, m³ or m².
@@ -73,6 +90,15 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
         return Err(
             Error::expected("springs", "a stiffness of numbers", "one that is not finite").of_kind(ErrorKind::Limit)
         );
+    }
+    if options.state.is_none() && d == 2 {
+        notes.push("no thickness is known: figures are those of a network that is 1 m thick".into());
+    }
+    if let Some(setting) = options.of_engine.as_ref() {
+        notes.push(format!(
+            "the constants belong to {}, where the network answers in another way: moduli and frequencies are those of equations that are solved to the end",
+            setting.words()
+        ));
     }
     let tension = Tension::of(specimen, volume);
     notes.extend(tension_note(tension.as_ref()));
