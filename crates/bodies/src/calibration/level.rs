@@ -200,9 +200,11 @@ impl<'a> Level<'a> {
             if !model.forces(&displaced(points, &u), &mut force) {
                 return Ok(None);
             }
+            // Each load has a tangent of its own.
             all.push(Solved { loads: vec![index], equations, displacements: vec![u], internal: vec![force] });
         }
         let mut guesses = self.guesses.lock().expect("nothing panics while it holds the guesses");
+        // Written once all loads have an equilibrium: a θ that is refused leaves the guesses of the one before.
         guesses.iter_mut().zip(&all).for_each(|(guess, solved)| *guess = Some(solved.displacements[0].clone()));
         Ok(Some(all))
     }
@@ -305,6 +307,7 @@ impl<'a> Level<'a> {
         let (mut directs, mut pulls) = (Vec::new(), Vec::new());
         let (d, size) = (self.mesh.dimension, self.mesh.points.len());
         for &i in own {
+            // A place that several loads have in common has one solution.
             let next = known.len();
             if let std::collections::hash_map::Entry::Vacant(entry) = known.entry(observations[i].quantity) {
                 entry.insert(next);

@@ -58,7 +58,9 @@ impl Rest {
     fn of(mesh: &Mesh, edge: f64, refinements: usize, ratio: Option<f64>) -> Option<Rest> {
         let is_linear = mesh.blocks.iter().all(|block| block.element.has_corners_alone());
         let (order, goes_on) = (if is_linear { LINEAR } else { QUADRATIC }, |ratio: f64| ratio / (1.0 - ratio));
+        // No order is above that of the element: the bounds of the clamp below would be the wrong way round, a panic.
         let (least, most) = ((-order).exp2(), (-edge.min(order)).exp2());
+        // The constants above are reaches of 95 %.
         let deviation = |reach: f64| reach / ninety_five(None);
         match refinements {
             0 => return None,
@@ -71,6 +73,8 @@ impl Rest {
             }
             _ => {}
         }
+        // Answers that agree to rounding leave nothing beyond the last mesh; which share of it is taken does not
+        // matter.
         let met = ratio.unwrap_or(least);
         let bound = met.clamp(least, most);
         let doubt = ((met / most - ORDERLY) / (1.0 - ORDERLY)).clamp(0.0, 1.0);

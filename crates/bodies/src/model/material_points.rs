@@ -90,6 +90,7 @@ impl MaterialPoints {
                 }
             }
         }
+        // The energy of a branch is positive point by point, which a negative weight turns round.
         if all.weights.iter().any(|volume| !(*volume > 0.0)) {
             let expected = "an element whose quadrature has positive weights where stress relaxes: with others energy would be made";
             return Err(Error::expected("mesh", expected, "a weight below zero").of_kind(ErrorKind::Unsupported));

@@ -247,6 +247,7 @@ impl Network {
             }
         }
         let (mut sum, mut own) = (Vec::new(), Vec::new());
+        // Springs on the same points are summed first: a list of entries takes more memory than the matrix.
         for springs in self.on_same_points() {
             let of = &springs[0].points;
             let n = of.len() * d;

@@ -132,6 +132,7 @@ impl Network {
             let edge = Edge::of(spring, x, d);
             let (a, u, k) = (edge.change(a, d), edge.change(u, d), spring.constant);
             let (both, na, nu) = (dot(&a, &u), dot(&edge.n, &a), dot(&edge.n, &u));
+            // Without a rest length `K = k I` in any direction, and the quotients below would be 0/0.
             if spring.rest == 0.0 && edge.length == 0.0 {
                 found.constants[s] = both;
                 continue;

@@ -82,6 +82,8 @@ impl System {
         free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
         let mut places = Vec::with_capacity(2 * entries.len());
         each_value(entries, &place, |row, column, _| {
+            // A column that is held goes to the right-hand side, in the same pass as the values: the order here is that
+            // of `System::of`.
             if place[column] != usize::MAX {
                 places.push(Pair::new(place[row], place[column]));
             }
@@ -93,6 +95,7 @@ impl System {
             })?;
         let (starts, rows) = (symbolic.col_ptr(), symbolic.row_idx());
         let slot = |Pair { row, col }: &Pair<usize, usize>| {
+            // The rows of a column are sorted, and each place is among them.
             starts[*col] + rows[starts[*col]..starts[*col + 1]].partition_point(|other| other < row)
         };
         let slots = places.iter().map(slot).collect();
@@ -135,6 +138,7 @@ impl System {
                 }
             }
         });
+        // The factor needs no more than the rounded sums; residuals get both parts.
         let (values, lost) = sums.iter().map(|sum| (sum.kept().hi, sum.kept().lo)).unzip();
         let matrix = SparseColMat::new(pattern.symbolic.clone(), values);
         System { matrix, lost, reaction, prescribed: support.prescribed.clone(), pattern }
@@ -176,6 +180,7 @@ impl System {
         if self.is_accurate(&pivoted) {
             return Ok(Some(pivoted));
         }
+        // Its memory is free before that of L and U is asked for.
         drop(pivoted);
         let what = "the factor of the stiffness, which is not positive definite,";
         memory::require(what, GENERAL * self.analysis()?.bytes(), ADVICE)?;
@@ -240,6 +245,7 @@ impl System {
             factor.solve(&mut correction);
             let change = norm(&correction);
             // Corrections that do not decrease show that the factor is too inaccurate.
+            // A correction that is NaN ends the refinement here as well.
             if !(change < SLOWEST * last) {
                 break;
             }
@@ -249,6 +255,7 @@ impl System {
             let ratio = if last.is_finite() { change / last } else { 1.0 };
             last = change;
             // The next correction would be smaller by the same ratio: it would change no digit.
+            // A body without forces moves nowhere: 0/0 is NaN, and ends here as settled.
             if !(unsettled * ratio > f64::EPSILON) {
                 unsettled = 0.0;
                 break;
@@ -278,6 +285,7 @@ impl System {
             let (rest, inner): (Vec<f64>, Vec<f64>) = (rest.collect(), self.apply(&free));
             let left: Vec<f64> = rest.iter().zip(&inner).map(|(f, inner)| f - inner).collect();
             let residual = if norm(&left) == 0.0 { 0.0 } else { norm(&left) / norm(&rest) };
+            // A residual that is NaN is refined too, and then told to be infinite.
             if residual <= tolerance { (u, residual) } else { self.solve(factor, f) }
         };
         forces.iter().zip(self.solve_all(factor, forces)).map(checked).collect()
@@ -301,8 +309,10 @@ impl System {
                 free.iter().zip(column).for_each(|(&dof, x)| u[dof] = *x);
                 u
             };
+            // Chunks of no entries are a panic: a body that is held everywhere has no free ones.
             columns.chunks_exact(free.len().max(1)).map(all).collect()
         };
+        // The parts are collected in the order of the forces, whichever ends first.
         forces.par_chunks(part).flat_map_iter(solve).collect()
     }
 
@@ -339,6 +349,7 @@ impl Factor {
             Factor::Pivoted(pivoted) => pivoted.rows(),
             Factor::General(lu) => lu.nrows(),
         };
+        // A matrix without rows solves for nothing.
         let columns = x.len().checked_div(rows).unwrap_or(0);
         let x = MatMut::from_column_major_slice_mut(x, rows, columns);
         match self {

@@ -98,6 +98,7 @@ impl Tables {
             None => self.table(table),
         };
         let (_, cells) = &mut self.cells[index];
+        // Several springs may measure one cell, whose content is then computed once.
         let next = cells.rows.len() / cells.nodes;
         let cell = *self.known.entry((index, rows)).or_insert_with_key(|(_, rows)| {
             cells.rows.extend(rows);
@@ -117,6 +118,7 @@ impl Tables {
             let cells = Cells { nodes, dimension, points, gradients, rows, first: 0 };
             self.cells.push((table.gradients.clone(), cells));
         }
+        // Cells of one element share its table: it is compared by its bits once, and then by where it is.
         self.by_place.insert(table, index);
         index
     }
