@@ -230,6 +230,7 @@ impl Finer for FineBody {
             )
         };
         let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
+        // The lock is not held while loads are solved, which takes long.
         known().insert(name, answers.clone());
         Ok(answers)
     }
@@ -244,6 +245,7 @@ impl Finer for FineBody {
     ) -> Result<Arc<StretchedLoads>> {
         let Some(large) = &self.large else { return Ok(Arc::default()) };
         let known = || self.stretched.lock().expect("nothing panics while it holds the loads");
+        // The same loads are others at another stretch.
         let name = format!("{name} {stretch}");
         if let Some(loads) = known().get(&name) {
             return Ok(loads.clone());
@@ -260,6 +262,8 @@ impl Finer for FineBody {
 
     fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {
         let known = || self.squares.lock().expect("nothing panics while it holds the frequencies");
+        // The same count alone: the last of fewer modes are less accurate, and results would depend on what was asked
+        // before.
         if let Some((_, squares)) = known().iter().find(|(own, squares)| own == support && squares.len() == count) {
             return Ok(squares.clone());
         }
@@ -317,6 +321,7 @@ impl Finer for FineBody {
             true => [&self.mesh, mesh].map(cells),
             false => [&self.mesh, mesh].map(Mesh::point_count),
         };
+        // The ratio of sizes is the root of that of numbers.
         (fine as f64 / coarse as f64).powf(1.0 / mesh.cell_dimension() as f64)
     }
 
