@@ -226,6 +226,7 @@ impl Subject<'_> {
         for pattern in 0..PATTERNS {
             let change = |step: f64| {
                 let mut random = Random::new(pattern);
+                // Each coordinate moves by the whole step, up or down, as it does by the worst rounding.
                 let x: Vec<f64> = case.x.iter().map(|x| x + step * size * random.symmetric().signum()).collect();
                 of(&x).map_or(f64::INFINITY, |other| difference(&other, &k))
             };
