@@ -154,6 +154,7 @@ impl Network {
             constants[s] = ga * gu + past * bent;
             rests[s] = -k * bent;
             let third = third(spring, &a, &u, d);
+            // The product rule: the derivative of g is H, that of c is g, and that of H is the third derivative of c.
             let slope = |i: usize| k * (ha[i] * gu + hu[i] * ga + jet.gradient[i] * bent + past * third[i]);
             add(spring, (0..a.len()).map(slope), &mut points, d);
         });
