@@ -177,6 +177,7 @@ fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
 /// `(JᵀJ)⁻¹` of what the measurements see.
 fn inverse(columns: &[Vec<f64>]) -> DMatrix<f64> {
     let m = columns.len();
+    // A column of zeros, which no measurement sees, stays zero and is not 0/0.
     let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
     let normal = DMatrix::from_fn(m, m, |p, q| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]));
     let eigen = normal.symmetric_eigen();

@@ -188,6 +188,7 @@ impl<'a> Level<'a> {
     fn followed(&self, laws: &EnergyMap, newton: Newton) -> Result<Option<Vec<Solved>>> {
         let model = Body::new(&self.mesh, laws);
         let Some(rest) = model.respond(&self.mesh.points) else { return Ok(None) };
+        // Copied, so that the lock is free while loads are followed.
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let mut all = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {

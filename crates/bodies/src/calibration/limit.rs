@@ -109,6 +109,7 @@ impl Rest {
 /// The order of displacements at the edge where a clamped face meets a free one at a right angle: twice the exponent of the displacements
 /// there, `sin²(λ π/2) = ((κ + 1)² − 4 λ²)/(4 κ)` with Kolosov's κ (Williams 1952).
 pub fn clamped_order(moduli: &Moduli) -> f64 {
+    // 3 − 4 ν, that of plane strain: along an edge of a solid nothing stretches as it does across.
     let kappa = (moduli.lambda + 3.0 * moduli.mu) / (moduli.lambda + moduli.mu);
     let beyond = |exponent: f64| {
         let angle = (exponent * std::f64::consts::FRAC_PI_2).sin();

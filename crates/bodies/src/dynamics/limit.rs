@@ -137,5 +137,6 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
 /// If `4M − 2hC − h²K` is positive definite, every root of `M(z − 1)² + hC(z − 1) + h²K z` is inside the unit circle
 /// (Jury). Without damping the limit is `2/ω`, with a damping ratio ζ of all modes `2(√(1 + ζ²) − ζ)/ω`.
 pub(super) fn longest_step(square: f64, damping: f64) -> f64 {
+    // The root in its other form, (√(γ² + 4 ω²) − γ)/ω², would cancel at large damping, and be 0/0 without stiffness.
     4.0 / (damping + (damping * damping + 4.0 * square).sqrt())
 }

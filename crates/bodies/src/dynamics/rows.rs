@@ -129,6 +129,7 @@ impl<N: Coordinate> RowMotion for NetworkRows<'_, N> {
         let whole = Points { h: *h, rest, share, loads, force, u, v, x };
         match whole.rest.len() {
             0..=ROWS => with_coordinates(whole),
+            // Each row depends on itself alone: threads do not change it.
             _ => whole.pieces().into_par_iter().for_each(|piece| with_coordinates(piece)),
         }
         self.before.clear();

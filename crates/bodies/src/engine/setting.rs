@@ -114,6 +114,7 @@ impl Setting {
             Engine::Xpbd | Engine::Vbd | Engine::NewtonXpbd | Engine::NewtonVbd => Order::Colours,
         };
         let sweep = if engine == Engine::NewtonXpbd { Sweep::Jacobi } else { Sweep::GaussSeidel };
+        // 0.9 is the default `soft_body_relaxation` of Newton's SolverXPBD.
         let relaxation = if engine == Engine::NewtonXpbd { 0.9 } else { 1.0 };
         let precision = Precision::Single;
         Setting { engine, step: FRAME, substeps, iterations, sweep, relaxation, order, precision }

@@ -181,6 +181,8 @@ impl Truncated {
                     })?;
                     Ok(vectors(&found, chunk.len()))
                 };
+                // Chunks are solved each on its own, and the list keeps their order: threads do not change the
+                // displacements.
                 let found: Result<Vec<Vec<Vec<f64>>>> = forces.par_chunks(LANES).map(one).collect();
                 Ok(found?.concat())
             }

@@ -40,6 +40,7 @@ fn springs_of_edges(mesh: &Mesh, material: MaterialMap, fit: &ExactFit) -> Resul
     let is_uniform = matches!(material.materials()?, CellMap::Uniform(_));
     let domains = edge_domains(mesh, block, &material);
     let of_domain = |domain: &EdgeDomain| springs.springs(&domain.table, &domain.shares(is_uniform));
+    // Domains do not depend on each other, and the list keeps their order.
     let found: Vec<DomainSprings> = domains.par_iter().map(of_domain).collect();
     Ok(network_of(mesh.dimension, domains.iter().zip(&found), springs.law()))
 }

@@ -148,6 +148,7 @@ fn each_point<T: Default + Send>(
         results
     };
     for round in firsts.chunks(ROUND) {
+        // What threads find is taken in the order of the points: the result is the same on any number of threads.
         let parts: Vec<T> = round.par_iter().map(part).collect();
         parts.into_iter().for_each(&mut take);
     }

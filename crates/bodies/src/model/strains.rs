@@ -136,6 +136,7 @@ impl Share {
         let second = (to_third - first * first.dot(&to_third)).normalize();
         let turn = strain_in([first, second]);
         let stiffness = turn.transpose() * Matrix3::from_row_slice(&hooke.entries(2).0) * turn;
+        // Each of the three edges has a third of the triangle.
         Share { corners, area: area / 3.0, stiffness }
     }
 

@@ -51,6 +51,7 @@ impl Edges {
                     shares.extend(others.map(|b| (ordered(nodes[a], nodes[b]), false, volume / pairs)));
                     if is_across {
                         let mut side: Vec<usize> = (0..n).filter(|b| *b != a).map(|b| nodes[b]).collect();
+                        // Sorted, so that the two cells at a side name it alike.
                         side.sort_unstable();
                         sides.push((side, nodes[a], volume));
                     }

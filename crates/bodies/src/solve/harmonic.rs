@@ -63,6 +63,7 @@ impl Harmonic {
             u.iter_mut().zip(&correction).for_each(|(u, c)| *u += c);
             residual = rhs.iter().zip(self.apply(coefficients, &u)).map(|(f, inner)| f - inner).collect();
         }
+        // The comparison is negated, so that NaN is refused.
         if !(norm(&residual) <= SOLVED * size) {
             let expected = "parts that hold the body together at each frequency";
             return Err(Error::expected("springs", expected, "a motion that meets next to no resistance")

@@ -120,6 +120,7 @@ fn eigen(projected: &DMatrix<f64>, m: usize) -> Option<Eigen> {
     }
     let eigen = whole.symmetric_eigen();
     let mut order: Vec<usize> = (0..m).collect();
+    // The decomposition gives eigenvalues in no order.
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), eigen.eigenvectors.select_columns(&order)))
 }

@@ -180,6 +180,7 @@ fn largest_eigenpairs(
         }
         let eigen = projected.clone().symmetric_eigen();
         let mut order: Vec<usize> = (0..m).collect();
+        // The decomposition gives eigenvalues in no order.
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let theta = DVector::from_iterator(m, order.iter().map(|&k| eigen.eigenvalues[k]));
         let is_full = m + width > BLOCKS * width;
@@ -286,6 +287,7 @@ pub(crate) fn generator() -> impl FnMut() -> f64 {
         seed ^= seed << 13;
         seed ^= seed >> 7;
         seed ^= seed << 17;
+        // The upper 53 bits are as many as a float holds without rounding.
         (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     }
 }

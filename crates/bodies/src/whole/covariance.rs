@@ -115,6 +115,7 @@ impl Determination {
         for (value, vector) in pairs() {
             let own: Vec<usize> = (0..m).filter(|&p| is_seen(p) && vector[p].abs() > PART).collect();
             let width = |p: usize| reach * size * vector[p].abs() / (value.sqrt() * norms[p]);
+            // A value that is rounding may be negative, and the width NaN: such a direction is asked for first.
             if own.iter().any(|&p| !(*value > UNSEEN * UNSEEN) || width(p) > WEAK.ln()) {
                 weak.push(own);
             }

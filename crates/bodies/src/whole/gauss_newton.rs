@@ -115,6 +115,7 @@ impl GaussNewton {
         let first = square;
         let mut path = StepPath { size: gradient.len(), parts: Vec::new() };
         for _ in 0..self.products {
+            // It ends also where the gradient is zero, for which the quotients below would be 0/0.
             if !(square > self.accuracy * self.accuracy * first) {
                 break;
             }
@@ -163,6 +164,7 @@ impl StepPath {
         let (mut step, mut promised) = (vec![0.0; self.size], 0.0);
         for PathPart { direction, length, square, curvature } in &self.parts {
             let edge = edge(&step, direction, radius);
+            // A length that is infinite or NaN, as without curvature, ends at the edge.
             let ends = !(*length < edge);
             let length = if ends { edge } else { *length };
             promised += 2.0 * length * square - length * length * curvature;

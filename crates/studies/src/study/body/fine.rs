@@ -170,6 +170,7 @@ fn difference(mesh: &Mesh, fine: &Mesh) -> Result<Option<String>> {
     let content = |mesh: &Mesh| Moments::of_body(mesh, CellMap::Uniform(1.0), CellMap::Uniform(1.0)).mass;
     let [own, other] = [content(mesh), content(fine)];
     let unit = ["m", "m²", "m³"][mesh.cell_dimension() - 1];
+    // A body without content has a quotient that is infinite or NaN, and is refused as well.
     if !((own / other).max(other / own) <= OTHER) {
         let expected = format!("a mesh of the same body, of {own:.4e} {unit}");
         return Err(Error::expected("mesh", expected, format!("one of {other:.4e} {unit}")));

@@ -166,6 +166,7 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
             (0..d).map(|k| points.iter().map(|&p| specimen.points[p * d + k]).sum::<f64>() / count).collect();
         let from = |p: usize, k: usize| specimen.points[p * d + k] - centre[k];
         let extent = points.iter().flat_map(|&p| (0..d).map(move |k| (p, k))).map(|(p, k)| from(p, k).abs());
+        // A part of one point has no extent, by which rotations are divided.
         let extent = extent.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let row = |dof: usize| -> Vec<f64> {
             let (p, axis) = (dof / d, dof % d);
