@@ -142,6 +142,7 @@ impl<'a> Level<'a> {
     fn small(&self, materials: &MaterialMap) -> Result<Option<Vec<Solved>>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {
+            // All loads under a support have one factor.
             match groups.iter_mut().find(|group| self.loads[group[0]].support == load.support) {
                 Some(group) => group.push(index),
                 None => groups.push(vec![index]),
@@ -256,6 +257,7 @@ impl<'a> Level<'a> {
         let count = displacements.len();
         for (p, moves) in moves.chunks_exact(count).enumerate() {
             let moved: Vec<Vec<f64>> = moves.iter().map(|u| self.places.interpolate(u)).collect();
+            // The forces of the body take a pass over all cells, which displacements alone do not need.
             let held = match own.iter().any(|&i| observations[i].quantity.is_force()) {
                 true => self.tangent_forces(at, displacements, moves, &changes[p])?,
                 false => vec![Vec::new(); count],

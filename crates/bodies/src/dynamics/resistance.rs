@@ -130,6 +130,7 @@ impl<'a> Resistance<'a> {
     pub fn linear_tangent(&self) -> Vec<f64> {
         let mut values = self.rest.values().to_vec();
         if let Some(memory) = &self.memory {
+            // The tangent of a linear memory does not depend on the displacements.
             let still = vec![0.0; self.points.len()];
             memory.add(&still, &mut vec![0.0; still.len()], Some(&mut values[self.elastic_entries..]));
         }

@@ -268,6 +268,7 @@ impl<const D: usize> Body<D> {
 fn solved<const D: usize>(mut a: [[f64; D]; D], mut b: [f64; D]) -> [f64; D] {
     for i in 0..D {
         for k in i + 1..D {
+            // Pivots of positive definite equations are above zero, and no rows are exchanged.
             let factor = a[k][i] / a[i][i];
             for j in i..D {
                 a[k][j] -= factor * a[i][j];

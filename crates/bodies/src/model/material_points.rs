@@ -85,6 +85,7 @@ impl MaterialPoints {
                 for domain in edge_domains(mesh, block, material) {
                     let mu: f64 =
                         domain.cells.iter().map(|(cell, share)| share * materials.at(0, *cell).moduli().mu).sum();
+                    // A domain lies in one region: its first cell has that of all.
                     let region = domain.cells.first().map_or(0, |(cell, _)| *material.region().at(0, *cell));
                     all.add(&domain.nodes, &domain.table.gradients, mu, domain.table.weights[0], region);
                 }

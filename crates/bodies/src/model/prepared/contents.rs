@@ -87,6 +87,7 @@ impl Contents {
             if spring.law.is_some() {
                 lawful.push(Lawful { cell: at, scale, spring: s });
             } else {
+                // Linear springs on one point of a cell add up to one, which is evaluated once.
                 all.slopes[at] += spring.constant * scale * scale;
                 all.pulls[at] += spring.constant * scale * spring.rest;
             }

@@ -93,6 +93,7 @@ pub struct Tables {
 impl Tables {
     /// The table and the cell of it.
     pub fn cell(&mut self, table: &Tabulation, rows: Vec<u32>) -> (usize, usize) {
+        // The network holds its tables while they are collected, so that no two have one address.
         let index = match self.by_place.get(&std::ptr::from_ref(table)) {
             Some(index) => *index,
             None => self.table(table),
