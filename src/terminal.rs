@@ -86,9 +86,11 @@ impl Stage {
         let elapsed = self.start.elapsed();
         // How many steps there will be may not be known, and none may be left.
         let left = total.checked_sub(done).filter(|left| *left > 0)?;
+        // What was done before the stage was seen, as by a checkpoint, took none of the time.
         let made = done.checked_sub(self.first)?;
         let is_enough = 100 * made >= ENOUGH * total || elapsed > LONG_TRIAL;
         (made > 0 && elapsed > TRIAL && is_enough)
+            // A pace near zero gives a time beyond all durations.
             .then(|| Duration::try_from_secs_f64(elapsed.as_secs_f64() * left as f64 / made as f64).ok())
             .flatten()
     }
@@ -117,6 +119,7 @@ impl Terminal {
             Event::Stage { name, done, total } => (name, done, total),
             Event::Note(note) => return self.note(note),
         };
+        // A count that falls is that of a stage with the same name that begins again.
         if self.stage.name != name || done < self.stage.first {
             self.end_stage();
             self.stage = Stage::new(name, done);

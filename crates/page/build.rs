@@ -12,6 +12,7 @@ fn main() {
     let text = elements.split_once('>').and_then(|(_, rest)| rest.split_once("</script>"));
     let library = text.map(|(library, _)| library).filter(|library| library.contains("plotly.js v"));
     let library = library.expect("the package plotly no longer begins with the library: adapt this build script");
+    // Compressed once for each build, and carried by each page.
     let mut compressed = GzEncoder::new(Vec::new(), Compression::best());
     compressed.write_all(library.as_bytes()).expect("memory grows");
     let folder = std::env::var("OUT_DIR").expect("cargo sets it");

@@ -142,6 +142,7 @@ impl SpringBody {
             let u = found.x.iter().zip(&x).map(|(now, rest)| now - rest).collect();
             let undefined = || Error::expected("points", "positions where the springs have a tangent", "others");
             let tangent = body.network().respond(&found.x).ok_or_else(undefined)?.tangent;
+            // The tangent is for changes of the equilibrium, in which what is held stays where it is.
             let support = Support { prescribed: loads.support.prescribed.iter().map(|p| p.map(|_| 0.0)).collect() };
             Ok((u, found.is_rounded, Tangent::new(body, found.x, tangent, support)?))
         })?;
@@ -275,6 +276,7 @@ impl Tangent {
         let NetworkNumbers { mut constants, mut rests, mut points } = found;
         let lengths = self.at.body.network().lengths.len();
         let (contents, of_contents) = (constants.split_off(lengths), rests.split_off(lengths));
+        // Forces have no gradient in the points: their list is empty.
         points.resize(self.x.len(), 0.0);
         let numbers = (list(py, constants), list(py, rests), list(py, contents), list(py, of_contents));
         Ok((numbers, matrix(py, points, self.dimension())))

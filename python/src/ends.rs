@@ -23,6 +23,7 @@ impl Ends {
     /// Ends the call: no function is called any more, and the work ends at its next step.
     pub fn set(&self, key: &str, exception: PyErr) {
         let mut first = self.exception.lock().unwrap_or_else(PoisonError::into_inner);
+        // Functions on several threads may raise at once: the first exception is kept.
         if !self.is_set.swap(true, Ordering::AcqRel) {
             *first = Some((key.into(), exception));
         }

@@ -41,6 +41,7 @@ pub fn find(body: &Body, loads: &Loads) -> Result<Found> {
         None => return Err(loose("springs without a response at rest")),
     };
     let pattern = Newton::pattern(&tangent, support)?.placed(points, body.dimension());
+    // The pattern is all that is needed of it, and factors take the memory.
     drop(tangent);
     let ended = |u: &[f64], is_rounded: bool| {
         let x = displaced(points, u);

@@ -50,6 +50,7 @@ impl Factorized {
                 return Err(loose("a spring without a stiffness at rest"));
             }
             let system = System::new(&entries, &support)?.placed(body.points(), body.dimension());
+            // The factor takes most of the memory, and needs the entries no more.
             drop(entries);
             let factor = system.factorize()?.ok_or_else(|| loose("a motion without stiffness"))?;
             let stiffness = Arc::new(body.stiffness(None)?);
@@ -65,6 +66,7 @@ impl Factorized {
     /// Forces act on a motion that has no stiffness.
     pub fn displacements(&self, forces: &[Vec<f64>], prescribed: &[Vec<f64>]) -> Result<Vec<(Vec<f64>, f64)>> {
         let rest = |(f, held): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
+            // Most loads displace nothing, and need no product with the stiffness.
             if held.iter().all(|u| *u == 0.0) {
                 return f.clone();
             }
@@ -103,6 +105,7 @@ impl Factorized {
         let (found, beyond) = alone(py, move || {
             let found = own.displacements(&forces, &prescribed)?;
             let of = |(u, _): &(Vec<f64>, f64)| own.body.deformation(u);
+            // The largest of all does not depend on the order in which threads compare.
             let largest = found.par_iter().map(of).reduce(Deformation::default, Deformation::max);
             Ok((found, beyond_linear(largest)))
         })?;

@@ -60,6 +60,7 @@ impl Force {
     /// # Errors
     /// An interrupt.
     pub fn tries_arrays(&self, py: Python, parameters: usize) -> PyResult<bool> {
+        // No two numbers are equal, so that springs or arguments which are mixed up show.
         let strains = [[-0.3, 0.1, 0.2], [0.05, -0.2, 0.4]];
         let rests = [1.0, 2.5];
         let measures: [Vec<f64>; 2] = std::array::from_fn(|i| strains[i].map(|s| (1.0 + s) * rests[i]).to_vec());
@@ -91,6 +92,7 @@ impl Force {
         };
         match compare() {
             Ok(is_same) => Ok(is_same),
+            // A function that takes no arrays raises. Interrupts are no such exceptions, and go on.
             Err(fault) if fault.is_instance_of::<PyException>(py) => Ok(false),
             Err(other) => Err(other),
         }

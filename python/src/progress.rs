@@ -170,6 +170,7 @@ fn reporter<T>(ends: &Ends, steps: Option<Sender<Told<T>>>) -> impl FnMut(Event)
             resume_unwind(Box::new(Ended));
         }
         let (Event::Stage { name, done, total }, Some(steps)) = (event, &steps) else { return };
+        // The last step is always told, so that a bar comes to its end.
         if last.is_some_and(|last| last.elapsed() < BETWEEN) && done < total {
             return;
         }

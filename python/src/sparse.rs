@@ -11,6 +11,8 @@ pub type Rows<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyAny>, Bound<'py, P
 
 pub fn rows(py: Python<'_>, matrix: CompressedRows) -> Rows<'_> {
     let CompressedRows { starts, columns, values } = matrix;
+    // Places in the values are at most their number, and columns of a square matrix are fewer than the starts of rows:
+    // the casts below hold.
     let is_short = i32::try_from(values.len()).is_ok() && i32::try_from(starts.len()).is_ok();
     let (indices, indptr) = if is_short {
         let columns = columns.into_iter().map(|column| column as i32).collect();

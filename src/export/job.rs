@@ -245,6 +245,7 @@ impl<'a> Job<'a> {
         for spring in &self.parts.lengths {
             let [a, b] = spring.points;
             let length = distance(self.place(a), self.place(b));
+            // Without a rest length the slope is k ℓ/(2 ℓ) = k/2, by which the sum is judged.
             add(ordered(a, b), spring.constant * (length - spring.rest) / (2.0 * length), spring.constant / 2.0);
         }
         for part in &self.parts.contents {

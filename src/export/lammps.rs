@@ -45,6 +45,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
 
 /// Atoms, bonds and dihedrals count from 1. Atoms of equal mass share a type.
 fn data(job: &Job) -> String {
+    // LAMMPS has one mass for each type of atoms: points of the same mass share a type.
     let mut masses = job.masses.to_vec();
     masses.sort_by(f64::total_cmp);
     masses.dedup();
@@ -143,6 +144,7 @@ fn input(job: &Job) -> String {
     let (longest_step, step) = (job.step, 0.2 * job.step);
     // A ten-thousandth of a millionth of the weight.
     let weight = job.masses.iter().sum::<f64>() * (gx * gx + gy * gy + gz * gz).sqrt();
+    // LAMMPS finds the atoms of a bond within this reach alone: springs may stretch to twice the longest.
     let (reach, least) = (2.1 * longest, 1e-10 * weight);
     let style = style(job);
     let styles: Vec<&str> = dihedral_styles(job).into_iter().collect();

@@ -65,6 +65,7 @@ fn write(network: &NetworkRecord, gravity: Option<&[f64]>) -> Result<Vec<NamedFi
 
 /// The arrays, named as the simulator names its arguments. Points that are held come last: they are its controllers.
 fn arrays(job: &Job) -> io::Result<Vec<u8>> {
+    // Points that are held along some axes only were refused: the first axis tells of all.
     let held = job.held_along(0);
     let count = job.masses.len();
     let mut order: Vec<usize> = (0..count).filter(|p| held.binary_search(p).is_err()).collect();

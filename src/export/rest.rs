@@ -175,6 +175,7 @@ pub(super) fn affordable(points: &[f64], dimension: usize, parts: &Parts) -> usi
     let couples = parts.lengths.iter().map(|part| &part.points[..]);
     let coupled = couples.chain(parts.contents.iter().map(|part| &part.points[..]));
     let factor = factor_cost_of(points, dimension, coupled).map_or(f64::INFINITY, |cost| cost.operations);
+    // An unknown cost is infinite, and the quotient zero.
     (MOST_OPERATIONS / (FACTORS * factor.max(1.0))) as usize
 }
 
@@ -226,6 +227,7 @@ impl Body<'_> {
         let Some(factor) = system.cholesky()? else { return Ok(None) };
         let (displacement, _) = system.solve(&factor, &case.forces);
         let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        // The size of the body is that of its offsets from one of its points, wherever it lies.
         let first = &self.points[..self.network.dimension];
         let offsets: Vec<f64> =
             self.points.chunks_exact(first.len()).flat_map(|x| x.iter().zip(first).map(|(x, o)| x - o)).collect();
@@ -241,9 +243,11 @@ impl Body<'_> {
             |x: &[f64], cell: &[usize]| DMatrix::from_fn(d, d, |k, a| x[cell[a + 1] * d + k] - x[cell[0] * d + k]);
         let cells = self.record.cells.iter().flat_map(|block| &block.points);
         for cell in cells.filter(|cell| cell.len() == d + 1) {
+            // A cell that is flat in the mesh has no deformation gradient.
             let Some(inverse) = edges(&self.points, cell).try_inverse() else { continue };
             let gradient = edges(&moved, cell) * inverse;
             found.simplices += 1;
+            // A cell whose determinant is NaN counts as inside out.
             found.inverted += usize::from(!(gradient.determinant() > 0.0));
             for stretch in gradient.singular_values().iter() {
                 found.least = found.least.min(*stretch);

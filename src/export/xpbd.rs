@@ -89,6 +89,7 @@ fn constraints(job: &Job, setting: &Setting) -> Vec<Constraint> {
     let count = all.len();
     let contents = job.parts.contents.iter().filter(|part| has_compliance(part.constant));
     all.extend(contents.map(|part| {
+        // A cell that fills its space has a content with a sign; the area of a triangle in space has none.
         let kind = if part.points.len() > job.network.dimension { "content" } else { "area" };
         Constraint::new(kind, &part.points, part.constant, part.rest)
     }));

@@ -15,6 +15,7 @@ const ROUNDS: usize = 8;
 
 /// The rate at which velocities fall, 1/s, for the lowest angular frequency.
 pub fn damping(slowest: f64) -> f64 {
+    // x″ + c x′ + ω² x = 0 does not swing from c = 2 ω on.
     2.0 * slowest
 }
 
@@ -53,11 +54,14 @@ pub fn come_to_rest(session: &mut Session, forces: &[f64], slowest: f64) -> Resu
             break;
         };
         let largest = |of: &[f64]| of.iter().zip(to).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // Without any displacement the share is NaN, which counts as moving in each comparison.
         moving = largest(from) / largest(&start);
         before = after;
         if moving <= STILL {
             break;
         }
+        // A time that is a quarter longer, of which the last fifth is yet to come. After all rounds it is 1.25⁷ times
+        // the first, nearly five.
         steps += steps / 4;
     }
     warnings.sort();

@@ -89,6 +89,7 @@ impl Session {
     /// The interpreter cannot be started, or does not find the engine; the error says how it is installed.
     pub fn start(engine: &Engine, program: &Path, folder: &Path) -> Result<Session> {
         let log = folder.join(format!("{}.log", engine.name));
+        // Into a file: a pipe that nobody reads would fill, and the engine would wait for ever.
         let said = File::create(&log).map_err(|e| Error::io("cannot be written", e).in_file(&log))?;
         // Compiled Python beside the scripts would be of no use.
         let mut command = Command::new(program);

@@ -104,6 +104,7 @@ impl Trial<'_> {
     /// law has another modulus, and positive if iterations are left out. If b alone is at least the right compliance, no
     /// factor makes tension right.
     fn factor(&mut self, solver: &Solver, model: Model, given: Told, error: f64) -> Result<Factor> {
+        // With b = 0 this factor is right at once, and it is near the right one where b is small.
         let first = 1.0 + error;
         let told = Told { telling: Telling::Repaired, factor: first, ..given };
         let rows = self.measured(solver, model, told, Some(TENSION))?;

@@ -63,6 +63,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
         let path = |points: &[[f64; 2]], color: &str, dashes: &str, width: f64| {
             let mut data = Data::new();
             for &[a, b] in &edges {
+                // More digits are not seen, and make the file larger.
                 let hundredth = |(x, y): (f64, f64)| ((x * 100.0).round() / 100.0, (y * 100.0).round() / 100.0);
                 data = data.move_to(hundredth(on_page(&points[a]))).line_to(hundredth(on_page(&points[b])));
             }
@@ -119,5 +120,6 @@ fn faces_viewer(corners: &[&[f64]], centre: [f64; 3]) -> bool {
     let [a, b] = [from(corners[1], corners[0]), from(corners[2], corners[0])];
     let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let outward = inner(normal, from(corners[0], &centre)).signum();
+    // The projection maps this direction to a point: it is the one from which it looks.
     outward * inner(normal, [0.35, -1.0, 0.25]) > 0.0
 }

@@ -77,6 +77,7 @@ pub(super) fn file_stems<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String
             stem = UNNAMED.into();
         }
         let numbered = (2..).map(|i| format!("{stem}-{i}"));
+        // Some file systems do not tell capital letters from small ones: two fits would write one file.
         let is_free = |stem: &String| !stems.iter().any(|other| other.eq_ignore_ascii_case(stem));
         let free = std::iter::once(stem.clone()).chain(numbered).find(is_free);
         stems.extend(free);

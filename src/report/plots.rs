@@ -202,6 +202,7 @@ fn constants(run: &RunFolder, fit: Option<&str>) -> Result<Chart> {
     // Where all are equal, an interval has a width all the same.
     let width = ((largest - least) / INTERVALS as f64).max(1e-6 * largest.abs()).max(f64::MIN_POSITIVE);
     let mut counts = vec![0usize; INTERVALS];
+    // The largest value belongs to the last interval, and not to one beyond.
     values.iter().for_each(|value| counts[(((value - least) / width) as usize).min(INTERVALS - 1)] += 1);
     let middle = |i: usize| least + (i as f64 + 0.5) * width;
     let part = |name: &str, keep: fn(f64) -> bool| {

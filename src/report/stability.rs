@@ -234,6 +234,7 @@ fn map(subject: &str, rows: &[&StabilityRow]) -> String {
 }
 
 fn shade(error: f64) -> &'static str {
+    // Zero has no logarithm, and all of its digits are right.
     let decade = if error > 0.0 { error.log10() } else { -16.0 };
     let place = ((decade + 16.0) / 2.0).floor().clamp(0.0, (SHADES.len() - 1) as f64);
     SHADES[place as usize]

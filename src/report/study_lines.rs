@@ -147,6 +147,7 @@ impl<R: Line> StudyLines<R> {
         let failed = |what: &str, e| Error::io(what, e).in_file(&path);
         let opened = File::options().read(true).append(true).create(true).open(&path);
         let mut file = opened.map_err(|e| failed("cannot be written", e))?;
+        // Other errors, such as those of a file system without locks, do not stop a study. A lock ends with its process.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             return Err(Error::new("another process is writing to it: is the same study running?")
                 .of_kind(ErrorKind::Io)
@@ -224,6 +225,7 @@ impl<R: Line> StudyLines<R> {
     /// # Errors
     /// It cannot be written.
     pub fn push(&mut self, record: R) -> Result<()> {
+        // One write for each line: what a kill leaves is a beginning of it, which the next run cuts off.
         let written = self.file.write_all(record.line().as_bytes()).and_then(|()| self.file.flush());
         written.map_err(|e| Error::io("cannot be written", e).in_file(&self.path))?;
         self.records.insert(record.mark(), record);

@@ -253,6 +253,7 @@ impl Data<'_> {
     fn norms(&self) -> Chart {
         let scatter = |(place, fit): (usize, String)| {
             let all = self.in_both_norms(&fit);
+            // Without points the quotient is zero, by which no iterator steps.
             let every = all.len().div_ceil(MOST).max(1);
             let points = all.into_iter().step_by(every).filter(|(a, b)| *a > ROUNDING && *b > ROUNDING).collect();
             Series::new(fit, points, Shape::Dots).styled(place)
@@ -282,6 +283,7 @@ pub fn thinned(records: &[CaseRecord], of: Option<&str>) -> Option<String> {
 
 /// The points that no other is at most as far in both directions, from the left.
 fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    // Of equal times the least error comes first, so that the others are not below it.
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut front: Vec<(f64, f64)> = Vec::new();
     for point in points {

@@ -136,6 +136,7 @@ pub fn means<'a>(cases: impl IntoIterator<Item = &'a Vec<Option<f64>>>) -> Vec<O
     let cases: Vec<_> = cases.into_iter().collect();
     let shapes = cases.iter().map(|case| case.len()).max().unwrap_or(0);
     let mean = |shape: usize| {
+        // An error of zero has no logarithm: the bound of rounding takes its place.
         let logarithms = cases.iter().map(|case| Some(case.get(shape).copied().flatten()?.max(ROUNDING).ln()));
         let sum: f64 = logarithms.sum::<Option<f64>>()?;
         Some((sum / cases.len() as f64).exp())
@@ -151,6 +152,7 @@ fn of_times(records: &[CaseRecord], kind: &str, (first, second): (&str, &str)) -
         let lists = [first, second].map(|fit| method(record, fit).and_then(|method| method.times.get(kind)));
         let [Some(a), Some(b)] = lists else { continue };
         let (ratio, own) = (median(a) / median(b), ratio_interval(a, b));
+        // A clock that has not moved gives zero over zero.
         if !ratio.is_finite() {
             continue;
         }
@@ -173,6 +175,7 @@ fn of_times(records: &[CaseRecord], kind: &str, (first, second): (&str, &str)) -
         interval: interval?,
         p: f64::NAN,
     };
+    // Times of different cases are not of one distribution: where cases disagree nothing is said.
     let verdict = if verdicts.iter().all(|other| *other == verdict) { verdict } else { Verdict::Tie };
     let quantity = format!("seconds {kind}");
     Some(Pair { quantity, first: first.into(), second: second.into(), paired, adjusted: None, verdict })

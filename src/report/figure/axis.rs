@@ -57,6 +57,7 @@ pub(super) fn rings(largest: f64) -> Vec<f64> {
     let rough = largest / 3.0;
     let power = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|step| step * power).into_iter().find(|step| *step >= rough).unwrap_or(rough);
+    // The last ring may be beyond the largest value by rounding.
     (1..=10).map(|i| f64::from(i) * step).take_while(|ring| *ring <= largest * 1.0001).collect()
 }
 

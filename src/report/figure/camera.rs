@@ -83,6 +83,7 @@ pub fn silhouette(faces: &[Vec<usize>], points: &[Seen], is_solid: bool) -> Vec<
     }
     let is_edge = |(front, back): (usize, usize)| front == 1 && (back == 1 || !is_solid) || front + back == 1;
     let mut edges: Vec<[usize; 2]> = sides.into_iter().filter(|(_, count)| is_edge(*count)).map(|(e, _)| e).collect();
+    // The order of a hash map differs from run to run, and the picture must not.
     edges.sort_unstable();
     edges
 }

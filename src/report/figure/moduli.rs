@@ -185,12 +185,14 @@ impl Moduli {
 /// A closed line.
 fn around(moduli: &[f64], at: impl Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     let angle = |i: usize| std::f64::consts::TAU * i as f64 / moduli.len() as f64;
+    // The first point again at the end closes the line.
     (0..=moduli.len()).map(|i| at(angle(i), moduli[i % moduli.len()])).collect()
 }
 
 /// `None` if the tensor is not known, or some strain has no modulus.
 fn curve(place: usize, fit: &FitRecord, planes: &[[usize; 2]], thickness: f64) -> Option<ModulusCurve> {
     let stiffness = Some(&fit.as_material.stiffness).filter(|c| c.is_square() && c.iter().all(|c| c.is_finite()))?;
+    // A tensor without a Cholesky factor has a strain that releases energy, and no modulus.
     let (size, compliance) = (stiffness.nrows(), stiffness.clone().cholesky()?.inverse());
     let moduli = |plane: &[usize; 2]| -> Vec<f64> {
         let direction = |i: usize| {

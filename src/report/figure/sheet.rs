@@ -27,6 +27,7 @@ impl Columns {
 
     /// Pixels across, 96 an inch.
     pub(in crate::report) fn pixels(self) -> u32 {
+        // A pixel of CSS is 1/96 inch.
         (f64::from(self.millimetres()) * 96.0 / 25.4) as u32
     }
 }

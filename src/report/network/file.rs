@@ -159,6 +159,7 @@ impl<'a> NetworkFile<'a> {
         let masses = self.masses()?;
         let d = self.mesh.dimension;
         let held: Vec<bool> = (0..self.mesh.points.len()).map(|dof| support.is_fixed(dof)).collect();
+        // A point without mass that moves has an infinite frequency, and no explicit step.
         let is_sound = held.iter().enumerate().all(|(dof, held)| *held || masses[dof / d] > 0.0);
         if !is_sound {
             return None;

@@ -97,6 +97,7 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     let steps = before + steps;
     let (columns, residuals) = (limit.weighed(&now.columns), limit.residuals(&now.values()));
     let known = Determination::by(&columns, &residuals, residuals.len(), noise.then_some(1.0))?;
+    // Residuals are in units of known noise; without it their spread stands for the noise.
     let size = if noise { 1.0 } else { known.residual };
     let inverse = inverse(&columns);
     let covariance = (0..m).map(|p| {
@@ -112,6 +113,7 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     let changes: Vec<Vec<f64>> = (0..limit.levels.len() - 1).map(|level| pulled(&now.change(level))).collect();
     // The errors of meshes move all unknowns together.
     let mesh = now.rest.zip(changes.last()).map(|(rest, last)| {
+        // With one refinement there is no change before the last, and κ does not count.
         let before = |p: usize| changes.len().checked_sub(2).map_or(0.0, |before| changes[before][p]);
         let largest = last.iter().fold(0.0, |most: f64, last| most.max(last.abs()));
         last.iter().enumerate().map(|(p, last)| rest.spread(*last, before(p)) + rest.hidden * largest).collect()
@@ -228,6 +230,7 @@ fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
 /// `(JᵀJ)⁻¹` of what the measurements see.
 fn inverse(columns: &[Vec<f64>]) -> DMatrix<f64> {
     let m = columns.len();
+    // A column of zeros, which no measurement sees, stays zero and is not 0/0.
     let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
     let normal = DMatrix::from_fn(m, m, |p, q| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]));
     let eigen = normal.symmetric_eigen();

@@ -80,6 +80,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
     }
     let pairs = pairs(&limit.levels[0].mesh);
     let unit = pairs.iter().map(|pair| pair.distance).sum::<f64>() / pairs.len().max(1) as f64;
+    // Sides over the largest one, so that the weight has no unit.
     let largest = pairs.iter().map(|pair| pair.side).fold(0.0, f64::max);
     let pairs = pairs.into_iter().map(|pair| Pair { side: pair.side / largest, ..pair }).collect();
     let mut search = Search { limit, pairs, prior, unit, steps: 0 };
@@ -114,6 +115,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
     }
     if let (Some(mut high), Some(mut low)) = (outside, inside) {
         for _ in 0..BISECTIONS {
+            // The weight matters by its logarithm.
             let middle = (high * low).sqrt();
             let (tried, at) = search.stage(best.0.clone(), search.again(&best.0)?, middle)?;
             if is_within(&at) {
@@ -129,6 +131,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
     let normal = search.normal(&columns, &theta, weight);
     let deviations = match Cholesky::new(normal) {
         Some(factor) => factor.inverse().diagonal().iter().map(|v| v.max(0.0).sqrt()).collect(),
+        // A matrix that rounding has made indefinite says nothing of deviations; NaN is told as unknown.
         None => vec![f64::NAN; m],
     };
     let misfit = misfit(&at);
@@ -174,6 +177,8 @@ impl Search<'_, '_> {
             let difference = theta[pair.cells[0]] - theta[pair.cells[1]];
             match self.prior {
                 Prior::Smooth => self.pair_weight(pair, theta) * difference * difference,
+                // Less its value for equal moduli, so that a uniform field costs nothing and small changes of the sum
+                // keep their digits.
                 Prior::Edges => pair.side * (difference.hypot(ROUND) - ROUND),
             }
         };

@@ -145,6 +145,7 @@ impl<'a> Level<'a> {
     fn small(&self, materials: &MaterialMap) -> Result<Option<Vec<Solved>>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {
+            // All loads under a support have one factor.
             match groups.iter_mut().find(|group| self.loads[group[0]].support == load.support) {
                 Some(group) => group.push(index),
                 None => groups.push(vec![index]),
@@ -191,6 +192,7 @@ impl<'a> Level<'a> {
     fn followed(&self, laws: &EnergyMap, newton: Newton) -> Result<Option<Vec<Solved>>> {
         let model = Body::new(&self.mesh, laws);
         let Some(rest) = model.respond(&self.mesh.points) else { return Ok(None) };
+        // Copied, so that the lock is free while loads are followed.
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let mut all = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {
@@ -204,9 +206,11 @@ impl<'a> Level<'a> {
             if !model.forces(&displaced(points, &u), &mut force) {
                 return Ok(None);
             }
+            // Each load has a tangent of its own.
             all.push(Solved { loads: vec![index], equations, displacements: vec![u], internal: vec![force] });
         }
         let mut guesses = self.guesses.lock().expect("nothing panics while it holds the guesses");
+        // Written once all loads have an equilibrium: a θ that is refused leaves the guesses of the one before.
         guesses.iter_mut().zip(&all).for_each(|(guess, solved)| *guess = Some(solved.displacements[0].clone()));
         Ok(Some(all))
     }
@@ -257,6 +261,7 @@ impl<'a> Level<'a> {
         let count = displacements.len();
         for (p, moves) in moves.chunks_exact(count).enumerate() {
             let moved: Vec<Vec<f64>> = moves.iter().map(|u| self.places.interpolate(u)).collect();
+            // The forces of the body take a pass over all cells, which displacements alone do not need.
             let held = match own.iter().any(|&i| observations[i].quantity.is_force()) {
                 true => self.tangent_forces(at, displacements, moves, &changes[p])?,
                 false => vec![Vec::new(); count],
@@ -309,6 +314,7 @@ impl<'a> Level<'a> {
         let (mut directs, mut pulls) = (Vec::new(), Vec::new());
         let (d, size) = (self.mesh.dimension, self.mesh.points.len());
         for &i in own {
+            // A place that several loads have in common has one solution.
             let next = known.len();
             if let std::collections::hash_map::Entry::Vacant(entry) = known.entry(observations[i].quantity) {
                 entry.insert(next);

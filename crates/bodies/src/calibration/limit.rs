@@ -58,7 +58,9 @@ impl Rest {
     fn of(mesh: &Mesh, edge: f64, refinements: usize, ratio: Option<f64>) -> Option<Rest> {
         let is_linear = mesh.blocks.iter().all(|block| block.element.has_corners_alone());
         let (order, goes_on) = (if is_linear { LINEAR } else { QUADRATIC }, |ratio: f64| ratio / (1.0 - ratio));
+        // No order is above that of the element: the bounds of the clamp below would be the wrong way round, a panic.
         let (least, most) = ((-order).exp2(), (-edge.min(order)).exp2());
+        // The constants above are reaches of 95 %.
         let deviation = |reach: f64| reach / ninety_five(None);
         match refinements {
             0 => return None,
@@ -71,6 +73,8 @@ impl Rest {
             }
             _ => {}
         }
+        // Answers that agree to rounding leave nothing beyond the last mesh; which share of it is taken does not
+        // matter.
         let met = ratio.unwrap_or(least);
         let bound = met.clamp(least, most);
         let doubt = ((met / most - ORDERLY) / (1.0 - ORDERLY)).clamp(0.0, 1.0);
@@ -105,6 +109,7 @@ impl Rest {
 /// The order of displacements at the edge where a clamped face meets a free one at a right angle: twice the exponent of the displacements
 /// there, `sin²(λ π/2) = ((κ + 1)² − 4 λ²)/(4 κ)` with Kolosov's κ (Williams 1952).
 pub fn clamped_order(moduli: &Moduli) -> f64 {
+    // 3 − 4 ν, that of plane strain: along an edge of a solid nothing stretches as it does across.
     let kappa = (moduli.lambda + 3.0 * moduli.mu) / (moduli.lambda + moduli.mu);
     let beyond = |exponent: f64| {
         let angle = (exponent * std::f64::consts::FRAC_PI_2).sin();

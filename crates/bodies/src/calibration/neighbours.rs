@@ -20,12 +20,14 @@ pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
     let places: Vec<(f64, Vec<f64>)> = cell_places(mesh).concat();
     let mut sides: HashMap<Vec<usize>, usize> = HashMap::new();
     let (mut found, mut number) = (Vec::new(), 0);
+    // The side of a cube of the content V is V^((d − 1)/d).
     let power = (mesh.cell_dimension() as f64 - 1.0) / mesh.cell_dimension().max(1) as f64;
     for block in &mesh.blocks {
         for nodes in block.cells() {
             for side in block.element.sides() {
                 let mut key: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
                 key.sort_unstable();
+                // Two cells at most share a side: what was found needs to be known no more.
                 if let Some(other) = sides.remove(&key) {
                     let ((a, x), (b, y)) = (&places[other], &places[number]);
                     let distance = x.iter().zip(y).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt();

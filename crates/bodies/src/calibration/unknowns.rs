@@ -102,6 +102,7 @@ impl Unknowns {
         let poisson = self.poisson[region].and_then(|place| {
             let beside = |t: f64| Material::new(now.young(), poisson_of(ratio_of(now.poisson()) + t), now.state());
             let (more, less) = (beside(STEP).ok()?.moduli(), beside(-STEP).ok()?.moduli());
+            // The central difference errs by the square of the step, 1e-10, and rounding over the step by 1e-11.
             let rate = |a: f64, b: f64| (a - b) / (2.0 * STEP);
             let moduli = Moduli { lambda: rate(more.lambda, less.lambda), mu: rate(more.mu, less.mu) };
             Some((place, moduli.into()))

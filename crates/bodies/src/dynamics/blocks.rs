@@ -24,6 +24,7 @@ impl Pattern {
         let mut starts = vec![0; rows + 1];
         blocks.iter().for_each(|(a, _)| starts[a + 1] += 1);
         (0..rows).for_each(|i| starts[i + 1] += starts[i]);
+        // Matrices with more rows than a u32 counts are refused by their size before they are filled.
         Pattern { starts, columns: blocks.into_iter().map(|(_, b)| b as u32).collect() }
     }
 
@@ -45,6 +46,7 @@ impl Pattern {
             let row = &self.columns[self.starts[i]..self.starts[i + 1]];
             for (at, &j) in row.iter().enumerate() {
                 pairs.push((i, j as usize));
+                // Eliminating row i couples all rows that i is coupled to with each other.
                 pairs.extend(row[at + 1..].iter().map(|&k| (j as usize, k as usize)));
             }
         }
@@ -73,6 +75,7 @@ impl Pattern {
                 let j = j as usize;
                 let block = block.map(|row| zero.load(&row));
                 add_products(&mut products, block, zero.load(&x[j]));
+                // Each block is read once, for itself and for its mirror image below the diagonal.
                 plus_turned(zero.load(&y[j]), block, &own).store(&mut y[j]);
             }
             let sum = sum.plus(C::sums(products));

@@ -115,6 +115,7 @@ impl Dampers {
         let of = |nodes: &[usize], measure: &Measure, x: &[f64], slope: f64| {
             let mut inverse = 0.0;
             let dofs = nodes.iter().flat_map(|p| p * d..(p + 1) * d);
+            // What is held counts as an infinite mass, whose inverse adds nothing.
             for (dof, g) in dofs.zip(measure.gradient(x, d)).filter(|(dof, _)| !support.is_fixed(*dof)) {
                 if !(masses[dof / d] > 0.0) {
                     let expected = format!("a mass above zero at point {}", dof / d);
@@ -122,6 +123,7 @@ impl Dampers {
                 }
                 inverse += g * g / masses[dof / d];
             }
+            // A spring that pushes over has no frequency to be damped, and one between held points does not move.
             let damps = slope > 0.0 && inverse > 0.0;
             Ok(if damps { 2.0 * ratio * (slope / inverse).sqrt() } else { 0.0 })
         };
@@ -160,6 +162,7 @@ impl Dampers {
             if let Measure::Length = measure {
                 let between = |k: usize| x[dofs[d + k]] - x[dofs[k]];
                 let length = (0..d).map(|k| between(k) * between(k)).sum::<f64>().sqrt();
+                // Points in one place have no direction between them; the damper pulls again as soon as they part.
                 let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
                 gradients.extend((0..d).map(|k| -scale * between(k)));
                 gradients.extend((0..d).map(|k| scale * between(k)));

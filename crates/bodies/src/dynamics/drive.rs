@@ -80,6 +80,7 @@ impl Drive {
 
     /// Adds nodal forces, `[points · dimension]`, N, multiplied by a curve.
     pub fn forces(mut self, forces: &[f64], curve: Curve) -> Drive {
+        // Loads act on few points of a body, and each step goes through the list.
         let acting = forces.iter().copied().enumerate().filter(|(_, f)| *f != 0.0);
         self.forces.push((acting.collect(), curve));
         self
@@ -118,6 +119,7 @@ impl Drive {
 
     /// Whether the forces are the same at all times.
     pub(super) fn is_steady(&self) -> bool {
+        // Gravity is constant, curves may be anything.
         self.forces.is_empty()
     }
 

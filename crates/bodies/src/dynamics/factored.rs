@@ -92,22 +92,27 @@ impl Factored {
             .map_err(|_| large())?;
         let (starts, rows) = (pattern.col_ptr(), pattern.row_idx());
         let slot = |row: usize, column: usize| match (place[row], place[column]) {
+            // What belongs to held degrees of freedom goes to a place beyond the matrix that nobody reads: no branch at
+            // each entry of each step.
             (usize::MAX, _) | (_, usize::MAX) => rows.len(),
             (a, b) => {
                 let (row, column) = (a.max(b), a.min(b));
                 starts[column] + rows[starts[column]..starts[column + 1]].partition_point(|r| *r < row)
             }
         };
+        // Slots of four bytes halve what a step reads of them. The casts below are within this bound.
         if u32::try_from(rows.len()).is_err() {
             return Err(large());
         }
         let slots = places.iter().map(|&(row, column)| slot(row, column) as u32).collect();
         let diagonal = order.iter().map(|&dof| slot(dof, dof)).collect();
         let request = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        // A factorisation and a solution never run at once: the larger of both is enough.
         let request = request.or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
         let bytes = 8 * (symbolic.len_val() + rows.len()) as u64 + request.unaligned_bytes_required() as u64;
         memory::require(FACTOR, bytes, ADVICE)?;
         let room = Room(MemBuffer::try_new(request).map_err(|_| large())?);
+        // One more than the matrix has, for the entries of held degrees of freedom.
         let (values, factor) = (vec![0.0; rows.len() + 1], vec![0.0; symbolic.len_val()]);
         Ok(Factored { order, values, diagonal, slots, symbolic, factor, room, pattern })
     }

@@ -55,12 +55,14 @@ impl<const D: usize> Gradients<D> {
         }
         let slot = |&(row, column): &(usize, usize)| {
             let (a, b) = (place[row / D], place[column / D]);
+            // Rows have four numbers, so that each is one load of a register.
             let within = |block: usize, k: usize, l: usize| (block * D + k) * 4 + l;
             let at = if held[row] || held[column] {
                 within(count, 0, 0)
             } else if a == b {
                 within(a, row % D, column % D)
             } else {
+                // The block above the diagonal is stored; an entry below it in this order is turned.
                 let (k, l) = if a < b { (row % D, column % D) } else { (column % D, row % D) };
                 within(rows + pattern.find(a.min(b), a.max(b)).unwrap_or(count - rows), k, l)
             };
@@ -99,6 +101,7 @@ impl<const D: usize> Equations for Gradients<D> {
     fn set_diagonal(&mut self, diagonal: &dyn Fn(usize) -> f64) {
         self.blocks.fill([[0.0; 4]; D]);
         let rows = self.pattern.rows();
+        // Held coordinates keep their equation `x = 0`; what is free is overwritten below.
         self.blocks[..rows].iter_mut().for_each(|block| (0..D).for_each(|k| block[k][k] = 1.0));
         for (&dof, &at) in self.order.iter().zip(&self.coordinates) {
             let (row, k) = (at as usize / 4, at as usize % 4);
@@ -122,6 +125,8 @@ impl<const D: usize> Equations for Gradients<D> {
     fn prepare(&mut self) -> bool {
         let rows = self.pattern.rows();
         for block in &mut self.blocks[..rows] {
+            // Entries are those of the lower triangle of the whole matrix, so that blocks on its diagonal lack their
+            // upper one.
             (0..D).for_each(|k| (0..k).for_each(|l| block[l][k] = block[k][l]));
         }
         let count = self.blocks.len() - 1;
@@ -132,6 +137,7 @@ impl<const D: usize> Equations for Gradients<D> {
     /// of a random force proves that there is no such direction. Iterations that do not reach this residual prove
     /// nothing.
     fn is_definite(&mut self, is_prepared: bool, x: &mut [f64]) -> Option<bool> {
+        // A user may ask for rough solutions, but a rough residual proves nothing.
         let tolerance = std::mem::replace(&mut self.tolerance, DEFINITE);
         let end = is_prepared.then(|| self.solve(x, None).end);
         self.tolerance = tolerance;
@@ -174,6 +180,7 @@ impl<const D: usize> CoordinatesWork for Iterations<'_, D> {
             self.equations;
         let matrix = &blocks[..blocks.len() - 1];
         let mut left = square(zero, residual);
+        // Relative to the force and not to the first residual: a good guess is to save iterations, not to be improved.
         let size = *tolerance * left.sqrt();
         if self.is_guessed {
             pattern.multiply(zero, matrix, x, image);
@@ -188,6 +195,7 @@ impl<const D: usize> CoordinatesWork for Iterations<'_, D> {
         }
         let (mut last, mut iterations) = (0.0, 0);
         let done = |end, iterations| Solved { end, iterations };
+        // In this form a residual that is NaN goes on to the test of the curvature, which ends the iterations.
         while !(left.sqrt() <= size) {
             if iterations == ITERATIONS {
                 return done(End::Rough, iterations);
@@ -199,6 +207,8 @@ impl<const D: usize> CoordinatesWork for Iterations<'_, D> {
             }
             let curvature = pattern.multiply(zero, matrix, along, image);
             iterations += 1;
+            // The second: the preconditioner, rounded to single precision, is not definite along the residual. The
+            // third: the curvature is so small that the step would not be a number.
             if !(curvature > 0.0 && now > 0.0 && now / curvature < f64::INFINITY) {
                 return done(End::Indefinite, iterations);
             }

@@ -39,6 +39,7 @@ impl<const D: usize> Incomplete<D> {
         let mut pattern = given.clone();
         for _ in 0..LEVELS {
             let next = pattern.filled();
+            // A row with n blocks beyond the diagonal is multiplied with itself: n (n + 1)/2 products of pairs.
             let products: usize = next.starts.windows(2).map(|at| (at[1] - at[0]) * (at[1] - at[0] + 1) / 2).sum();
             if products > PRODUCTS * given.columns.len() {
                 break;
@@ -111,6 +112,8 @@ impl<const D: usize> CoordinatesWork for Factorize<'_, D> {
     fn run<C: Coordinates>(self, zero: C) -> bool {
         let Factorize { incomplete: Incomplete { pivots, beyond, pattern, own, targets }, blocks, moved, shift } = self;
         let (diagonal, others) = blocks.split_at(pattern.rows());
+        // Over the largest entry the numbers are near one, whatever the units are, and within the range of single
+        // precision.
         let largest = diagonal.iter().flat_map(|block| (0..D).map(|k| block[k][k])).fold(0.0, f64::max);
         for (pivot, block) in pivots.iter_mut().zip(diagonal) {
             *pivot = block.map(|row| row.map(|x| (1.0 + shift) * (x / largest)));
@@ -134,6 +137,7 @@ impl<const D: usize> CoordinatesWork for Factorize<'_, D> {
                 let j = pattern.columns[p] as usize;
                 add(zero, &mut pivots[j], 1.0, less.map(|column| plus_turned(zero, whole, &column)));
                 for (q, &target) in (p + 1..pattern.starts[i + 1]).zip(&mut targets) {
+                    // Most products are dropped; they are not computed where nothing of them is moved.
                     if target == DROPPED && moved == 0.0 {
                         continue;
                     }
@@ -173,6 +177,7 @@ fn inverse<const D: usize>(a: &Block<D>) -> Option<Block<D>> {
         }
         inverse[j][j] = 1.0 / pivot.sqrt();
         for i in j + 1..D {
+            // Moved products are not symmetric one by one.
             let entry = (a[i][j] + a[j][i]) / 2.0;
             l[i][j] = (entry - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>()) * inverse[j][j];
         }

@@ -44,6 +44,7 @@ impl Integrator {
 
     pub(super) fn check(self) -> Result<()> {
         match self {
+            // β = 0 is an explicit method, and γ below ½ makes vibrations grow.
             Integrator::Newmark { beta, gamma } if !(beta > 0.0 && gamma >= 0.5 && beta + gamma < f64::INFINITY) => {
                 Err(Error::expected("newmark", "beta above 0 and gamma from 1/2", format!("{beta} and {gamma}")))
             }
@@ -65,11 +66,13 @@ impl Integrator {
         let Past { v, a, way, before } = past;
         match self {
             Integrator::Bdf2 if !first => {
+                // From `v = (3Δ − way)/2h`, and with it `a = (3v − 4v_n + v_{n−1})/2h`.
                 let z = way / 3.0;
                 [z, z + h * (4.0 * v - before) * 2.0 / 9.0]
             }
             Integrator::Newmark { beta, gamma } => {
                 let y = h * v + h * h * (0.5 - beta) * a;
+                // From `a = (Δ − y)/βh²`, put into the rule of v and solved for Δ.
                 [y - (v + h * (1.0 - gamma) * a) * beta * h / gamma, y]
             }
             _ => [0.0, h * v],

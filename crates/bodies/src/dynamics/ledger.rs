@@ -114,6 +114,8 @@ impl Ledger {
             [work.value(), dissipated.value()]
         };
         let (acted, resisted) = (&mut self.acting, &mut self.viscous);
+        // Pieces have one length on any number of threads, and their sums are added in the order of the pieces: the
+        // account has the same bits everywhere.
         let sums = match way.len() {
             0..=PIECE => vec![piece(0, acted, resisted)],
             _ => {
@@ -129,6 +131,7 @@ impl Ledger {
 }
 
 fn acting(forces: &Forces, held: &[bool], dof: usize) -> f64 {
+    // A held point is moved by what the body resists with; a load on it does no work on the body.
     if held[dof] { forces.elastic[dof] + forces.viscous[dof] } else { forces.external[dof] }
 }
 

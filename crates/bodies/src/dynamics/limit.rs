@@ -47,6 +47,7 @@ fn largest_of(entries: Vec<(usize, usize, f64)>, masses: &[f64], held: &[bool]) 
     let n = free.len();
     let mut discs = vec![0.0; n];
     for &(row, column, value) in &sums {
+        // The diagonal is the middle of a disc and keeps its sign; the others are its radius.
         discs[row] += if row == column { value } else { value.abs() };
         discs[column] += if row == column { 0.0 } else { value.abs() };
     }
@@ -67,6 +68,7 @@ fn largest_of(entries: Vec<(usize, usize, f64)>, masses: &[f64], held: &[bool]) 
 /// Returns the bound of [`largest_square`], rad²/s², for a stiffness in blocks.
 pub fn largest_square_of_blocks(stiffness: &BlockStiffness, masses: &[f64], held: &[bool]) -> f64 {
     let free: Vec<usize> = (0..held.len()).filter(|dof| !held[*dof]).collect();
+    // A weight of zero takes held rows and columns out of the matrix.
     let weights: Vec<f64> = masses.iter().zip(held).map(|(m, held)| if *held { 0.0 } else { 1.0 / m.sqrt() }).collect();
     let discs = stiffness.absolute_sums(&weights);
     let gershgorin = discs.iter().zip(&weights).map(|(sum, weight)| sum * weight).fold(0.0, f64::max);
@@ -82,6 +84,8 @@ pub fn largest_square_of_blocks(stiffness: &BlockStiffness, masses: &[f64], held
 /// `θ + r`, or `None` if r stays large. Of large models only the last two vectors are kept: the largest eigenvalue does not depend on the
 /// orthogonality of the others (Paige 1980).
 fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
+    // A random start has a part of the highest motion, which smooth ones may lack; a fixed seed gives the same limit in
+    // each run.
     let mut random = generator();
     let mut next: Vec<f64> = (0..n).map(|_| random()).collect();
     let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -91,6 +95,7 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
         next.iter_mut().for_each(|x| *x /= size);
         let mut image = apply(&next);
         diagonal.push(dot(&image, &next));
+        // In exact arithmetic the image is orthogonal to all vectors but the last two.
         if n > LARGE && basis.len() == 2 {
             basis.remove(0);
         }
@@ -132,5 +137,6 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
 /// If `4M − 2hC − h²K` is positive definite, every root of `M(z − 1)² + hC(z − 1) + h²K z` is inside the unit circle
 /// (Jury). Without damping the limit is `2/ω`, with a damping ratio ζ of all modes `2(√(1 + ζ²) − ζ)/ω`.
 pub(super) fn longest_step(square: f64, damping: f64) -> f64 {
+    // The root in its other form, (√(γ² + 4 ω²) − γ)/ω², would cancel at large damping, and be 0/0 without stiffness.
     4.0 / (damping + (damping * damping + 4.0 * square).sqrt())
 }

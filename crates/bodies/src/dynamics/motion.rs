@@ -80,6 +80,7 @@ impl<'a> Motion<'a> {
         let held = self.held();
         for (p, &mass) in self.masses.iter().enumerate() {
             let moves = held[p * d..(p + 1) * d].contains(&false);
+            // A point that is held on all axes needs no mass; a quadratic element may lump zero on it.
             if !(mass.is_finite() && (mass > 0.0 || mass == 0.0 && !moves)) {
                 let expected = format!("a mass above zero at point {p} (HRZ lumping gives one)");
                 return Err(Error::expected("masses", expected, mass));

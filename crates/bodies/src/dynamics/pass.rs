@@ -23,6 +23,7 @@ pub(super) fn place<N: Coordinate>(x: &mut [N], p: &[N], u: &[N]) {
     };
     match x.len() {
         0..=PIECE => piece((x, p, u)),
+        // Each number depends on those at its own place alone: threads do not change it.
         _ => (x.par_chunks_mut(PIECE), p.par_chunks(PIECE), u.par_chunks(PIECE)).into_par_iter().for_each(piece),
     }
 }

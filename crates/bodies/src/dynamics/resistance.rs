@@ -130,6 +130,7 @@ impl<'a> Resistance<'a> {
     pub fn linear_tangent(&self) -> Vec<f64> {
         let mut values = self.rest.values().to_vec();
         if let Some(memory) = &self.memory {
+            // The tangent of a linear memory does not depend on the displacements.
             let still = vec![0.0; self.points.len()];
             memory.add(&still, &mut vec![0.0; still.len()], Some(&mut values[self.elastic_entries..]));
         }
@@ -156,6 +157,7 @@ impl<'a> Resistance<'a> {
     /// semidefinite one if `definite`. Returns the energy, J.
     pub fn refill(&mut self, u: &[f64], force: &mut [f64], tangent: &mut [f64], definite: bool) -> Option<f64> {
         self.place(u);
+        // Of all entries those of the model come first, and those of what relaxes after them, as in `Rest`.
         let (elastic, remembered) = tangent.split_at_mut(self.elastic_entries);
         let mut energy = match definite {
             true => self.model.refill_definite(&self.x, force, elastic)?,
@@ -165,6 +167,7 @@ impl<'a> Resistance<'a> {
             self.apart = force.iter().map(|f| f * f).sum();
             energy += memory.add(u, force, Some(remembered))?;
         }
+        // One sum shows any force that is not finite.
         (energy + force.iter().sum::<f64>()).is_finite().then_some(energy)
     }
 
@@ -186,6 +189,7 @@ impl<'a> Resistance<'a> {
             return Some(self.rest.refill(u, &mut force) + remembered);
         }
         self.place(u);
+        // Springs of rest length zero store energy at rest, which is none of the motion.
         Some(self.model.energy(&self.x)? + remembered - self.rest.energy)
     }
 
@@ -235,6 +239,7 @@ impl<'a> Resistance<'a> {
         if let Some(dampers) = &self.damping.dampers {
             let places: Vec<(usize, usize)> = dampers.places().collect();
             let entries = places.iter().zip(&self.damper_entries).map(|((row, column), c)| (*row, *column, *c));
+            // The largest eigenvalue of a sum is at most the sum of the largest ones: the step is rather too short.
             damping += super::largest_square(entries, &self.mass, &self.held);
         }
         [square, damping]

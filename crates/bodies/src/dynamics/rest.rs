@@ -37,6 +37,8 @@ impl Rest {
         let none = || Error::expected("model", "a response at rest", "none").of_kind(ErrorKind::Infeasible);
         let sound = |energy: f64, force: &[f64]| energy.is_finite() && force.iter().all(|f| f.is_finite());
         let energy = model.energy(points).ok_or_else(none)?;
+        // An explicit method asks for products and the highest frequency alone: blocks of points take less memory than
+        // entries.
         if let Some(blocks) = (!has_equations && memory.is_none()).then(|| model.blocks(points)).flatten() {
             let mut force = vec![0.0; points.len()];
             if !model.forces(points, &mut force) {
@@ -115,6 +117,7 @@ impl Rest {
     pub fn refill(&self, u: &[f64], force: &mut [f64]) -> f64 {
         force.copy_from_slice(&self.force);
         self.add_product(1.0, u, force);
+        // `F₀ + F` is `2 F₀ + K₀ u`: no second product is needed.
         0.5 * self.force.iter().zip(&*force).zip(u).map(|((a, b), u)| (a + b) * u).sum::<f64>()
     }
 }

@@ -70,6 +70,7 @@ impl<'a, N: Coordinate> NetworkRows<'a, N> {
         inverse: &[f64],
     ) -> NetworkRows<'a, N> {
         let origin = origin::<N>(points, dimension);
+        // A body far from the origin would lose the digits of its own size in single precision.
         let near: Vec<f64> = points.iter().enumerate().map(|(i, x)| x - origin[i % dimension]).collect();
         let rest = rows(&near, dimension, N::of);
         let share = rows(inverse, dimension, |inverse| N::of(h * inverse));
@@ -103,6 +104,7 @@ impl<'a, N: Coordinate> NetworkRows<'a, N> {
         for (row, v) in self.v.iter_mut().enumerate() {
             for k in 0..3 {
                 let load = self.loads.get(row).map_or(N::zero(), |load| load[k]);
+                // The forces come as (z, x, y).
                 v[k] = v[k] - self.share[row][k] * (load - self.force[row][(k + 1) % 3]);
             }
         }
@@ -118,6 +120,7 @@ impl<N: Coordinate> RowMotion for NetworkRows<'_, N> {
     }
 
     fn load(&mut self, loads: &[f64]) {
+        // No list for bodies without loads: each step would read zeros of all points.
         self.loads = if loads.iter().all(|f| *f == 0.0) { Vec::new() } else { rows(loads, self.dimension, N::of) };
     }
 
@@ -126,11 +129,13 @@ impl<N: Coordinate> RowMotion for NetworkRows<'_, N> {
         let whole = Points { h: *h, rest, share, loads, force, u, v, x };
         match whole.rest.len() {
             0..=ROWS => with_coordinates(whole),
+            // Each row depends on itself alone: threads do not change it.
             _ => whole.pieces().into_par_iter().for_each(|piece| with_coordinates(piece)),
         }
         self.before.clear();
         for &(dof, end) in driven {
             let (row, k) = (dof / self.dimension, dof % self.dimension);
+            // The pass has moved a driven point by h v, and its share of zero has kept v.
             self.before.push((dof, [self.u[row][k] - self.h * self.v[row][k], self.v[row][k]]));
             self.set(dof, end.map(N::of));
         }
@@ -179,6 +184,7 @@ impl<'a, N: Coordinate> Points<'a, N> {
         let changed = u.chunks_mut(ROWS).zip(v.chunks_mut(ROWS)).zip(x.chunks_mut(ROWS));
         let given = rest.chunks(ROWS).zip(share.chunks(ROWS)).zip(force.chunks(ROWS));
         let of = |(at, (((rest, share), force), ((u, v), x)))| {
+            // The list is empty where no load acts.
             let loads = loads.chunks(ROWS).nth(at).unwrap_or_default();
             Points { h, rest, share, loads, force, u, v, x }
         };
@@ -193,6 +199,7 @@ impl<N: Coordinate> CoordinatesWork<N> for Points<'_, N> {
     fn run<C: Coordinates<N>>(self, zero: C) {
         let Points { h, rest, share, loads, force, u, v, x } = self;
         let count = rest.len();
+        // Slices of one known length need no test of bounds in the loop.
         let (share, force) = (&share[..count], &force[..count]);
         let (u, v, x) = (&mut u[..count], &mut v[..count], &mut x[..count]);
         for row in 0..count {

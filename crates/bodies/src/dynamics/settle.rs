@@ -150,6 +150,8 @@ impl Trial {
         let (mut kinetic, mut work, mut left, mut acting) = (0.0, 0.0, 0.0, [0.0; 4]);
         for (r, &dof) in self.residual.iter_mut().zip(order) {
             let off = target.delta[dof] - target.y[dof];
+            // The residual is measured against all four, because any two of them may balance while the others are
+            // small.
             let parts = [target.external[dof], self.force[dof], self.viscous[dof], c2 * resistance.mass[dof] * off];
             *r = parts[0] - parts[1] - parts[2] - parts[3];
             left += *r * *r;
@@ -161,9 +163,11 @@ impl Trial {
             // Without inertia and loads what acts are the forces of held points, and stress that relaxes against what is elastic.
             acting[1] = self.force.iter().map(|f| f * f).sum::<f64>().max(resistance.apart);
         }
+        // All degrees of freedom, since dampers between held and free points oppose both.
         let drag: f64 = target.velocity.iter().zip(&self.viscous).map(|(v, f)| v * f).sum();
         let acting: f64 = acting.iter().map(|square| square.sqrt()).sum();
         self.potential = energy - work + kinetic / 2.0 + drag / (2.0 * c1);
+        // A body at rest without loads has 0/0.
         self.size = if left == 0.0 { 0.0 } else { left.sqrt() / acting };
         self.potential.is_finite() && self.size.is_finite()
     }
@@ -193,6 +197,7 @@ impl Trial {
                 if end != End::Indefinite {
                     break;
                 }
+                // What the last trial has added is in the matrix already.
                 equations.shift(shift - last);
                 last = shift;
                 end = self.solve(equations, None, made);
@@ -228,6 +233,7 @@ impl Trial {
         step.solver_iterations = solved.iterations;
         equations.order().iter().zip(&self.residual).for_each(|(&dof, s)| target.delta[dof] += s);
         if self.residual.iter().sum::<f64>().is_finite() {
+            // A linear model has its answer after one solution, unless iterations ended before it.
             step.outcome = if solved.end == End::Exact { StepOutcome::Converged } else { StepOutcome::Stalled };
         }
         step
@@ -283,6 +289,7 @@ impl Trial {
                 is_known && (falls || is_rounding || self.size < 0.5 * size)
             });
             if !accepted {
+                // Back to where the step began, since all shorter ones are worse.
                 target.delta.copy_from_slice(&self.tried);
                 self.evaluate(resistance, target, start, equations.order(), Tangent::Exact);
                 return self.ended(resistance, equations.order(), made);
@@ -302,6 +309,8 @@ impl Trial {
     /// beside what acts: slender rods are so much stiffer along than across that no state is better.
     fn ended(&self, resistance: &mut Resistance, order: &[usize], made: Step) -> Step {
         let left = self.residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+        // The size is the residual over what acts, so that this quotient is what acts; it is above zero, as the size is
+        // above the tolerance.
         let (bound, acting) = (resistance.rounding(&self.u, order), left / self.size);
         let is_rounding = left <= bound && bound <= ROUGHEST * acting;
         Step { outcome: if is_rounding { StepOutcome::Converged } else { made.outcome }, ..made }

@@ -32,6 +32,7 @@ impl Ceiling {
         let mut logarithms = Vec::new();
         let mut rest: Vec<&Load> = loads.iter().collect();
         while let Some((support, ..)) = rest.first().copied() {
+            // The loads of one support share one effective stiffness, which is dear.
             let (own, others): (Vec<&Load>, Vec<&Load>) = rest.iter().partition(|load| load.0 == *support);
             rest = others;
             let Some(rigid) = Truncated::rigid(model, support, setting)? else { return Ok(None) };
@@ -67,6 +68,7 @@ pub fn least_substeps(model: TruncatedModel, loads: &[Load], setting: &Setting) 
             return Ok(None);
         }
     }
+    // The ceiling grows with the substeps, so that bisection finds the least number.
     while above - below > 1 {
         let middle = (below + above) / 2;
         if reaches(middle)? { above = middle } else { below = middle }

@@ -81,6 +81,7 @@ impl Constraints {
             let stiff: f64 = dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum();
             all.diagonal.push(if stiff > 0.0 { stiff + softness } else { 0.0 });
             all.softness.push(softness);
+            // Newton relaxes the corrections of contents alone.
             let is_relaxed = setting.engine != Engine::NewtonXpbd || spring >= lengths;
             all.relaxation.push(if is_relaxed { setting.relaxation } else { 1.0 });
         }
@@ -103,6 +104,7 @@ impl Constraints {
         if let Some((changes, factors)) = source {
             add(&mut residual, &factors[row], changes[row]);
         }
+        // A spring between held points moves nothing, and without compliance its row is zero.
         let factor = if self.diagonal[row] > 0.0 { -1.0 / self.diagonal[row] } else { 0.0 };
         (residual.map(|r| factor * r), at)
     }
@@ -125,6 +127,7 @@ impl Constraints {
         let n = self.len();
         let mut steps = Vec::new();
         for at in 0..n {
+            // The transpose of a sweep takes the rows in the opposite order.
             let row = if is_reversed { n - 1 - at } else { at };
             let (whole, dofs) = self.step(row, x, &multipliers[row], source);
             let step = whole.map(|w| self.relaxation[row] * w);
@@ -159,6 +162,7 @@ impl Constraints {
 
     /// The largest eigenvalue of `ω D⁻¹ A`, by the power method: sweeps that take all springs at once grow without bound from 2 on.
     pub fn growth(&self, size: usize) -> f64 {
+        // Rough, and the same in each run: it has a part of every motion, also of the one that grows most.
         let mut multipliers: Block = (0..self.len()).map(|row| [(1.0 + 1.3 * row as f64).sin(); LANES]).collect();
         let mut growth = 0.0;
         for _ in 0..POWERS {
@@ -214,6 +218,7 @@ impl Constraints {
     pub fn sensitivities(&self, history: &History, z: &Block) -> Vec<f64> {
         let mut sums = vec![0.0; self.len()];
         let (mut x, mut multipliers) = (z.clone(), vec![[0.0; LANES]; self.len()]);
+        // The first step of the transposed sweeps meets the last sweep.
         for reached in history.sweeps.iter().rev() {
             self.sweep((&mut x, &mut multipliers), true, None, |row, _, step| {
                 sums[row] += step.iter().zip(&reached[row]).map(|(p, s)| p * s).sum::<f64>();

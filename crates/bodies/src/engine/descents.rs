@@ -95,6 +95,8 @@ impl Descents {
                 }
             }
             for a in 0..d {
+                // A held direction has no stiffness either; any number above zero keeps the block regular, and its step
+                // is zero.
                 block[(a, a)] += if inertia[first + a] > 0.0 { inertia[first + a] } else { 1.0 };
             }
             if setting.engine == Engine::NewtonVbd && !(block.determinant().abs() > LEAST) {
@@ -180,6 +182,8 @@ impl Descents {
             }
             for &(s, start) in &point.springs {
                 for a in 0..n {
+                    // Measures are kept up to date, so that the next point sees this one where it is, without a sum
+                    // over the springs.
                     add(&mut measures[s], &step[a], self.springs[s].gradient[start + a]);
                 }
             }

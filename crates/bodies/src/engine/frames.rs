@@ -146,6 +146,7 @@ impl<const D: usize> Body<D> {
                 },
             };
             row.points[..own.len()].copy_from_slice(own);
+            // A simplex may be numbered either way round; its content is positive at rest.
             row.sign = row.measure::<D>(points).0.signum();
             row
         };
@@ -196,12 +197,14 @@ impl<const D: usize> Body<D> {
 
     /// The sweeps of extended position-based dynamics.
     fn project(&mut self) {
+        // XPBD begins each substep without multipliers; the fit is for that.
         self.multipliers.fill(0.0);
         for _ in 0..self.setting.iterations {
             if self.setting.sweep == Sweep::Jacobi {
                 self.predicted.copy_from_slice(&self.points);
             }
             for (row, multiplier) in self.rows.iter().zip(&mut self.multipliers) {
+                // Vertex block descent does not come here, so that the list of its predictions is free.
                 let from = if self.setting.sweep == Sweep::Jacobi { &self.predicted } else { &self.points };
                 let (measure, gradient) = row.measure::<D>(from);
                 let mut stiff = row.softness;
@@ -265,6 +268,7 @@ impl<const D: usize> Body<D> {
 fn solved<const D: usize>(mut a: [[f64; D]; D], mut b: [f64; D]) -> [f64; D] {
     for i in 0..D {
         for k in i + 1..D {
+            // Pivots of positive definite equations are above zero, and no rows are exchanged.
             let factor = a[k][i] / a[i][i];
             for j in i..D {
                 a[k][j] -= factor * a[i][j];
@@ -294,6 +298,7 @@ impl Row {
             let along = from(1);
             let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
             value = length;
+            // Points in one place have no direction in which the spring could push.
             gradient[1] = along.map(|x| if length > 0.0 { x / length } else { 0.0 });
         } else if D == 2 {
             let (u, v) = (from(1), from(2));
@@ -312,6 +317,7 @@ impl Row {
             value = (0..D).map(|i| edges[0][i] * gradient[1][i]).sum::<f64>();
         }
         for i in 0..D {
+            // No measure sees a shift of all points.
             gradient[0][i] = -(1..self.count).map(|corner| gradient[corner][i]).sum::<f64>();
         }
         if self.sign < 0.0 {

@@ -64,6 +64,7 @@ pub(super) fn motion_growth(apply: impl Fn(&Block) -> Block, inverse: &[f64], su
         next.iter_mut().zip(&force).zip(inverse).for_each(|((x, f), w)| *x = [x[0] - square * w * f[0]; LANES]);
         (before, now) = (now, next);
         let own = size(&now);
+        // In this form NaN and infinity count as grown.
         if !(own <= GROWN * first) {
             return Some(own / last);
         }

@@ -32,6 +32,8 @@ impl<S: AsRef<[usize]>> Sequence<'_, S> {
             (group, spring < self.lengths, near, least, spring)
         };
         let mut keys: Vec<_> = (0..self.springs.len()).map(key).collect();
+        // Springs on contents are those with false in the second place, and come first; those across groups have the
+        // largest group.
         keys.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)).then((a.3, a.4).cmp(&(b.3, b.4))));
         keys.into_iter().map(|(.., spring)| spring).collect()
     }
@@ -108,6 +110,7 @@ impl<S: AsRef<[usize]>> Sequence<'_, S> {
             queue.push(Reached { distance: 0.0, point });
         }
         while let Some(Reached { distance, point }) = queue.pop() {
+            // A nearer way was found after this entry went into the queue.
             if distance > distances[point] {
                 continue;
             }
@@ -131,6 +134,7 @@ fn seed(places: &[Place], groups: &[Option<usize>]) -> Option<usize> {
         along().fold(f32::MIN, f32::max) - along().fold(f32::MAX, f32::min)
     });
     let [x, y, z] = extent;
+    // The comparisons are those of Jolt's vectors, so that equal extents give the same axis.
     let longest = if x > y {
         if z > x { 2 } else { 0 }
     } else if z > y {
@@ -145,6 +149,7 @@ fn seed(places: &[Place], groups: &[Option<usize>]) -> Option<usize> {
     } else {
         1
     };
+    // With three equal extents both are one axis.
     let shortest = if shortest == longest { (shortest + 1) % 3 } else { shortest };
     let axes = [longest, 3 - longest - shortest, shortest];
     let compare = |a: &usize, b: &usize| {
@@ -183,6 +188,7 @@ impl PartialOrd for Reached {
 
 impl Ord for Reached {
     fn cmp(&self, other: &Reached) -> Ordering {
+        // Turned round, because a heap gives its largest entry first.
         other.distance.total_cmp(&self.distance).then(other.point.cmp(&self.point))
     }
 }

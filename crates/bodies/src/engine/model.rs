@@ -45,6 +45,7 @@ impl TruncatedModel<'_> {
             return unsupported("engine", expected, format!("{constant:e}"));
         }
         let is_simplex = |spring: &MeasureSpring| {
+            // Engines hold triangles in the plane and tetrahedra in space, and no other content.
             matches!(spring.measure, Measure::Content(_) | Measure::Span(_)) && spring.points.len() == d + 1
         };
         if network.others.iter().any(|spring| spring.law.is_some() || !is_simplex(spring)) {

@@ -26,6 +26,7 @@ pub fn colours<S: AsRef<[usize]>>(sets: &[S], members: usize) -> Vec<usize> {
 fn by_colour<S: AsRef<[usize]>>(sets: &[S], members: usize) -> Vec<usize> {
     let colours = colours(sets, members);
     let mut order: Vec<usize> = (0..sets.len()).collect();
+    // The sort is stable, which keeps the order within a colour.
     order.sort_by_key(|&set| colours[set]);
     order
 }

@@ -114,6 +114,7 @@ impl Setting {
             Engine::Xpbd | Engine::Vbd | Engine::NewtonXpbd | Engine::NewtonVbd => Order::Colours,
         };
         let sweep = if engine == Engine::NewtonXpbd { Sweep::Jacobi } else { Sweep::GaussSeidel };
+        // 0.9 is the default `soft_body_relaxation` of Newton's SolverXPBD.
         let relaxation = if engine == Engine::NewtonXpbd { 0.9 } else { 1.0 };
         let precision = Precision::Single;
         Setting { engine, step: FRAME, substeps, iterations, sweep, relaxation, order, precision }
@@ -161,6 +162,7 @@ impl Setting {
             Engine::Vbd if self.order == Order::Jolt => own("order", usual.order.name(), self.order.name()),
             Engine::Vbd if self.sweep == Sweep::Jacobi => own("sweep", usual.sweep.name(), self.sweep.name()),
             Engine::Vbd => Ok(()),
+            // An engine of a name has one loop: a fit for another would be for no engine.
             _ if self.sweep != usual.sweep => own("sweep", usual.sweep.name(), self.sweep.name()),
             _ if self.order != usual.order => own("order", usual.order.name(), self.order.name()),
             _ if self.precision != usual.precision => own("precision", usual.precision.name(), self.precision.name()),
@@ -179,6 +181,7 @@ impl Setting {
     /// The settings in words.
     pub fn words(&self) -> String {
         let rate = 1.0 / self.step;
+        // A sixtieth of a second has no short decimal number.
         let step = match (rate - rate.round()).abs() < 1e-9 * rate && rate >= 1.0 {
             true => format!("1/{} s", rate.round()),
             false => format!("{} s", self.step),

@@ -117,6 +117,7 @@ impl Truncated {
             return Ok(Some(found));
         }
         let matrix = found.matrix();
+        // Sweeps that correct too much may grow beyond the range of numbers, which is no stiffness.
         let is_finite = matrix.col_iter().all(|column| column.iter().all(|k| k.is_finite()));
         Ok(is_finite.then(|| Truncated { solver: Solver::Dense(matrix.partial_piv_lu()), ..found }))
     }
@@ -129,6 +130,7 @@ impl Truncated {
             chunk.iter().enumerate().for_each(|(lane, &dof)| unit[dof][lane] = 1.0);
             vectors(&self.apply(&unit, false), chunk.len())
         };
+        // Collected in the order of the columns, whichever is swept first.
         let columns: Vec<Vec<f64>> = self.free.par_chunks(LANES).flat_map_iter(columns).collect();
         Mat::from_fn(n, n, |i, j| columns[j][self.free[i]])
     }
@@ -179,6 +181,8 @@ impl Truncated {
                     })?;
                     Ok(vectors(&found, chunk.len()))
                 };
+                // Chunks are solved each on its own, and the list keeps their order: threads do not change the
+                // displacements.
                 let found: Result<Vec<Vec<Vec<f64>>>> = forces.par_chunks(LANES).map(one).collect();
                 Ok(found?.concat())
             }
@@ -260,6 +264,7 @@ impl Truncated {
         let chunks = predictions.par_chunks(LANES).zip(adjoints.par_chunks(LANES));
         let parts: Vec<Vec<f64>> = chunks.map(one).collect();
         let mut total = vec![0.0; parts.first().map_or(0, Vec::len)];
+        // Added in the order of the loads, so that the sum has the same bits on any number of threads.
         for part in &parts {
             total.iter_mut().zip(part).for_each(|(t, own)| *t -= own);
         }
@@ -305,6 +310,7 @@ impl Truncated {
             shape = next.iter().map(|x| x / size).collect();
             change = (kappa - before).abs() / kappa;
             before = kappa;
+            // The eigenvalue errs with the square of the shape: more iterations would change no digit that is printed.
             if change <= 1e-9 {
                 break;
             }
@@ -323,6 +329,7 @@ const VIBRATIONS: usize = 500;
 fn seen_by_sweeps(network: &Network, points: &[f64], (inverse, substep): (&[f64], f64)) -> Network {
     let (gradients, _) = SpringGradients::at(network, points);
     let moves = gradients.each().map(|(dofs, g)| dofs.iter().zip(g).map(|(&dof, g)| inverse[dof] * g * g).sum::<f64>());
+    // Factors multiply the constants that the springs have.
     let factor = |(moved, (_, constant)): (f64, (_, f64))| {
         if moved > 0.0 { 1.0 / (substep * substep * moved * constant) } else { 1.0 }
     };

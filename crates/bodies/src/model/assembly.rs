@@ -74,6 +74,8 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
                 Force::FreeRest => constant * now - parameters[0],
                 Force::Linear | Force::Laws(_) | Force::Exact { .. } => 0.0,
             };
+            // A constant of zero or next to it has no rest length: T/k is beyond all numbers, and the pull is stored
+            // instead.
             if is_steady(constant, pull, now) {
                 all.push(MeasureSpring::steady(*kind, points, measure.clone(), now, [constant, pull]));
                 continue;
@@ -108,6 +110,7 @@ fn lawful(mesh: &Mesh, fits: &[CellFits]) -> Vec<MeasureSpring> {
                 }
                 let points = [nodes[a].min(nodes[b]), nodes[a].max(nodes[b])];
                 let next = all.len();
+                // Parameters of a law that is linear in them add up; of any other law two springs are not one.
                 let place = if law.is_linear() { *known.entry((points, law.mark())).or_insert(next) } else { next };
                 if place < next {
                     all[place].constant += fit.constants[at];

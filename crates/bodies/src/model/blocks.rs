@@ -165,6 +165,7 @@ impl CompressedRows {
         (0..rows).for_each(|row| starts[row + 1] += starts[row]);
         let mut next = starts.clone();
         let mut unsorted = vec![(0_u32, 0.0); starts[rows]];
+        // Counted and put in their rows first: sorting each short row is quicker than sorting all entries.
         for (row, column, value) in entries {
             unsorted[next[row]] = (column as u32, value);
             next[row] += 1;
@@ -279,6 +280,7 @@ fn body<const D: usize>(
             stiffness::each_cell(table, &mesh.points, own, |cell, _, geometry| {
                 let mut r = geometry.stiffness(moduli.at(index, first + cell));
                 if table.dimension < D {
+                    // Membranes and rods have their stiffness in axes of their own.
                     r = in_space(table, &mesh.points, &own[cell * n..(cell + 1) * n], &r);
                 }
                 // Symmetric: by columns is by rows.
@@ -296,6 +298,7 @@ fn springs<const D: usize>(network: &Network, points: &[f64], shared: Option<&Ar
     let pairs = Connectivity::of(network.lengths.iter().map(|spring| &spring.points[..]));
     let others = Connectivity::of(network.others.iter().map(|spring| &spring.points[..]));
     let groups = [pairs.groups(), others.groups()];
+    // Springs across sides, or of another network, may join points that no cell has together.
     let has_all = |pattern: &&Arc<Pattern>| {
         let has = |points: &[usize]| points.iter().all(|&i| points.iter().all(|&j| pattern.place(i, j).is_some()));
         let lengths = network.lengths.iter().all(|spring| has(&spring.points));

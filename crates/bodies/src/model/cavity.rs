@@ -88,6 +88,7 @@ fn planes(mesh: &Mesh, rim: &[Vec<usize>], sides: &PressedFaces, support: &Suppo
     let is_in = |p: usize, k: usize, place: f64| (mesh.points[p * d + k] - place).abs() <= reach;
     // A prescribed motion along the axis would move the plane.
     let is_held = |p: usize, k: usize| support.prescribed[p * d + k] == Some(0.0);
+    // A side that could leave the plane would open the cavity there.
     let closes = |k: usize, place: f64| sides.points().filter(|&p| is_in(p, k, place)).all(|p| is_held(p, k));
     let mut planes = vec![Vec::new(); d];
     for end in rim {

@@ -53,6 +53,7 @@ impl ConsistentMasses {
                 for (values, content) in cell.each() {
                     let mass = of * content;
                     if !(mass >= 0.0) {
+                        // Told after the pass; the root of a negative number would be NaN in all products.
                         negative.get_or_insert((cell.index, mass));
                     }
                     all.points.extend_from_slice(cell.nodes);
@@ -156,6 +157,7 @@ impl ConsistentMasses {
         let mut pairs: Vec<(usize, usize, f64)> = Vec::new();
         let mut last: &[usize] = &[];
         for (points, values) in self.rows() {
+            // Quadrature points of one cell have the same points, and their products the same places.
             if points != last {
                 pairs.extend(points.iter().flat_map(|&a| points.iter().map(move |&b| (a, b, 0.0))));
                 last = points;

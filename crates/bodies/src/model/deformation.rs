@@ -53,6 +53,7 @@ impl Deformation {
             let square: f64 = (0..d).map(|k| between(points, k).powi(2)).sum();
             let along: f64 = (0..d).map(|k| between(points, k) * between(u, k)).sum::<f64>() / square;
             let across: f64 = (0..d).map(|k| (between(u, k) - along * between(points, k)).powi(2)).sum();
+            // Springs of no length have no strain: the quotients above are 0/0.
             if square > 0.0 {
                 largest = largest.max(Deformation { strain: along.abs(), rotation: (across / square).sqrt() });
             }
@@ -68,7 +69,9 @@ impl Deformation {
         each_gradient(mesh, u, |frame, h, volume| {
             let f = frame.transpose() + h;
             let squares = (f.transpose() * f).symmetric_eigenvalues();
+            // Rounding may leave an eigenvalue of a flattened cell just below zero.
             let stretch = squares.iter().map(|square| (square.max(0.0).sqrt() - 1.0).abs()).fold(0.0, f64::max);
+            // A comparison with NaN would let it pass as no stretch.
             all.push((if stretch.is_nan() { f64::INFINITY } else { stretch }, volume));
             content += volume;
         });

@@ -40,6 +40,7 @@ fn springs_of_edges(mesh: &Mesh, material: MaterialMap, fit: &ExactFit) -> Resul
     let is_uniform = matches!(material.materials()?, CellMap::Uniform(_));
     let domains = edge_domains(mesh, block, &material);
     let of_domain = |domain: &EdgeDomain| springs.springs(&domain.table, &domain.shares(is_uniform));
+    // Domains do not depend on each other, and the list keeps their order.
     let found: Vec<DomainSprings> = domains.par_iter().map(of_domain).collect();
     Ok(network_of(mesh.dimension, domains.iter().zip(&found), springs.law()))
 }
@@ -60,6 +61,7 @@ pub(crate) fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMa
         pairs.iter().map(edge).collect::<Vec<_>>()
     };
     let mut shares: Vec<([usize; 2], usize, usize)> = block.cells().enumerate().flat_map(at_edges).collect();
+    // No two are equal, since each has its cell: the order is the same however it is sorted.
     shares.par_sort_unstable();
     let domain = |parts: &[([usize; 2], usize, usize)]| {
         let mut nodes: Vec<usize> = parts.iter().flat_map(|part| block.cell(part.2)).copied().collect();
@@ -80,6 +82,7 @@ pub(crate) fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMa
         EdgeDomain { edge: parts[0].0, nodes, cells, table }
     };
     let groups: Vec<&[([usize; 2], usize, usize)]> = shares.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
+    // In the order of the edges, on any number of threads.
     groups.par_iter().map(|parts| domain(parts)).collect()
 }
 
@@ -178,6 +181,7 @@ impl EdgeDomain {
     fn others(&self, d: usize, springs: &DomainSprings, law: Option<&Arc<Law>>) -> Vec<MeasureSpring> {
         let axis = |k: usize| (0..3).map(|l| f64::from(u8::from(k % 3 == l))).collect::<Vec<f64>>();
         let area = |k: usize| {
+            // The constant has the content of the domain; the measure is an area for each unit of it.
             let unit = Tabulation { weights: vec![1.0], ..Tabulation::clone(&self.table) };
             MeasureSpring {
                 kind: SpringKind::PointArea,

@@ -99,6 +99,7 @@ impl<'a> Body<'a> {
     ) -> Option<()> {
         let mut all = Some(());
         system::each_cell(self.mesh, |cell, nodes, geometry| {
+            // The visit of a mesh cannot be ended: cells after the first without an answer are passed over.
             if all.is_some() {
                 all = visit(nodes, geometry, self.laws.at(cell.block, cell.cell), &self.places(x, nodes));
             }
@@ -192,6 +193,7 @@ impl Elastic for Network {
     }
 
     fn blocks(&self, x: &[f64]) -> Option<BlockStiffness> {
+        // Columns of blocks are numbers of 32 bits, and blocks are those of the plane or of space.
         let is_stored = self.dimension > 1 && x.len() / self.dimension < u32::MAX as usize;
         is_stored.then(|| BlockStiffness::of_network(self, x, None))
     }

@@ -45,6 +45,7 @@ fn of_cells<'l>(
     let (thicknesses, mut springs) = (material.thicknesses(), Vec::new());
     let (mut known, mut all) = (BTreeMap::new(), Ok(()));
     each_cell(mesh, |cell, nodes, geometry| {
+        // The visit of a mesh cannot be ended, and the first fault is the one that is told.
         if all.is_err() {
             return;
         }

@@ -28,6 +28,7 @@ pub fn hinge_flexure(mesh: &Mesh, network: &Network) -> Option<Matrix3<f64>> {
     let area = |nodes: &[usize]| norm(&mesh.area_vector(nodes));
     let shared: BTreeMap<usize, Matrix3<f64>> = edges
         .into_iter()
+        // At a free edge the director follows its one triangle, and nothing bends.
         .filter(|(_, springs)| springs.len() > 1)
         .map(|(director, springs)| {
             let areas: f64 = springs.iter().map(|spring| area(&spring.points[..3])).sum();
@@ -69,6 +70,7 @@ fn of_edge(mesh: &Mesh, axes: &[[f64; 3]; 3], [a, b]: [usize; 2], springs: &[&Me
         mixed += spring.constant * by_director * turns;
         of_director += spring.constant * by_director * by_director;
     }
+    // The director turns to where the energy is least: the unknown ψ is eliminated.
     own - mixed * mixed.transpose() / of_director
 }
 

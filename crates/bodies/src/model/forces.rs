@@ -37,6 +37,8 @@ impl Network {
         let mut pulls = None;
         for spring in &self.others {
             let ask = || function_pulls(self.others.iter(), x, self.dimension).into_iter();
+            // Functions of the program are asked for all of their springs at once, when the first is met: a call has
+            // its price.
             let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
             total += match known {
                 Some([energy, ..]) => energy,
@@ -59,6 +61,7 @@ impl Network {
             2 => pull::<2>(&self.lengths, x, force),
             _ => pull::<3>(&self.lengths, x, force),
         };
+        // Without a short cut, so that forces are complete even if one spring has no direction.
         self.add_others(&self.others, x, force) & sound
     }
 
@@ -114,6 +117,7 @@ impl Network {
             let ask = || function_pulls(self.others.iter(), x, d).into_iter();
             let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
             let [energy, tension, slope] = known.unwrap_or_else(|| spring.pull(value));
+            // `slope g gᵀ` with a slope of at least zero is semidefinite; the other term may have any sign.
             let (slope, bend) = if definite { (slope.max(0.0), 0.0) } else { (slope, tension) };
             total += energy;
             for (a, row) in dofs(&spring.points, d).enumerate() {
@@ -185,6 +189,8 @@ fn pull_and_stiffen<const D: usize>(
         let change = length - spring.rest;
         let t = spring.stress(length);
         let [across, along] = if definite { [t.max(0.0), spring.constant.max(0.0)] } else { [t, spring.constant] };
+        // Without a rest length the tangent is k I in any direction, also at length zero, where the quotient has no
+        // value.
         let along = if spring.rest == 0.0 { 0.0 } else { (along - across) / (length * length) };
         sound &= spring.has_direction(length);
         energy += spring.constant * change * change / 2.0;

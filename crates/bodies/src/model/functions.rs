@@ -32,6 +32,8 @@ fn asked<'a, T: Copy + Default>(
     let mut all = vec![T::default(); own.len()];
     let mut laws: Vec<(&Arc<Law>, Vec<usize>)> = Vec::new();
     for (place, (of, ..)) in own.iter().enumerate() {
+        // Bodies have few laws, so that a search through all is quick; functions cannot be compared but by where they
+        // are.
         match laws.iter_mut().find(|(law, _)| Arc::ptr_eq(law, &of.law)) {
             Some((_, places)) => places.push(place),
             None => laws.push((&of.law, vec![place])),

@@ -137,6 +137,8 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
             let weights = match part.carrier(mesh)? {
                 Carrier::Sides(sides) => side_weights(mesh, &sides, thickness),
                 Carrier::Cells(cells) if RodLoad::is_of(mesh) => {
+                    // Rods bend under what lies along them: the force goes through the shape functions of a beam, as a
+                    // weight does.
                     let total: f64 = contents_of(mesh, &cells, thickness).iter().sum();
                     let even: Vec<Component> = force.iter().map(|f| Component::Constant(f / total)).collect();
                     return Ok(body_forces(mesh, &cells, &Values::of(&even), thickness));
@@ -185,11 +187,13 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
 /// Checks that a load is finite at the nodes on which it acts; a quadrature point may miss a singularity there.
 fn finite_at(mesh: &Mesh, components: &[Component], mut points: impl Iterator<Item = usize>) -> Result<()> {
     let varies = |component: &Component| matches!(component, Component::Varying(_));
+    // Constants were checked where they came in.
     if !components.iter().any(varies) {
         return Ok(());
     }
     let mut seen = vec![false; mesh.point_count()];
     let fault = points.find_map(|p| {
+        // A point belongs to many sides or cells, and an expression is slow.
         let is_new = !std::mem::replace(&mut seen[p], true);
         let values = is_new.then(|| components.iter().map(|component| component.at(mesh.point(p))));
         values?.zip(["x", "y", "z"]).find(|(value, _)| !value.is_finite()).map(|(value, axis)| (p, value, axis))
@@ -252,6 +256,7 @@ fn spread(mesh: &Mesh, weights: &[(usize, f64)], per_unit: &[f64]) -> Vec<f64> {
 /// `∫ N_a dA` of every node of every side, m²; in two dimensions relative to the thickness of the first, m.
 fn side_weights(mesh: &Mesh, sides: &[SideIndex], thickness: &CellMap<f64>) -> Vec<(usize, f64)> {
     let of = |side: &SideIndex| thickness.at(side.cell.block, side.cell.cell);
+    // Shares alone matter. Relative to the first they are the areas themselves where the thickness is one.
     let first = sides.first().map_or(1.0, |side| *of(side));
     let mut weights = Vec::new();
     for index in sides {

@@ -103,6 +103,7 @@ pub(super) fn turning_masses(mesh: &Mesh, of: &impl Fn(CellIndex) -> f64) -> Vec
         let nodes = mesh.cell_nodes(index);
         let (share, inertia) = match is_rod {
             true => (mesh.rod_length(nodes) / 2.0, 1.0),
+            // Each of the three directors of a triangle has a third of it; each end of a rod has a half.
             false => (norm(&mesh.area_vector(nodes)) / 3.0, INERTIA),
         };
         for &point in directors.of_cell(index.cell) {

@@ -85,11 +85,13 @@ impl MaterialPoints {
                 for domain in edge_domains(mesh, block, material) {
                     let mu: f64 =
                         domain.cells.iter().map(|(cell, share)| share * materials.at(0, *cell).moduli().mu).sum();
+                    // A domain lies in one region: its first cell has that of all.
                     let region = domain.cells.first().map_or(0, |(cell, _)| *material.region().at(0, *cell));
                     all.add(&domain.nodes, &domain.table.gradients, mu, domain.table.weights[0], region);
                 }
             }
         }
+        // The energy of a branch is positive point by point, which a negative weight turns round.
         if all.weights.iter().any(|volume| !(*volume > 0.0)) {
             let expected = "an element whose quadrature has positive weights where stress relaxes: with others energy would be made";
             return Err(Error::expected("mesh", expected, "a weight below zero").of_kind(ErrorKind::Unsupported));

@@ -247,6 +247,7 @@ impl Network {
             }
         }
         let (mut sum, mut own) = (Vec::new(), Vec::new());
+        // Springs on the same points are summed first: a list of entries takes more memory than the matrix.
         for springs in self.on_same_points() {
             let of = &springs[0].points;
             let n = of.len() * d;
@@ -312,6 +313,7 @@ impl Network {
     /// The `count` springs with the most negative constants: their points and constants, the least first.
     pub fn most_negative(&self, count: usize) -> Vec<(&[usize], f64)> {
         let mut springs: Vec<(&[usize], f64)> = self.negative_springs().collect();
+        // The sort is stable: of equal constants the first springs of the network are named on each machine.
         springs.sort_by(|a, b| a.1.total_cmp(&b.1));
         springs.truncate(count);
         springs

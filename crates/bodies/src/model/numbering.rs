@@ -23,6 +23,8 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
         while next < order.len() {
             let from = order.len();
             order.extend(beside[order[next]].iter().filter(|j| !std::mem::replace(&mut is_met[**j], true)));
+            // Points with few neighbours first, as Cuthill and McKee have it; the sort keeps equal ones in the order of
+            // their numbers.
             order[from..].sort_by_key(|j| beside[*j].len());
             next += 1;
         }

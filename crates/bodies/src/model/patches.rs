@@ -50,6 +50,7 @@ fn springs_of_patches(mesh: &Mesh, material: MaterialMap, fit: &ExactFit, held: 
     let (mut shares, mut alone) = (vec![Vec::new(); mesh.point_count()], Vec::new());
     for (cell, nodes) in block.cells().enumerate() {
         let free: Vec<usize> = nodes.iter().copied().filter(|&p| !held.get(p).is_some_and(|held| *held)).collect();
+        // The share of a cell without free points is infinite here, and is replaced below.
         let part = Part { nodes, share: 1.0 / free.len() as f64, cell };
         free.iter().for_each(|&point| shares[point].push(part));
         if free.is_empty() {
@@ -80,6 +81,7 @@ fn springs_of_patches(mesh: &Mesh, material: MaterialMap, fit: &ExactFit, held: 
         MeasureSpring {
             kind: SpringKind::Patch,
             points: points.into(),
+            // V λ/2 (J − 1)² with J = V/V₀ is λ/(2 V₀) (V − V₀)².
             constant: lambda / rest,
             rest,
             measure,

@@ -33,6 +33,7 @@ fn sheet(mesh: &Mesh, directors: &Directors, moduli: &CellMap<Hooke>, springs: S
     let mut holds = vec![0.0; directors.edges.len()];
     let first = mesh.node_count();
     let mut sides = vec![0; directors.edges.len()];
+    // Directors of three triangles and more keep their angles: no flat shape of such an edge is known.
     directors.of_cells.iter().for_each(|director| sides[director - first] += 1);
     for (cell, nodes) in mesh.blocks[0].cells().enumerate() {
         let membrane = Matrix3::from_row_slice(&moduli.at(0, cell).entries(2).0);
@@ -156,6 +157,7 @@ fn levers(mesh: &Mesh, directors: &Directors, holds: &[f64]) -> Vec<LengthSpring
         })
     };
     let mut all: Vec<LengthSpring> = directors.edges.iter().enumerate().flat_map(lever).collect();
+    // Networks have their lengths sorted by their points.
     all.sort_by_key(|spring| spring.points);
     all
 }

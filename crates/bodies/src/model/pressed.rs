@@ -44,6 +44,7 @@ impl PressedFaces {
         let mut pressed = PressedFaces { dimension: mesh.dimension, tables: Vec::new(), faces: Vec::new() };
         let integrand = Integrand::Load(pressure.degree());
         match (mesh.cell_dimension(), mesh.dimension) {
+            // A part of a solid may name the membranes on it and no sides: the pressure acts on these.
             (3, 3) if part.sides(mesh)?.is_empty() && has_membranes(mesh, part)? => {
                 pressed.add_cells(mesh, part, pressure, integrand)?;
             }
@@ -162,6 +163,7 @@ impl PressedFaces {
         let d = self.dimension;
         let mut entries = Vec::new();
         for face in &self.faces {
+            // One matrix for each face before its entries are listed: quadrature points add to the same pairs of nodes.
             let size = face.nodes.len() * d;
             let mut local = vec![0.0; size * size];
             self.each_point_of(face, x, |values, gradients, weight, tangents| {

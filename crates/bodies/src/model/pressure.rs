@@ -28,6 +28,7 @@ pub fn smoothed_pressure(
 /// [`smoothed_pressure`], without parameters of type: compiled here, where code is optimised, and not with each caller.
 fn smoothed(mesh: &Mesh, network: &Network, material: MaterialMap, u: &[f64], linear: bool) -> Option<Vec<f64>> {
     let bulk = Bulk::of(mesh, &material)?;
+    // Patches know their cells by their nodes. Sorted, so that sums have the same bits in each run.
     let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {
         let Measure::Patch(patch) = &spring.measure else { continue };
@@ -82,6 +83,7 @@ impl Bulk {
     fn at(&self, nodes: &[usize]) -> f64 {
         match self {
             Bulk::Uniform(bulk) => *bulk,
+            // A cell that the mesh has not has no pressure; NaN is told as unknown.
             Bulk::Each(all) => all.get(nodes).copied().unwrap_or(f64::NAN),
         }
     }
@@ -93,6 +95,7 @@ fn bulk_modulus(material: Material) -> f64 {
     let moduli = material.moduli();
     let (lambda, mu) = (moduli.lambda / t, moduli.mu / t);
     match material.state() {
+        // Nothing pulls across a plane or rod, so that the mean is a third of the sum of the other stresses.
         State::PlaneStress { .. } => 2.0 * (lambda + mu) / 3.0,
         State::Rod { .. } => (lambda + 2.0 * mu) / 3.0,
         State::Solid | State::PlaneStrain { .. } => lambda + 2.0 * mu / 3.0,

@@ -96,6 +96,8 @@ fn bends(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> Vec<MeasureS
     let constants = [3.0 * bend, bend, 3.0 * bend, bend, twist].map(|stiffness| stiffness / length.powi(3));
     let spring = |(measure, constant): (usize, f64)| {
         let row = weights.row(measure) * length;
+        // A joint whose axes are across its rod sees each motion by one turn; the other shares are rounding, and would
+        // make springs of all points.
         let least = ROUNDING * row.amax();
         let shares = turns.iter().zip(row.iter()).filter(|(_, share)| share.abs() > least);
         let turns = Turns::new(shares.map(|(places, share)| (places.as_slice(), *share)), POINTS);
@@ -111,6 +113,7 @@ fn single_turns(mesh: &Mesh, points: &[usize], [bend, twist]: [f64; 2]) -> Vec<M
     let x: Vec<f64> = points.iter().flat_map(|&p| mesh.point(p)).copied().collect();
     let length = mesh.rod_length(&points[..2]);
     let all = turns(&x);
+    // The third turn of each end is about the rod, which the twist has already.
     let inclined = [0, 1, 3, 4].map(|place| (all[place], 2.0 * bend));
     let twisted = [all[INCLINED.len()], all[INCLINED.len() + 1]].map(|places| (places, twist / 2.0));
     let spring = |(places, stiffness): ([usize; 4], f64)| {

@@ -37,6 +37,7 @@ impl<'a> RodLoad<'a> {
 
     /// The integrand of a load of this degree in the position, beside cubic lines.
     pub fn integrand(degree: usize) -> Integrand {
+        // Rules of a load are exact for its degree times linear functions; cubic lines have two degrees more.
         Integrand::Load(degree + 2)
     }
 
@@ -49,6 +50,8 @@ impl<'a> RodLoad<'a> {
         let pull = dot(&force, &tangent);
         let turn = cross(tangent, force);
         let lines = [
+            // Hermite's cubic lines; the moment of the second end has the other sign, as a load between both turns the
+            // ends against each other.
             (1.0 - s, 1.0 - s * s * (3.0 - 2.0 * s), length * s * (1.0 - s).powi(2)),
             (s, s * s * (3.0 - 2.0 * s), -length * s * s * (1.0 - s)),
         ];

@@ -132,6 +132,7 @@ impl Network {
             let edge = Edge::of(spring, x, d);
             let (a, u, k) = (edge.change(a, d), edge.change(u, d), spring.constant);
             let (both, na, nu) = (dot(&a, &u), dot(&edge.n, &a), dot(&edge.n, &u));
+            // Without a rest length `K = k I` in any direction, and the quotients below would be 0/0.
             if spring.rest == 0.0 && edge.length == 0.0 {
                 found.constants[s] = both;
                 continue;
@@ -153,6 +154,7 @@ impl Network {
             constants[s] = ga * gu + past * bent;
             rests[s] = -k * bent;
             let third = third(spring, &a, &u, d);
+            // The product rule: the derivative of g is H, that of c is g, and that of H is the third derivative of c.
             let slope = |i: usize| k * (ha[i] * gu + hu[i] * ga + jet.gradient[i] * bent + past * third[i]);
             add(spring, (0..a.len()).map(slope), &mut points, d);
         });

@@ -63,6 +63,7 @@ impl LengthShare {
                 numbers,
             ));
         }
+        // Springs of an exact network have no rest length at all, not one that is nearly zero.
         let rest = if is_exact { 0.0 } else { rest_length(length, slack / constant) };
         SharedSpring::Length(LengthSpring { points, constant, rest })
     }
@@ -100,6 +101,7 @@ pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<M
             for star in stars {
                 star.gather(mesh, i, |_| true, shares);
             }
+            // All shares of two points are one sum by now: no two are equal.
             shares.sort_unstable_by_key(|share| share.points[1]);
             for share in &*shares {
                 let length = distance(mesh.point(i), mesh.point(share.points[1]));
@@ -114,6 +116,7 @@ pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<M
         springs.extend(part.0);
         others.extend(part.1);
     });
+    // A list that has grown holds up to twice its length.
     springs.shrink_to_fit();
     (springs, others)
 }
@@ -136,6 +139,7 @@ fn each_point<T: Default + Send>(
     let count = mesh.point_count();
     let firsts: Vec<usize> = (0..count).step_by(CHUNK).collect();
     let part = |first: &usize| {
+        // One list for all points of a chunk, whose memory is kept from point to point.
         let (mut shares, mut results) = (Vec::new(), T::default());
         for i in *first..(first + CHUNK).min(count) {
             shares.clear();
@@ -144,6 +148,7 @@ fn each_point<T: Default + Send>(
         results
     };
     for round in firsts.chunks(ROUND) {
+        // What threads find is taken in the order of the points: the result is the same on any number of threads.
         let parts: Vec<T> = round.par_iter().map(part).collect();
         parts.into_iter().for_each(&mut take);
     }
@@ -192,6 +197,7 @@ impl<'a> Star<'a> {
             let constants = &self.fit.constants[cell * m..(cell + 1) * m];
             for &(s, other) in &self.springs[node] {
                 let j = nodes[other];
+                // Each spring once, with its lower point.
                 if j > i {
                     let slack = match self.fit.force {
                         Force::FreeRest => {

@@ -138,8 +138,10 @@ impl Images<'_> {
         // x = nᵀ cell, so that n = x cell⁻¹; in skewed cells the nearest image may be one beside.
         let rounded: Vec<i64> = (self.inverse.transpose() * &between).iter().map(|n| -n.round() as i64).collect();
         let (mut nearest, mut second) = ((f64::INFINITY, rounded.clone()), f64::INFINITY);
+        // All 3^d cells around the rounded one, each by its digits in base three.
         for step in 0..3usize.pow(d as u32) {
             let shift: Vec<i64> = (0..d).map(|k| rounded[k] + (step / 3usize.pow(k as u32) % 3) as i64 - 1).collect();
+            // A spring from a point to itself goes to an image of it.
             if i == j && shift.iter().all(|n| *n == 0) {
                 continue;
             }

@@ -67,6 +67,7 @@ pub(super) fn strain_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit
         let edges = [[0, 1], [1, 2], [2, 0]].map(|edge| edge.map(|corner| nodes[corner]));
         sides.extend(edges.map(|[a, b]| ([a.min(b), a.max(b)], cell)));
     }
+    // No two are equal, since each has its triangle: the order is the same however it is sorted.
     sides.par_sort_unstable();
     let of_edge = |parts: &[([usize; 2], usize)]| -> Vec<MeasureSpring> {
         let mut domain: SmallVec<[Share; 2]> =
@@ -75,6 +76,7 @@ pub(super) fn strain_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit
             [one, other]
                 if region(parts[0].1) == region(parts[1].1) && is_smooth(mesh, block, [parts[0].1, parts[1].1]) =>
             {
+                // Both are laid out above the edge; the second belongs below it.
                 other.turn_over();
                 springs(mesh, &[&*one, &*other]).into()
             }
@@ -134,12 +136,14 @@ impl Share {
         let second = (to_third - first * first.dot(&to_third)).normalize();
         let turn = strain_in([first, second]);
         let stiffness = turn.transpose() * Matrix3::from_row_slice(&hooke.entries(2).0) * turn;
+        // Each of the three edges has a third of the triangle.
         Share { corners, area: area / 3.0, stiffness }
     }
 
     /// Turns the triangle over to the other side of the edge.
     fn turn_over(&mut self) {
         self.corners.iter_mut().for_each(|(_, x)| x.y = -x.y);
+        // Seen from the other side shear has the other sign.
         let turn = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
         self.stiffness = turn * self.stiffness * turn;
     }
@@ -198,6 +202,7 @@ fn springs(mesh: &Mesh, shares: &[&Share]) -> [MeasureSpring; 3] {
             }
         }
     }
+    // Springs of one domain follow each other with the same points, which prepared networks rely on.
     points.sort_unstable();
     let place = |point: usize| points.iter().position(|p| *p == point).unwrap_or_default();
     let places: SmallVec<[[usize; 2]; 6]> = squares.iter().map(|(pair, _)| pair.map(place)).collect();

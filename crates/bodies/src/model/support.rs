@@ -91,6 +91,7 @@ fn unheld_pieces(
             (0..d).map(|k| body.iter().map(|&p| point(p)[k]).sum::<f64>() / body.len() as f64).collect();
         let extent = body.iter().map(|&p| crate::springs::distance(point(p), &centre)).fold(0.0, f64::max);
         // Translations e_k, then rotations in the planes (k, l), in units of the size of the body.
+        // Rows of zeros where fewer are held than there are motions: the rank is that of the others.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);
         for (row, &dof) in held.iter().enumerate() {
             let r: Vec<f64> = point(dof / d).iter().zip(&centre).map(|(x, c)| (x - c) / extent).collect();

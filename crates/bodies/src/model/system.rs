@@ -61,6 +61,7 @@ fn assembled(mesh: &Mesh, moduli: CellMap<Hooke>) -> Entries {
             }
         }
     });
+    // Plates and beams are springs in either model; other bodies have none.
     entries.extend(bending_springs(mesh, &moduli).stiffness(&mesh.points));
     entries
 }

@@ -43,6 +43,7 @@ impl RestTension {
             let mut x = vec![0.0; spring.points.len() * d];
             gather(points, d, &spring.points, &mut x);
             let pull = spring.tension(spring.measure.value(&x, d)).abs();
+            // What a spring on another measure pulls has another unit; its largest force on a point is in N.
             let steepest = spring.measure.gradient(&x, d).chunks_exact(d).map(norm).fold(0.0, f64::max);
             largest = largest.max(pull * steepest);
         }

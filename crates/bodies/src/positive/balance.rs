@@ -92,6 +92,7 @@ impl<'a> RestForces<'a> {
                 let mut lambda = forces.clone();
                 factor.solve(&mut lambda);
                 let (mut nearer, mut tighter) = (constants.to_vec(), tensions.to_vec());
+                // The least relative change is one by `k²`: springs that are zero stay zero.
                 for (edge, k) in nearer.iter_mut().enumerate().filter(|(_, k)| **k > 0.0) {
                     let [i, j] = self.edges.pairs[edge];
                     let r = self.edges.vector(self.mesh, edge);
@@ -106,6 +107,7 @@ impl<'a> RestForces<'a> {
                 }
                 let nearer_forces = self.forces(&nearer, &tighter);
                 let nearer_left = self.share(&nearer_forces, &nearer);
+                // The last correction that helped is kept; NaN does not help.
                 if !(nearer_left < left) {
                     break;
                 }
@@ -117,6 +119,7 @@ impl<'a> RestForces<'a> {
                 }
             }
         }
+        // Without any spring the share is 0/0, and no balance either.
         if !(left <= TOLERANCE) {
             return Err(unbalanced(&format!("a force at rest of {left:.1e} of the largest of a spring")));
         }
@@ -132,6 +135,7 @@ impl<'a> RestForces<'a> {
         let mut entries = Entries::new();
         let mut place = |dofs: &[usize], vector: &[f64], weight: f64| {
             for (a, row) in dofs.iter().enumerate() {
+                // Entries are those of the lower triangle.
                 for (b, column) in dofs.iter().enumerate().filter(|(_, column)| row >= *column) {
                     entries.push(Triplet::new(*row, *column, weight * vector[a] * vector[b]));
                 }

@@ -37,6 +37,8 @@ impl Contents {
                     false
                 }
             };
+            // Springs that do not push at rest, such as those that carry λ alone, have no part in the shear modulus and
+            // keep their tension.
             if !is_content || tension >= 0.0 {
                 continue;
             }

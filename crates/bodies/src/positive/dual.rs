@@ -62,6 +62,7 @@ pub(super) fn minimum(programme: &Quadratic, watch: &mut SearchProgress) -> Resu
         }
         point.step(&direction, length);
         let left = point.residual();
+        // Residuals may rise between two steps; what a user sees of the progress does not fall back.
         nearest = ((largest / left).log10().max(0.0) as usize).clamp(nearest, NEAR);
         watch(nearest, NEAR);
         if left <= FOUND * largest {
@@ -142,6 +143,7 @@ impl<'a> Point<'a> {
     /// The Newton direction; `None` if the equations are singular. `pattern` is made the first time.
     fn direction(&self, pattern: &mut Option<System>) -> Result<Option<Direction>> {
         let (programme, rows) = (self.programme, self.programme.rows);
+        // At the kink itself either slope belongs to the generalised Hessian; that of a variable at its bound is taken.
         let is_free = |i: usize| self.unbounded(i, self.slopes[i]) > programme.lower[i];
         let compliances: Vec<f64> =
             (0..programme.len()).map(|i| if is_free(i) { 1.0 / programme.weights[i] } else { 0.0 }).collect();
@@ -190,6 +192,7 @@ impl<'a> Point<'a> {
         factor.solve(&mut solved);
         let solved: Vec<&[f64]> = solved.chunks_exact(rows).collect();
         let n = dense.len();
+        // An equation has an infinite weight, and no compliance of its own.
         let own = |a: usize, b: usize| if a == b { 1.0 / dense[a].1 } else { 0.0 };
         let entry = |a, b| own(a, b) + dot(&dense[a].0, &moved[b]) - dot(&coupling[a], solved[b]);
         let right = DVector::from_fn(n, |a, _| eta[a] - dot(&coupling[a], y));
@@ -218,6 +221,8 @@ impl<'a> Point<'a> {
         let first = -self.slope(direction, 0.0);
         let (mut low, mut high) = ((0.0, -first), (1.0, self.slope(direction, 1.0)));
         for round in 0..HALVINGS {
+            // In the first round this is the full step of Newton's method, which ends the search where no variable
+            // meets its bound.
             if high.1 <= FLAT * first {
                 break;
             }
@@ -247,6 +252,7 @@ impl<'a> Point<'a> {
     fn centre_if_near(&mut self, residual: f64) {
         let (y, eta) = self.gradients();
         let left = y.iter().chain(&eta).fold(0.0f64, |a, x| a.max(x.abs()));
+        // Both are violations of the equations, with and without the proximal term.
         if left < CENTRED * residual {
             self.centre.copy_from_slice(&self.y);
         }

@@ -46,10 +46,12 @@ impl Edges {
                 let nodes = block.cell(cell);
                 let volume = geometry.content().abs();
                 for a in 0..n {
+                    // A cell whose corners coincide names a node twice.
                     let others = (a + 1..n).filter(|b| nodes[*b] != nodes[a]);
                     shares.extend(others.map(|b| (ordered(nodes[a], nodes[b]), false, volume / pairs)));
                     if is_across {
                         let mut side: Vec<usize> = (0..n).filter(|b| *b != a).map(|b| nodes[b]).collect();
+                        // Sorted, so that the two cells at a side name it alike.
                         side.sort_unstable();
                         sides.push((side, nodes[a], volume));
                     }
@@ -57,10 +59,12 @@ impl Edges {
             };
             each_cell(table, &mesh.points, &block.connectivity, visit).expect("a mesh holds only cells with a volume");
         }
+        // Equal sides come together, each with the point opposite to it; a side belongs to two cells at most.
         sides.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.cmp(&b.1)));
         for pair in sides.windows(2).filter(|pair| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1) {
             shares.push((ordered(pair[0].1, pair[1].1), true, ACROSS * (pair[0].2 + pair[1].2)));
         }
+        // False comes before true, so that a pair that a cell has as well counts as one of the cell.
         shares.sort_unstable_by_key(|(pair, across, _)| (*pair, *across));
         let mut edges = Edges::default();
         let mut springs = springs.iter().peekable();

@@ -18,6 +18,7 @@ pub(super) fn minimum(programme: &Quadratic, watch: &mut SearchProgress) -> Resu
     let count = programme.len();
     let mut weights = programme.weights.clone();
     let mut columns: Vec<Vec<(usize, f64)>> = (0..count).map(|variable| programme.column(variable).collect()).collect();
+    // The sparse matrix takes the rows of a column in ascending order; rows that are added below are larger than these.
     columns.iter_mut().for_each(|column| column.sort_unstable_by_key(|entry| entry.0));
     let mut rows = programme.rows;
     for (dense, weight) in &programme.dense {
@@ -48,6 +49,7 @@ pub(super) fn minimum(programme: &Quadratic, watch: &mut SearchProgress) -> Resu
     };
     match programme.solve(watch) {
         Found::Optimum(mut optimum) => {
+            // The products of the rows with weights come last and are no changes of springs.
             optimum.variables.truncate(count);
             Ok(Some(Minimum { variables: optimum.variables, steps: optimum.iterations }))
         }

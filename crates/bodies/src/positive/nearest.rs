@@ -71,6 +71,8 @@ pub fn nearest_positive(
     let programme = |edges| Programme { mesh, network, edges, contents: &none, modulus, modes: Vec::new() };
     let scales = programme(&plain);
     if (0..plain.len()).all(|edge| plain.constants[edge] >= -ROUNDING * scales.scale(edge)) {
+        // Negative by rounding alone, as at right angles: no search is needed, but what is left out leaves a force of
+        // that size.
         let mut constants: Vec<f64> = plain.constants.iter().map(|k| k.max(0.0)).collect();
         outcome.rest_force = RestForces::new(mesh, network, &plain, &none).correct(&mut constants, &mut [])?;
         let rounded = search.network(&plain, &constants, &none, &[])?;
@@ -79,7 +81,9 @@ pub fn nearest_positive(
     }
     let vibrations = Vibrations::new(mesh, &exact, modulus, fit.modes)?;
     let edges = if fit.across { Edges::new(mesh, &network.lengths, true)? } else { plain.clone() };
+    // A law that is not known is an error only if tensions have to change, on the last route.
     let contents = Contents::new(mesh, network);
+    // In the order of what they change: the first route with a solution is taken.
     let mut routes = vec![(Route::Springs, &plain, Ok(&none))];
     if fit.across {
         routes.push((Route::Across, &edges, Ok(&none)));
@@ -173,6 +177,7 @@ impl Search<'_> {
         outcome.modes = vibrations.shapes.len();
         let modes = vibrations.shapes.iter().map(error);
         outcome.mode_errors = modes.fold(outcome.mode_errors, |[low, high], e| [low.min(e), high.max(e)]);
+        // A flat surface has no energy in strains across it: 0/0.
         outcome.affine = affine(mesh).iter().map(error).filter(|e| e.is_finite()).fold(0.0, |a, e| a.max(e.abs()));
         if !vibrations.are_stable(mesh, &stiffness)? {
             let problem = "the nearest network without negative springs is not stable: mesh the body with other cells";
@@ -229,6 +234,7 @@ fn length(mesh: &Mesh, spring: &LengthSpring) -> f64 {
 
 /// `uᵀ K u`.
 fn twice_energy(stiffness: &Entries, u: &[f64]) -> f64 {
+    // Entries are those of the lower triangle, so that those outside the diagonal count for both.
     let both = |row: usize, column: usize| if row == column { 1.0 } else { 2.0 };
     stiffness.iter().map(|e| both(e.row, e.col) * e.val * u[e.row] * u[e.col]).sum()
 }

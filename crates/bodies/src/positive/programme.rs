@@ -101,6 +101,7 @@ impl Programme<'_> {
         programme.normalise();
         if !contents.rests.is_empty() {
             let size = norm(&contents.rests);
+            // A row of unit size, like those of A, so that one limit of residuals serves all equations.
             let mean = std::iter::repeat_n(0.0, edges.len()).chain(contents.rests.iter().map(|rest| rest / size));
             programme.dense.push((mean.collect(), f64::INFINITY));
         }
@@ -108,6 +109,7 @@ impl Programme<'_> {
             let units = scales.iter().copied().chain(std::iter::repeat_n(self.modulus, contents.rests.len()));
             let row: Vec<f64> = mode.iter().zip(units).map(|(share, unit)| share * unit).collect();
             let size = norm(&row);
+            // The row has unit size; its weight takes the square of the size.
             programme.dense.push((row.iter().map(|x| x / size).collect(), MODES * size * size));
         }
         programme

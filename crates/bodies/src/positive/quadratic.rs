@@ -74,6 +74,7 @@ impl Quadratic {
     /// `A z`.
     pub fn apply(&self, z: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.rows];
+        // Variables at a bound of zero are many; their products are spared.
         for (variable, z) in z.iter().enumerate().filter(|(_, z)| **z != 0.0) {
             self.column(variable).for_each(|(row, value)| sums[row] += value * z);
         }

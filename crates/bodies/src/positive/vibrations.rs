@@ -32,6 +32,7 @@ impl Vibrations {
     /// The equations do not fit into memory, or the modes are not found.
     pub fn new(mesh: &Mesh, stiffness: &Entries, modulus: f64, count: usize) -> Result<Vibrations> {
         let d = mesh.dimension;
+        // Row sums are below zero at corners of some quadratic cells; modes need masses above zero.
         let masses = lumped_masses(mesh, 1.0, 1.0, Lumping::Hrz);
         let support = Support::free(mesh);
         let unheld = unheld_bodies(mesh, &support);
@@ -39,10 +40,13 @@ impl Vibrations {
             return Ok(Vibrations { masses, ..Vibrations::default() });
         }
         let size = extent(mesh);
+        // The free body has a singular stiffness. A shift by σ M makes it regular, adds σ to each ω² and leaves the
+        // shapes; with unit density this σ has the size of the lowest ω².
         let shift = modulus / (size * size);
         let system = System::new(&raised(stiffness, &masses, d, shift), &support)?.placed(&mesh.points, d);
         let rigid: usize = unheld.iter().map(|body| body.motions).sum();
         let Some(factor) = system.cholesky()? else { return Ok(Vibrations { masses, ..Vibrations::default() }) };
+        // Rigid motions are found first, as those of the least ω².
         let modes = lowest_modes(&system, &factor, &masses, d, (rigid + count).min(system.size()))?;
         let (mut shapes, mut least) = (Vec::new(), None);
         for (square, shape) in modes.squares.iter().zip(modes.shapes) {
@@ -59,6 +63,7 @@ impl Vibrations {
     /// # Errors
     /// The equations do not fit into memory.
     pub fn are_stable(&self, mesh: &Mesh, stiffness: &Entries) -> Result<bool> {
+        // Without modes there is no scale of ω² by which a negative one could be told from rounding.
         let Some(least) = self.least else { return Ok(true) };
         let raised = raised(stiffness, &self.masses, mesh.dimension, UNSTABLE * least);
         let system = System::new(&raised, &Support::free(mesh))?.placed(&mesh.points, mesh.dimension);

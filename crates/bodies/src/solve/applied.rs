@@ -33,6 +33,8 @@ impl<'a> Applied<'a> {
     pub fn at(&self, rest: &[f64], u: &[f64]) -> Cow<'a, [f64]> {
         let Some(pressed) = self.pressed else { return Cow::Borrowed(self.forces) };
         let (at_rest, now) = (pressed.forces(rest), pressed.forces(&displaced(rest, u)));
+        // `forces` holds the pressures on the faces as they are at rest; they give way to those on the faces where
+        // these are now.
         Cow::Owned(self.forces.iter().zip(at_rest.iter().zip(now)).map(|(f, (rest, now))| f - rest + now).collect())
     }
 
@@ -42,6 +44,8 @@ impl<'a> Applied<'a> {
         let own = dot(self.forces, to);
         let Some(pressed) = self.pressed else { return own };
         let way: Vec<f64> = to.iter().zip(from).map(|(to, from)| to - from).collect();
+        // The work of `forces` has that of the pressures at rest, which is taken off again. Pressures on free edges
+        // have no potential, so that the work depends on the way; a line search asks for the straight one alone.
         own - dot(&pressed.forces(rest), to) + pressed.work(&displaced(rest, from), &way)
     }
 
@@ -49,6 +53,7 @@ impl<'a> Applied<'a> {
     pub(super) fn stiffness(&self, rest: &[f64], u: &[f64], load: f64) -> Following {
         let Some(pressed) = self.pressed else { return Following::default() };
         let mut entries = pressed.tangent(&displaced(rest, u));
+        // The tangent of a model is that of forces which resist, and these forces act: hence the sign.
         entries.iter_mut().for_each(|entry| entry.val *= -load);
         Following { entries }
     }
@@ -70,6 +75,7 @@ impl Following {
     pub fn symmetric(&self) -> Entries {
         let half = |entry: &Triplet<usize, usize, f64>| {
             let (row, column) = (entry.row.max(entry.col), entry.row.min(entry.col));
+            // T has the entries above and below its diagonal. Both come to the same place, each with its half.
             Triplet::new(row, column, if row == column { entry.val } else { entry.val / 2.0 })
         };
         self.entries.iter().map(half).collect()
@@ -93,12 +99,14 @@ impl Following {
         let mut lack = vec![0.0; solution.len()];
         let (mut last, mut now) = (solution.clone(), solution);
         let mut last_lack = lack.clone();
+        // The infinite square marks the first step, which has no step before it to be weighed against.
         let (mut weight, mut square, mut first) = (1.0, f64::INFINITY, None);
         for _ in 0..CORRECTIONS {
             let rest: Vec<f64> = lack.iter().zip(self.skew_product(&now)).map(|(lack, skew)| lack - skew).collect();
             let correction = system.respond_all(factor, std::slice::from_ref(&rest)).remove(0);
             // The square of the correction in the norm of S, which falls from step to step but for rounding.
             let own = dot(&free(&correction), &free(&rest));
+            // In this form a square that is NaN ends the corrections as well.
             if !(own > CORRECTED * CORRECTED * *first.get_or_insert(own)) {
                 break;
             }

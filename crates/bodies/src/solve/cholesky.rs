@@ -50,6 +50,7 @@ impl Analysis {
             None => ordered(pattern, SymmetricOrdering::Amd),
             Some(order) => {
                 let mut position = vec![0; order.len()];
+                // The permutation needs its inverse as well.
                 order.iter().enumerate().for_each(|(i, &unknown)| position[unknown] = i);
                 let order = Perm::new_checked(order.into(), position.into(), order.len());
                 ordered(pattern, SymmetricOrdering::Custom(order.as_ref()))
@@ -90,6 +91,8 @@ impl Analysis {
                 let columns = |s: usize| {
                     let (width, below) =
                         (factor.supernode_end()[s] - factor.supernode_begin()[s], factor.supernode(s).pattern().len());
+                    // The columns of a supernode form a triangle above the rows that they share: they have 1, 2 …
+                    // `width` entries in it. The sums do not depend on the order.
                     (1..=width).map(move |column| column + below)
                 };
                 sum(&mut (0..factor.n_supernodes()).flat_map(columns))
@@ -103,9 +106,11 @@ impl Analysis {
     /// It does not fit into memory.
     pub fn factorize(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Option<Cholesky>> {
         let what = "the factor of the stiffness";
+        // Asked before the allocation, which may succeed on a system that promises more memory than it has.
         memory::require(what, self.bytes(), ADVICE)?;
         let full = || out_of_memory(what, FaerError::OutOfMemory);
         let mut values = Vec::new();
+        // A reservation that fails is an error here; `resize` alone would end the program.
         values.try_reserve_exact(self.0.len_val()).map_err(|_| full())?;
         values.resize(self.0.len_val(), 0.0);
         let par = get_global_parallelism();
@@ -132,6 +137,7 @@ impl Analysis {
         let rows = self.0.nrows();
         memory::require(
             what,
+            // Beside the factor: the subdiagonal of B, and the order of the pivots in both directions.
             8 * (self.0.len_val() + 3 * rows) as u64 + scratch.unaligned_bytes_required() as u64,
             ADVICE,
         )?;

@@ -77,10 +77,13 @@ impl Equations {
             let found = BlockStiffness::of_body(mesh, moduli, 1, 1)
                 .and_then(|stiffness| Equations::iterated(stiffness, &mesh.points, support, solver));
             match found {
+                // Iterations that the program has chosen itself may fail on badly shaped cells: the factor answers
+                // there.
                 Err(error) if solver.gives_way(&error) => {}
                 other => return other,
             }
         }
+        // Below the iterations, which need a small part of the memory of a factor.
         check_body(mesh)?;
         let entries = finite_elements(mesh, moduli);
         Equations::of_system(known.renewed(&entries, support, &mesh.points, mesh.dimension)?)
@@ -108,6 +111,7 @@ impl Equations {
     pub fn solve_all(&self, forces: &[Vec<f64>]) -> Result<Vec<Vec<f64>>> {
         match self {
             Equations::Factored(system, factor) => Ok(system.solve_all(factor, forces)),
+            // Iterations end at the tolerance of their solver; the one that is passed on is for factors.
             Equations::Iterated(..) => Ok(self.solve_each(forces, 0.0)?.into_iter().map(|(u, _)| u).collect()),
         }
     }
@@ -136,6 +140,7 @@ impl Equations {
         match self {
             Equations::Factored(system, factor) => Ok(system.respond_all(factor, forces)),
             Equations::Iterated(levels, solver) => {
+                // Who allows larger errors in the whole run allows them here.
                 let solver = StaticSolver { tolerance: solver.tolerance.max(tolerance), ..*solver };
                 levels.respond_all(forces, &solver).map_err(advise)
             }
@@ -160,6 +165,7 @@ impl Equations {
         for _ in 0..3 {
             let start = Clock::start();
             self.respond_all(&forces, STEP)?;
+            // Whatever else the machine does makes a time longer, never shorter.
             least = least.min(start.seconds());
         }
         Ok(least)

@@ -37,6 +37,7 @@ pub fn factor_cost_of<'a>(
     coupled: impl Iterator<Item = &'a [usize]>,
 ) -> Result<FactorCost> {
     let count = points.len() / dimension.max(1);
+    // Each point has its diagonal entry, also one without cells.
     let mut places: Vec<(usize, usize)> = (0..count).map(|point| (point, point)).collect();
     for nodes in coupled {
         let all = nodes.iter().flat_map(|&a| nodes.iter().map(move |&b| (a, b)));
@@ -53,6 +54,7 @@ fn cost_of(points: &[f64], dimension: usize, places: Vec<(usize, usize)>) -> Res
     let places = Places { coordinates: points.to_vec(), dimension };
     let (entries, operations) = Analysis::new(pattern.as_ref(), Some(&places))?.cost();
     let d = dimension as f64;
+    // A column with c points becomes d columns of d·c entries, whose squares sum to d³ c².
     Ok(FactorCost { entries: d.powi(2) * entries, operations: d.powi(3) * operations })
 }
 
@@ -64,6 +66,8 @@ pub fn dense_rate() -> f64 {
         // Large enough for blocks and threads to count, small enough to take a few milliseconds.
         const SIZE: usize = 512;
         let matrix =
+            // The rows outside the diagonal sum to less than ln 512 + 1, so that the diagonal makes the matrix positive
+            // definite.
             Mat::<f64>::from_fn(SIZE, SIZE, |i, j| if i == j { SIZE as f64 } else { 1.0 / (1 + i + j) as f64 });
         let run = || {
             let start = Instant::now();
@@ -72,6 +76,8 @@ pub fn dense_rate() -> f64 {
         };
         // The first one starts the threads.
         let seconds = run().0.min(run().0).min(run().0);
+        // `Σ c²` of a dense factor, the count that costs of sparse ones have. A clock with coarse ticks may measure no
+        // time at all.
         (SIZE as f64).powi(3) / 3.0 / seconds.max(1e-9)
     })
 }

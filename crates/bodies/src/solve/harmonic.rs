@@ -54,6 +54,7 @@ impl Harmonic {
         let size = norm(&rhs);
         let mut u = vec![Complex::default(); rhs.len()];
         let mut residual = rhs.clone();
+        // The residual of the recurrence drifts from the true one by rounding: each start computes it anew.
         for _ in 0..STARTS {
             if !(norm(&residual) > ENOUGH * size) {
                 break;
@@ -62,6 +63,7 @@ impl Harmonic {
             u.iter_mut().zip(&correction).for_each(|(u, c)| *u += c);
             residual = rhs.iter().zip(self.apply(coefficients, &u)).map(|(f, inner)| f - inner).collect();
         }
+        // The comparison is negated, so that NaN is refused.
         if !(norm(&residual) <= SOLVED * size) {
             let expected = "parts that hold the body together at each frequency";
             return Err(Error::expected("springs", expected, "a motion that meets next to no resistance")
@@ -81,6 +83,7 @@ impl Harmonic {
         for _ in 0..ITERATIONS {
             let image = self.apply(coefficients, &direction);
             let step = along / dot(&direction, &image);
+            // `xᵀ y` is no norm: `dᵀ A d` may vanish with d and A regular. The next start goes on from what was found.
             if !(step.re.is_finite() && step.im.is_finite()) {
                 break;
             }
@@ -100,6 +103,7 @@ impl Harmonic {
 
     fn precondition(&self, x: &[Complex<f64>]) -> Vec<Complex<f64>> {
         let mut both: Vec<f64> = x.iter().map(|x| x.re).chain(x.iter().map(|x| x.im)).collect();
+        // The factor is real, and solves for the real and the imaginary part side by side.
         self.factor.solve(&mut both);
         let (real, imaginary) = both.split_at(x.len());
         real.iter().zip(imaginary).map(|(re, im)| Complex::new(*re, *im)).collect()

@@ -45,6 +45,7 @@ impl Masses<'_> {
             Masses::Consistent(masses) => {
                 let mut diagonal = vec![0.0; masses.point_count()];
                 for (points, values) in masses.rows() {
+                    // The matrix is a sum of squares `g gᵀ` over its rows g.
                     points.iter().zip(values).for_each(|(&p, value)| diagonal[p] += value * value);
                 }
                 diagonal
@@ -98,6 +99,7 @@ impl<'a> Inertia<'a> {
 
     /// `D X` in place of X, `[free × columns]`, one column after the other; as all below.
     pub fn scale(&self, x: &mut [f64]) {
+        // Chunks of no entries are a panic, and a body that is held everywhere has none.
         x.chunks_exact_mut(self.roots.len().max(1))
             .for_each(|x| x.iter_mut().zip(&self.roots).for_each(|(x, d)| *x *= d));
     }
@@ -121,6 +123,7 @@ impl<'a> Inertia<'a> {
     /// `M X` in place of X.
     pub fn weigh(&self, x: &mut [f64]) {
         match self.masses {
+            // M is D² where masses are lumped.
             Masses::Lumped(_) => (0..2).for_each(|_| self.scale(x)),
             Masses::Consistent(masses) => self.multiply(masses, x),
         }

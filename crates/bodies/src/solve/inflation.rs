@@ -90,6 +90,7 @@ impl Inflation<'_> {
     fn settle(&mut self, share: f64, u: &mut Vec<f64>) -> Result<(Vec<f64>, ForceBalance)> {
         let target = self.start + share * (self.cavity.volume - self.start);
         let support = self.rest.support;
+        // The pressure of the last volume that was reached: one that failed leaves no trace.
         let (mut history, mut pressure) = (Vec::new(), self.pressure);
         let Some(mut now) = self.rest.at(u, Form::Position) else { return Ok((history, ForceBalance::None)) };
         let mut lack = self.lack(&now, u, pressure, target);
@@ -112,6 +113,7 @@ impl Inflation<'_> {
             }
             let sides = Applied { forces: &lack.gradient, pressed: Some(&self.cavity.sides) };
             let following = sides.stiffness(self.rest.points, u, pressure);
+            // Without a shift, but with its places: the pattern is that of the other tangents of Newton's method.
             let entries = raised(&with(&now.response.tangent, &following), u.len(), 0.0);
             // A step moves no support: what is prescribed is held.
             let still = Support { prescribed: support.prescribed.iter().map(|held| held.map(|_| 0.0)).collect() };
@@ -129,6 +131,7 @@ impl Inflation<'_> {
             let gradient = masked(&lack.gradient, support);
             let change = (lack.volume - dot(&gradient, &by_forces)) / dot(&gradient, &by_pressure);
             let step: Vec<f64> = by_forces.iter().zip(&by_pressure).map(|(r, f)| r + change * f).collect();
+            // A pressure that changes no volume to first order has no step: the quotient above is then 0/0 or infinite.
             if !step.iter().all(|s| s.is_finite()) {
                 return Ok((history, ForceBalance::None));
             }

@@ -21,9 +21,11 @@ impl KnownEquations {
     /// `solve` fails; its error is passed on.
     pub fn under(&self, support: &Support, solve: impl FnOnce() -> Result<Equations>) -> Result<Equations> {
         if let Some((_, equations)) = self.kept().iter().find(|(own, _)| own == support) {
+            // A copy shares the factor.
             return Ok(equations.clone());
         }
         if memory::available().is_some_and(|left| left < ROOM) {
+            // All go, not the oldest alone: one factor is most of the memory, and what is asked for next is not known.
             self.kept().clear();
         }
         // Not under the lock: a solution takes long, and at worst two threads find the same one.

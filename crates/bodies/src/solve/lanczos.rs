@@ -56,8 +56,10 @@ pub(super) fn ends(
     let mut basis: Basis = Vec::new();
     let mut projected = DMatrix::zeros(BASIS, BASIS);
     for step in 1..=steps {
+        // Rounding may leave a square just below zero.
         let size = dot(&v, &rv).max(0.0).sqrt();
         if !(size > 0.0 && size.is_finite()) {
+            // Nothing is left to search in; with an empty basis the starts had no energy or were not finite.
             return if basis.is_empty() { None } else { found(&basis, &projected, 0.0) };
         }
         v.iter_mut().for_each(|x| *x /= size);
@@ -84,6 +86,7 @@ pub(super) fn ends(
             return found(&basis, &projected, if is_whole { 0.0 } else { left });
         }
         let is_full = basis.len() == BASIS;
+        // The values of the projection cost its cube, hence not at each step.
         if is_full || (step >= LEAST_STEPS && step % LOOK == 0) {
             let eigen = eigen(&projected, basis.len())?;
             let is_found = |end: usize| residual(&eigen, end, left) <= FOUND * eigen.0[end].abs();
@@ -109,12 +112,15 @@ type Eigen = (Vec<f64>, DMatrix<f64>);
 
 /// `None` if an entry is not finite.
 fn eigen(projected: &DMatrix<f64>, m: usize) -> Option<Eigen> {
+    // The lower triangle was never written.
     let whole = DMatrix::from_fn(m, m, |i, j| projected[(i.min(j), i.max(j))]);
+    // With an entry that is NaN the decomposition has no meaning.
     if whole.iter().any(|x: &f64| !x.is_finite()) {
         return None;
     }
     let eigen = whole.symmetric_eigen();
     let mut order: Vec<usize> = (0..m).collect();
+    // The decomposition gives eigenvalues in no order.
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
     Some((order.iter().map(|&k| eigen.eigenvalues[k]).collect(), eigen.eigenvectors.select_columns(&order)))
 }
@@ -138,6 +144,7 @@ fn found(basis: &Basis, projected: &DMatrix<f64>, left: f64) -> Option<[Ritz; 2]
 fn condensed(basis: &Basis, projected: &mut DMatrix<f64>, eigen: &Eigen) -> Basis {
     let kept: Vec<usize> = (0..KEPT).chain(basis.len() - KEPT..basis.len()).collect();
     projected.fill(0.0);
+    // The products of the kept vectors with the next one are found when that one is orthogonalised, like all others.
     kept.iter().enumerate().for_each(|(i, &index)| projected[(i, i)] = eigen.0[index]);
     kept.iter().map(|&index| combination(basis, &eigen.1, index)).collect()
 }

@@ -152,6 +152,8 @@ impl Levels {
     /// What is free, with all else zero.
     fn found(&self, forces: &[Vec<f64>], solver: &StaticSolver, share: &mut Share) -> Result<Vec<Solution>> {
         let bytes = (VECTORS * WIDTH * size_of::<f64>() * self.degrees()) as u64;
+        // Loads side by side share each reading of the matrix, but have vectors of their own. Where these do not fit
+        // one load at a time does.
         let fits = forces.len() <= 1 || available().is_none_or(|available| bytes < available);
         let (target, all) = (solver.tolerance.ln(), forces.len() as f64);
         let mut solutions = Vec::with_capacity(forces.len());
@@ -159,6 +161,8 @@ impl Levels {
             let (done, now) = (solutions.len() as f64, some.len() as f64);
             let watch: &mut Watch = &mut |event| {
                 if let Event::Iteration { residual, .. } = event {
+                    // Residuals fall by about the same factor in each iteration, so that their logarithms measure the
+                    // way; the first ones may rise.
                     share((done + now * (residual.ln() / target).clamp(0.0, 1.0)) / all);
                 }
                 ControlFlow::Continue(())
@@ -211,6 +215,7 @@ impl Levels {
     fn held(&self, stiffness: &BlockStiffness) -> (Vec<f64>, Vec<f64>) {
         let displacement: Vec<f64> = self.prescribed.iter().map(|u| u.unwrap_or(0.0)).collect();
         let moves = displacement.iter().any(|u| *u != 0.0);
+        // Most supports are at rest: a pass over the matrix is spared.
         let reaction = if moves { stiffness.apply(&displacement) } else { vec![0.0; displacement.len()] };
         (displacement, reaction)
     }
@@ -298,11 +303,14 @@ pub fn compare_levels(
         Err(motion) => Some(motion.to_vec()),
     };
     let least = match (network, &shown) {
+        // The least ratios are the largest ones of K⁻¹ R, and the levels of the network stand for K⁻¹.
         (Ok(levels), None) => levels.extreme(End::Least, stiffness, own, None, LEAST_STEPS)?,
         (_, start) => body.extreme(End::Least, stiffness, own, start.as_deref(), LEAST_STEPS)?,
     };
     let largest = body.extreme(End::Largest, stiffness, own, None, LARGEST_STEPS)?;
     let standing = standing(least.quotient, shown.is_none());
+    // Both searches end early, so that the second may stay below what the first has found on a body where all ratios
+    // are alike.
     let energy_ratio = [least.quotient, largest.quotient.max(least.quotient)];
     Ok(Stability { standing, energy_ratio, softest: free(least.displacement), is_found: least.is_settled })
 }

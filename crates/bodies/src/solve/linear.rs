@@ -83,6 +83,7 @@ impl System {
         free.iter().enumerate().for_each(|(i, &dof)| place[dof] = i);
         let list = |tell: &mut dyn FnMut(usize, usize)| {
             each_value(entries, &place, |row, column, _| {
+                // A column that is held goes to the right-hand side: the order here is that of `System::of`.
                 if place[column] != usize::MAX {
                     tell(place[row], place[column]);
                 }
@@ -129,6 +130,7 @@ impl System {
             }
         });
         debug_assert!(slots.next().is_none(), "a pattern is that of as many entries");
+        // The factor needs no more than the rounded sums; residuals get both parts.
         let (values, lost) = sums.iter().map(|sum| (sum.kept().hi, sum.kept().lo)).unzip();
         let matrix = SparseColMat::new(pattern.symbolic.clone(), values);
         System { matrix, lost, reaction, prescribed: support.prescribed.clone(), pattern }
@@ -170,6 +172,7 @@ impl System {
         if self.is_accurate(&pivoted) {
             return Ok(Some(pivoted));
         }
+        // Its memory is free before that of L and U is asked for.
         drop(pivoted);
         let what = "the factor of the stiffness, which is not positive definite,";
         memory::require(what, GENERAL * self.analysis()?.bytes(), ADVICE)?;
@@ -234,6 +237,7 @@ impl System {
             factor.solve(&mut correction);
             let change = norm(&correction);
             // Corrections that do not decrease show that the factor is too inaccurate.
+            // A correction that is NaN ends the refinement here as well.
             if !(change < SLOWEST * last) {
                 break;
             }
@@ -243,6 +247,7 @@ impl System {
             let ratio = if last.is_finite() { change / last } else { 1.0 };
             last = change;
             // The next correction would be smaller by the same ratio: it would change no digit.
+            // A body without forces moves nowhere: 0/0 is NaN, and ends here as settled.
             if !(unsettled * ratio > f64::EPSILON) {
                 unsettled = 0.0;
                 break;
@@ -272,6 +277,7 @@ impl System {
             let (rest, inner): (Vec<f64>, Vec<f64>) = (rest.collect(), self.apply(&free));
             let left: Vec<f64> = rest.iter().zip(&inner).map(|(f, inner)| f - inner).collect();
             let residual = if norm(&left) == 0.0 { 0.0 } else { norm(&left) / norm(&rest) };
+            // A residual that is NaN is refined too, and then told to be infinite.
             if residual <= tolerance { (u, residual) } else { self.solve(factor, f) }
         };
         forces.iter().zip(self.solve_all(factor, forces)).map(checked).collect()
@@ -295,8 +301,10 @@ impl System {
                 free.iter().zip(column).for_each(|(&dof, x)| u[dof] = *x);
                 u
             };
+            // Chunks of no entries are a panic: a body that is held everywhere has no free ones.
             columns.chunks_exact(free.len().max(1)).map(all).collect()
         };
+        // The parts are collected in the order of the forces, whichever ends first.
         forces.par_chunks(part).flat_map_iter(solve).collect()
     }
 
@@ -333,6 +341,7 @@ impl Factor {
             Factor::Pivoted(pivoted) => pivoted.rows(),
             Factor::General(lu) => lu.nrows(),
         };
+        // A matrix without rows solves for nothing.
         let columns = x.len().checked_div(rows).unwrap_or(0);
         let x = MatMut::from_column_major_slice_mut(x, rows, columns);
         match self {

@@ -51,6 +51,7 @@ impl StaticSolver {
     /// The solver of a body with these moduli: where it may choose, it factorises equations of cells that differ by orders of magnitude, and
     /// those of quadratic cells that hardly change their volume.
     pub fn suited(self, mesh: &Mesh, moduli: &CellMap<Hooke>) -> StaticSolver {
+        // Beyond that size a factor takes minutes: iterations are tried whatever the moduli are.
         if self.method != StaticMethod::Auto || mesh.points.len() > FACTORED {
             return self;
         }

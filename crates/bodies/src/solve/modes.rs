@@ -118,7 +118,9 @@ pub(super) fn modes_of(
         let residual = &force - momentum * square;
         let mut off = residual.clone();
         solve(off.as_mut_slice())?;
+        // Rounding may give a small negative product, whose size is still the measure.
         let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
+        // NaN is no mode either.
         if !(error <= TOLERANCE) {
             let mode = modes.squares.len() + 1;
             let found = format!("a relative error up to {error:.1e} in mode {mode} of {count}");
@@ -147,6 +149,7 @@ fn largest_eigenpairs(
     apply: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>>,
 ) -> Result<Vec<(f64, DMatrix<f64>)>> {
     let n = inertia.size();
+    // A small body may have fewer free degrees of freedom than the block is to have vectors.
     let width = (count + SPARE).min(n);
     if count == 0 {
         return Ok(Vec::new());
@@ -167,14 +170,17 @@ fn largest_eigenpairs(
         projected = projected.resize(m, m, 0.0);
         for (j, column) in (old..m).zip(products.column_iter()) {
             projected.column_mut(j).copy_from(&column);
+            // The operator is symmetric in this product: rounding alone would make the row another one.
             projected.row_mut(j).tr_copy_from(&column);
         }
+        // Asked first: with an entry that is NaN the decomposition has no meaning.
         if projected.iter().any(|x: &f64| !x.is_finite()) {
             let error = Error::at("stiffness", "its inverse is beyond the range of numbers");
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
         let eigen = projected.clone().symmetric_eigen();
         let mut order: Vec<usize> = (0..m).collect();
+        // The decomposition gives eigenvalues in no order.
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
         let theta = DVector::from_iterator(m, order.iter().map(|&k| eigen.eigenvalues[k]));
         let is_full = m + width > BLOCKS * width;
@@ -199,6 +205,7 @@ fn largest_eigenpairs(
         if !is_found && round < ROUNDS {
             block = orthonormal(&basis, DMatrix::from_columns(&residuals), inertia);
         }
+        // An empty block: the basis spans all motions that the operator reaches, and its values are exact.
         if is_found || round == ROUNDS || block.vectors.is_empty() {
             return Ok((0..count).map(|k| (theta[k], vectors.columns(k, 1).into_owned())).collect());
         }
@@ -246,6 +253,7 @@ fn norm(y: &DVector<f64>, inertia: &Inertia) -> f64 {
 /// twice.
 fn orthonormal(basis: &Basis, mut block: DMatrix<f64>, inertia: &Inertia) -> Basis {
     for _ in 0..2 {
+        // Before the projection, as the measure of what it leaves.
         let sizes: Vec<f64> = block.column_iter().map(|column| norm(&column.into_owned(), inertia)).collect();
         block -= &basis.vectors * basis.duals().tr_mul(&block);
         let mut added: Vec<(DVector<f64>, Option<DVector<f64>>)> = Vec::new();
@@ -279,6 +287,7 @@ pub(crate) fn generator() -> impl FnMut() -> f64 {
         seed ^= seed << 13;
         seed ^= seed >> 7;
         seed ^= seed << 17;
+        // The upper 53 bits are as many as a float holds without rounding.
         (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     }
 }

@@ -145,6 +145,8 @@ impl Newton {
             // Sums of steps such as 1/3 end a rounding below one, and a step over that rounding would be one of no
             // load.
             let target = if found.load + step > 1.0 - 1e-12 { 1.0 } else { found.load + step };
+            // A step that fails leaves displacements far from an equilibrium; the next one begins at the last that was
+            // found.
             let mut u = found.displacement.clone();
             let (history, balance) = settle(target, &mut u)?;
             match balance {
@@ -154,6 +156,7 @@ impl Newton {
                     (found.displacement, found.load) = (u, target);
                     found.is_rounded = balance == ForceBalance::Rounded;
                     // What stopped a longer step may lie behind.
+                    // No step is longer than those that were asked for.
                     step = (2.0 * step).min(first);
                 }
                 ForceBalance::None => {
@@ -226,6 +229,7 @@ pub(super) fn with<'a>(tangent: &'a Entries, following: &Following) -> Cow<'a, E
 /// A tangent with `shift` on its diagonal, in entries after its own.
 pub(super) fn raised(tangent: &Entries, size: usize, shift: f64) -> Entries {
     let mut raised = tangent.clone();
+    // A shift of zero has its entries too, so that shifted tangents share the pattern and its analysis.
     raised.extend((0..size).map(|i| Triplet::new(i, i, shift)));
     raised
 }
@@ -279,6 +283,7 @@ impl<'a> Statics<'a> {
             let moves: Vec<Option<f64>> =
                 support.prescribed.iter().zip(&*u).map(|(p, u)| p.map(|p| load * p - u)).collect();
             let held = support.prescribed.iter().zip(&*u).filter_map(|(p, u)| p.map(|p| (load * p).abs().max(u.abs())));
+            // Relative to the farthest of all, since what is prescribed as zero has no size of its own.
             let farthest = held.fold(0.0, f64::max);
             let moved = moves.iter().flatten().all(|m| m.abs() <= REACHED * farthest);
             let applied = forces.at(model.points, u);
@@ -288,6 +293,8 @@ impl<'a> Statics<'a> {
             let left = |force: &[f64]| of(&applied, force);
             let acting = |force: &[f64]| {
                 let own: Vec<f64> = force.iter().zip(&*tension).map(|(g, t)| g - t).collect();
+                // The reactions of supports are among the forces that act: a body that is moved by its supports has no
+                // other load.
                 norm(&own).max(load * norm(&applied))
             };
             let mut rest = left(&now.force);

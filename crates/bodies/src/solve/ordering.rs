@@ -90,6 +90,8 @@ impl Graph {
                 continue;
             }
             let sort = |part: &mut Vec<u32>, axis: usize, rank: &mut Vec<u32>| {
+                // Nodes at one coordinate are in the order of their numbers, which makes the order the same on every
+                // machine.
                 part.sort_unstable_by(|a, b| at(a, axis).total_cmp(&at(b, axis)).then(a.cmp(b)));
                 part.iter().enumerate().for_each(|(i, &node)| rank[node as usize] = i as u32);
             };
@@ -99,6 +101,7 @@ impl Graph {
             });
             let best = cuts.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
             let (axis, Cut { position, side, .. }) = best?;
+            // The part is still in the order of the last axis that was tried.
             sort(&mut part, axis, &mut rank);
             let (mut low, mut high, mut separator) = (Vec::new(), Vec::new(), Vec::new());
             for (i, &node) in part.iter().enumerate() {
@@ -112,6 +115,7 @@ impl Graph {
             }
             // Nodes of this part are no neighbours within the next one.
             part.iter().for_each(|&node| rank[node as usize] = ABSENT);
+            // A separator is eliminated after both of its sides, and the order is written backwards: it comes first.
             order.extend(separator.iter().rev().map(|&node| node as usize));
             parts.extend([low, high]);
         }
@@ -140,6 +144,7 @@ impl Graph {
             above[i + 1] -= 1;
         }
         let (first, last) = ((0.5 - ASIDE) * count as f64, (0.5 + ASIDE) * count as f64);
+        // A cut is inside the part: both sides are smaller than the part, and the division ends.
         let positions = (first.max(1.0) as usize)..=(last as usize).min(count - 1);
         let mut best = Cut { cost: f64::INFINITY, position: count / 2, side: Side::Low };
         let (mut low, mut high) = (0, 0);

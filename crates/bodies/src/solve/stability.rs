@@ -83,6 +83,7 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
         body_factor.solve(&mut image);
         image
     };
+    // The smooth vector begins among motions of which the rough one has next to nothing, the lowest of the body.
     let starts = [rough, smooth];
     let Some([low, high]) = ends(|x| body.apply(x), direct, &starts, [!is_positive, true], STEPS) else {
         let softest = vec![0.0; body.size()];
@@ -101,13 +102,17 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
         ends(|x| body.apply(x), inverse, &[low.vector.clone(), rough, smooth], wanted, steps)
     });
     let quotient = |x: &[f64]| dot(x, &network.apply(x)) / dot(x, &body.apply(x));
+    // The quotient of a vector errs with the square of the error of the vector, and is a ratio that a motion has.
     let largest = quotient(&high.vector);
     // What is near zero in the ratios themselves is rounding; its reciprocal has all digits, or is rounding beside one that is infinite.
     let is_sure = near.is_none() || low.is_found || quotient(&low.vector) < -ROUNDED;
     let near = near.into_iter().flatten().map(|Ritz { value, vector, is_found }| {
         let ratio = match (quotient(&vector), 1.0 / value) {
+            // Beyond its rounding the quotient is taken; a quotient that is NaN goes on and is left out below.
             (ratio, _) if !(ratio.abs() <= ROUNDED) => ratio,
             (_, ratio) if ratio.abs() <= ROUNDED => ratio,
+            // The quotient is rounding, and the reciprocal contradicts it: the motion has no energy that can be told
+            // from none.
             _ => 0.0,
         };
         (ratio, vector, is_found)
@@ -127,6 +132,7 @@ pub fn compare_energies(network: &System, factor: Option<&Factor>, body: &System
 pub(super) fn standing(least: f64, is_positive: bool) -> Standing {
     match least {
         least if least <= -NOTHING => Standing::Indefinite,
+        // NaN is no resistance.
         least if !is_positive || !(least >= NOTHING) => Standing::Singular,
         least if least < SOFT => Standing::Soft,
         _ => Standing::Stable,

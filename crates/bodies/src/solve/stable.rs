@@ -45,6 +45,7 @@ impl Newton {
         {
             return Ok(Some(found));
         }
+        // The guess may lie beyond a fold, or where Newton's method goes astray; the path from rest knows neither.
         let found = self.solve_with(model, points, support, forces.into(), Some(pattern))?;
         if found.ending == Ending::Stalled {
             return Ok(None);

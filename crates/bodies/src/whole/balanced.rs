@@ -31,6 +31,7 @@ impl<'a> Balanced<'a> {
         sorted.sort_by(f64::total_cmp);
         let typical = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
         let root = |(e, target): (&f64, &&Target)| {
+            // Where half of the loads are met to the last digit no error is typical, and all weights stay.
             if target.is_firm || !(typical > 0.0) { 1.0 } else { typical / e.hypot(typical) }
         };
         let roots: Vec<f64> = errors.loads.iter().zip(&problem.targets).map(root).collect();

@@ -38,6 +38,8 @@ pub fn fit_mass_share(
                 curvature += rate * rate;
             }
         }
+        // Beyond these ends masses between points would be negative, or more than all of them lumped. Without a
+        // curvature both matrices have the same frequencies, and any share will do.
         let next = if curvature > 0.0 { (share - slope / curvature).clamp(0.0, 1.0) } else { share };
         let is_short = (next - share).abs() <= SHORT;
         share = next;

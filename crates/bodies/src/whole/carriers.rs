@@ -109,6 +109,7 @@ impl Carriers {
                 fit_exact(&block.element, &mesh.points, cells, materials.block(index), fit, &mut |_| {})
             };
             let (all, shear) = (of(materials)?, of(shear)?);
+            // Constants are linear in the moduli: what is left without those of μ is λ alone.
             let rest = |all: &[f64], own: &[f64]| all.iter().zip(own).map(|(a, b)| share * (a - b)).collect();
             let volume = CellFits {
                 constants: rest(&all.constants, &shear.constants),
@@ -134,11 +135,14 @@ impl Carriers {
         let domains = edge_domains(mesh, block, material);
         let of_domain = |(index, domain): (usize, &EdgeDomain)| {
             let mut cells = domain.cells.clone();
+            // A stable sort keeps cells of one region in the order of the domain, so that sums have the same bits in
+            // each run.
             cells.sort_by_key(|(cell, _)| region(*cell));
             let mut parts = Vec::new();
             for own in cells.chunk_by(|a, b| region(a.0) == region(b.0)) {
                 let cell = own[0].0;
                 let shares: Vec<(usize, f64)> =
+                    // A uniform material has one entry, whatever the cell is.
                     own.iter().map(|(cell, share)| (if is_uniform { 0 } else { *cell }, *share)).collect();
                 let mu = of_shear.springs(&domain.table, &shares);
                 let lambda = springs.springs(&domain.table, &shares).sum(&mu, -1.0);
@@ -150,6 +154,7 @@ impl Carriers {
             }
             parts
         };
+        // Collected in the order of the domains: the numbers of parts, and so of unknowns, do not depend on threads.
         let parts: Vec<Vec<DomainPart>> = domains.par_iter().enumerate().map(of_domain).collect();
         Ok(Carriers::Domains(Arc::new(domains), parts.concat(), law))
     }
@@ -188,6 +193,7 @@ impl Carriers {
                 parts.par_iter().enumerate().map(of_part).collect()
             }
         };
+        // A modulus that no motion feels has no derivative, as λ has none where ν is zero: its unknown would be free.
         found.into_iter().flatten().filter(|of| of.tangent.iter().any(|k| *k != 0.0)).collect()
     }
 

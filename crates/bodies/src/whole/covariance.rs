@@ -68,6 +68,7 @@ impl Determination {
     /// There are as many unknowns as residuals that are known, or more.
     pub fn by(columns: &[Vec<f64>], residuals: &[f64], seen: usize, noise: Option<f64>) -> Result<Determination> {
         let m = columns.len();
+        // With as many unknowns as numbers the residuals vanish, and say nothing of the noise.
         if seen <= m {
             return Err(Error::expected("displacements", format!("more than {m} that are known"), seen));
         }
@@ -95,6 +96,7 @@ impl Determination {
             for (value, vector) in pairs() {
                 if *value > UNSEEN * UNSEEN {
                     variance += vector[p] * vector[p] / value;
+                // Rounding gives every unknown some share of a combination that nothing sees.
                 } else if vector[p].abs() > PART {
                     return None;
                 }
@@ -104,6 +106,7 @@ impl Determination {
         let slope = |p: usize, _| if is_seen(p) { dot(&columns[p], residuals) / norms[p] } else { 0.0 };
         let slopes = DVector::from_fn(m, slope);
         let mut shifts = vec![0.0; m];
+        // Along what the displacements do not see the step without ρ would be rounding over rounding.
         for (value, vector) in pairs().filter(|(value, _)| **value > UNSEEN * UNSEEN) {
             let along = vector.dot(&slopes) / value;
             (0..m).filter(|&p| is_seen(p)).for_each(|p| shifts[p] -= along * vector[p] / norms[p]);
@@ -112,6 +115,7 @@ impl Determination {
         for (value, vector) in pairs() {
             let own: Vec<usize> = (0..m).filter(|&p| is_seen(p) && vector[p].abs() > PART).collect();
             let width = |p: usize| reach * size * vector[p].abs() / (value.sqrt() * norms[p]);
+            // A value that is rounding may be negative, and the width NaN: such a direction is asked for first.
             if own.iter().any(|&p| !(*value > UNSEEN * UNSEEN) || width(p) > WEAK.ln()) {
                 weak.push(own);
             }

@@ -60,6 +60,8 @@ impl Objective<'_> {
             known.best = (value, theta.to_vec());
             known.lowered.push(value);
             if !(known.visit)(theta, value) {
+                // An error is what ends a search of argmin from within; `known.error` stays empty, so that it counts as
+                // an end.
                 return Err(Error::new("cancelled").into());
             }
         }

@@ -123,10 +123,12 @@ impl<'a> Displacements<'a> {
         let Some(at) = self.at(theta)? else { return Ok(None) };
         let (mut own, mut both) = (0.0, 0.0);
         for ((target, scale), r) in self.targets.iter().zip(&self.scales).zip(&at.residuals) {
+            // What supports prescribe does not depend on the common factor.
             if target.support.prescribed.iter().flatten().any(|u| *u != 0.0) {
                 continue;
             }
             for ((wanted, s), r) in target.displacement.iter().zip(scale).zip(r) {
+                // The residual is `s (u − ū)`: this is the displacement in its units.
                 let u = r + s * wanted;
                 own += u * u;
                 both += u * s * wanted;
@@ -224,6 +226,8 @@ impl<'a> Displacements<'a> {
             let Some(forces) = self.object.forces_at(&displaced(points, &u)) else { return Ok(None) };
             Ok(Some((u, Tangent::Equilibrium { equations, loads: vec![(l, forces)] })))
         };
+        // Each load has its own equilibrium and its own guess, so that no result depends on the order in which they are
+        // found.
         self.targets.par_iter().enumerate().map(one).collect()
     }
 
@@ -288,6 +292,7 @@ impl LeastSquares for Displacements<'_> {
         };
         let mut residuals: Vec<Vec<f64>> = displacements.into_iter().enumerate().map(residual).collect();
         let Some((lacks, rows)) = self.vibrations(theta)? else { return Ok(None) };
+        // Without frequencies no vector of theirs follows those of the loads.
         residuals.extend((!rows.is_empty()).then_some(lacks));
         let (unknowns, scales) = (&self.object.unknowns, &self.scales[..]);
         Ok(Some(Linearized { residuals, theta: theta.to_vec(), unknowns, tangents, scales, rows }))

@@ -63,6 +63,7 @@ impl WholeFit {
                 let problem = "the fitted network has become unstable under a load";
                 Error::at("network", problem).of_kind(ErrorKind::Infeasible)
             };
+            // The result is judged as a run that begins with these unknowns would judge it.
             problem.forget();
             problem.errors(theta)?.ok_or_else(fell)
         };
@@ -143,10 +144,12 @@ pub fn fit_whole(
         true => Path { object, wanted, settings }.follow(&problem, &judge, &mut snapshot, &mut count)?,
         false => snapshot.best.clone(),
     };
+    // A run that goes on from this state has nothing left to do, also where leave-one-out has ended the path early.
     if !cancelled {
         snapshot.stage = stages;
     }
     watch(Some(&snapshot));
+    // Where nothing validates no stage is refused for its range, and the report has to say it.
     found.exceeds = object.range(&best.theta) > settings.range.max(found.range);
     found.regularization = best.stage.map(|stage| settings.regularizations[stage]);
     (found.trained[0], found.validated[0]) = (trained, validated);

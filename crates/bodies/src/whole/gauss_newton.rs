@@ -55,6 +55,7 @@ impl GaussNewton {
         };
         let (mut value, mut gradient) = now.objective(rho)?;
         let mut objective = vec![value];
+        // The norm of θ over this is a root mean square, so that the radii mean the same for any number of unknowns.
         let root = (theta.len().max(1) as f64).sqrt();
         let mut radius = RADIUS * root;
         let mut is_finished = false;
@@ -75,6 +76,7 @@ impl GaussNewton {
                 // A network that is unstable has no residuals: a step to it is too long.
                 let after = after.filter(|after| after.is_finite()).unwrap_or(f64::INFINITY);
                 let kept = (value - after) / promised;
+                // The shares and factors are those of algorithm 4.1.
                 if kept < 0.25 {
                     radius = 0.25 * length;
                 } else if kept > 0.75 && length > 0.99 * radius {
@@ -106,18 +108,22 @@ impl GaussNewton {
     fn path(&self, at: &Linearized, rho: f64, gradient: &[f64], radius: f64) -> Result<StepPath> {
         let share = rho / gradient.len().max(1) as f64;
         let mut step = vec![0.0; gradient.len()];
+        // The gradient is `2 (Jᵀ r + ρ/m θ)`; the normal equations have its half.
         let mut residual: Vec<f64> = gradient.iter().map(|g| -0.5 * g).collect();
         let mut direction = residual.clone();
         let mut square = dot(&residual, &residual);
         let first = square;
         let mut path = StepPath { size: gradient.len(), parts: Vec::new() };
         for _ in 0..self.products {
+            // It ends also where the gradient is zero, for which the quotients below would be 0/0.
             if !(square > self.accuracy * self.accuracy * first) {
                 break;
             }
             let moved = at.forward(&direction, STEP)?;
             let curvature = moved.iter().flatten().map(|r| r * r).sum::<f64>() + share * dot(&direction, &direction);
             let length = square / curvature;
+            // A direction that changes nothing has no curvature: its length is infinite or undefined, and it ends at
+            // the radius too.
             let ends = !(length < edge(&step, &direction, radius));
             path.parts.push(PathPart { direction: direction.clone(), length, square, curvature });
             if ends {
@@ -158,6 +164,7 @@ impl StepPath {
         let (mut step, mut promised) = (vec![0.0; self.size], 0.0);
         for PathPart { direction, length, square, curvature } in &self.parts {
             let edge = edge(&step, direction, radius);
+            // A length that is infinite or NaN, as without curvature, ends at the edge.
             let ends = !(*length < edge);
             let length = if ends { edge } else { *length };
             promised += 2.0 * length * square - length * length * curvature;
@@ -173,5 +180,6 @@ impl StepPath {
 /// The distance from a step along a direction to the boundary of the trust region, in units of the direction.
 fn edge(step: &[f64], direction: &[f64], radius: f64) -> f64 {
     let (a, b, c) = (dot(direction, direction), dot(step, direction), dot(step, step) - radius * radius);
+    // The root of `|s + t d| = radius` with t ≥ 0. A step that rounding has put beyond the radius has no real one.
     ((b * b - a * c).max(0.0).sqrt() - b) / a
 }

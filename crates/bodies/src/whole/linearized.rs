@@ -57,6 +57,8 @@ impl Linearized<'_> {
                 all[load] = u;
             }
         }
+        // Frequencies come last among the residuals; their derivatives are stored, because each took a mode and no
+        // solution.
         if let Some(last) = all.last_mut().filter(|_| !self.rows.is_empty()) {
             *last = self.rows.iter().map(|row| row.iter().zip(&change).map(|(a, c)| a * c).sum()).collect();
         }

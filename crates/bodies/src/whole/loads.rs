@@ -176,6 +176,7 @@ fn varied(
     let frame = Frame::of(mesh, support);
     let mut random = StdRng::seed_from_u64(seed);
     let uniform = boundary_forces(mesh, &|_: &[f64], n: &[f64]| n.iter().map(|n| -n).collect(), thickness);
+    // A pressure pushes on each point of the boundary and cancels at those within, but for rounding.
     let least = ROUNDING * largest(&uniform);
     let on_boundary: Vec<usize> =
         (0..mesh.point_count()).filter(|p| uniform[p * d..(p + 1) * d].iter().any(|f| f.abs() > least)).collect();
@@ -183,6 +184,7 @@ fn varied(
     let mut loads = vec![match pressure {
         Pressure::Uniform => NodalLoad { name: PRESSURE.into(), forces: uniform },
         Pressure::Varying => {
+            // A generator of its own: the one of the other loads is not moved on.
             let mut random = StdRng::seed_from_u64(seed ^ SLOPES);
             let slopes: Vec<f64> = (0..d).map(|_| random.random_range(-1.0..1.0)).collect();
             let push = |x: &[f64], n: &[f64]| n.iter().map(|n| -n * (1.0 + dot(&slopes, &frame.away(x)))).collect();
@@ -191,6 +193,7 @@ fn varied(
     }];
     for index in 1..count {
         let direction = unit(&(0..d).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>());
+        // Tractions alone leave the inside of a body without a load of its own.
         if index % 3 == 0 || on_boundary.is_empty() {
             let slopes: Vec<f64> = (0..d * d).map(|_| random.random_range(-2.0..2.0)).collect();
             let at = |(dof, weight): (usize, &f64)| {

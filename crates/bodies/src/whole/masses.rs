@@ -91,12 +91,14 @@ pub fn fit_masses(
         let found = format!("{:e} kg at point {}", start[p], p);
         return Err(Error::expected("masses", "masses above zero at the start", found));
     }
+    // The mass is right before anything is fitted, so that the way back to the moments is short.
     let scale = moments.mass / start.iter().sum::<f64>();
     let start: Vec<f64> = start.iter().map(|m| scale * m).collect();
     let own = Moments::of_masses(points, dimension, &start);
     let mut best: Option<(f64, MassFit)> = None;
     for second in [&moments.second, &own.second] {
         let problem = Problem::new(points, dimension, &start, (moments, second), wanted);
+        // A body that reaches beyond its points may have moments that no positive masses at them have.
         let Some(begin) = problem.back(&vec![0.0; start.len()]) else { continue };
         let mut theta = begin;
         let (mut curve, mut path) = (Vec::new(), Vec::new());
@@ -163,6 +165,7 @@ impl<'a> Problem<'a> {
         wanted: &'a [Vibrations],
     ) -> Problem<'a> {
         let d = dimension;
+        // In units of the radius of gyration all rows have about the same size, whatever the unit of length is.
         let trace: f64 = (0..d).map(|k| second[k * d + k]).sum();
         let size = (trace / moments.mass).sqrt();
         let away = |p: usize, k: usize| (points[p * d + k] - moments.centre[k]) / size;
@@ -202,6 +205,7 @@ impl<'a> Problem<'a> {
             if off.amax() <= KEPT {
                 return Some(theta.as_slice().to_vec());
             }
+            // The pseudo-inverse gives the least change of logarithms of all that lead back.
             let step = -pseudo_inverse(&slopes)? * off;
             let longest = step.amax();
             theta += step * (2.0 * LONGEST / longest).min(1.0);

@@ -120,6 +120,7 @@ impl<'a> ModuliParts<'a> {
             (ModuliSharing::Element, _) => (self.modulus(*part), &[][..], self.place(*part)),
             (_, None) => (None, &[][..], [0; 2]),
             (ModuliSharing::Body, Some(_)) => (self.modulus(*part), &[][..], [0; 2]),
+            // One label for μ and λ, so that both have one factor and Poisson's ratio stays.
             (ModuliSharing::RegionYoung, Some(cell)) => (Some(Modulus::Shear), groups(cell), [0; 2]),
             (ModuliSharing::Region, Some(cell)) => (self.modulus(*part), groups(cell), [0; 2]),
         };

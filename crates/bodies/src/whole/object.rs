@@ -62,6 +62,7 @@ impl<'a> Object<'a> {
         }
         let mut network = network.clone();
         raise(network.lengths.iter_mut().map(|s| &mut s.constant).collect());
+        // Apart from the lengths: constants of other kinds have other units, and a common median would mean nothing.
         raise(network.others.iter_mut().filter(|s| s.law.is_none()).map(|s| &mut s.constant).collect());
         if network.lengths.iter().any(|s| !(s.constant > 0.0)) {
             let error = Error::expected("springs", "a network with a constant above zero", "none");
@@ -260,6 +261,7 @@ impl SpringParts {
         let squares = self.network.lengths.iter().map(|s| distance(point(s.points[0]), point(s.points[1])).powi(2));
         let mean = squares.sum::<f64>() / self.network.lengths.len().max(1) as f64;
         self.network.lengths.iter_mut().for_each(|s| s.constant = 1.0);
+        // The constant of a law is not its stiffness, and a measure that is zero at rest has no strain.
         for spring in self.network.others.iter_mut().filter(|s| s.law.is_none() && s.rest != 0.0) {
             spring.constant = mean / (spring.rest * spring.rest);
         }
@@ -288,6 +290,7 @@ pub fn raise_idle(fits: &mut [CellFits]) {
 fn raise(constants: Vec<&mut f64>) {
     let mut positive: Vec<f64> = constants.iter().map(|k| **k).filter(|k| *k > 0.0).collect();
     positive.sort_by(f64::total_cmp);
+    // Without a positive constant there is no scale; the caller refuses such springs on lengths.
     let Some(median) = positive.get(positive.len() / 2) else { return };
     constants.into_iter().filter(|k| !(**k > NOTHING * median)).for_each(|k| *k = LEAST * median);
 }

@@ -93,6 +93,7 @@ impl Snapshot {
 
     /// Whether a stage with a smaller error than the best was rejected because of its range of constants.
     pub fn is_limited(&self) -> bool {
+        // Errors of stages are stored as they are, and that of the best one as its logarithm.
         let best = self.best.error.map_or(f64::INFINITY, f64::exp);
         self.curve.iter().any(|stage| stage.rejected && stage.validated.is_none_or(|error| error < best))
     }
@@ -132,6 +133,8 @@ impl Path<'_> {
                 goes_on = watch(Some(&now));
                 goes_on
             };
+            // Each stage then depends on where it begins alone: a run that continues from a snapshot makes the same
+            // steps.
             problem.forget();
             judge.forget();
             let Descent { theta, mut objective, is_finished } =
@@ -250,6 +253,7 @@ pub(super) fn leave_one_out(
             if !goes_on {
                 return Ok(Vec::new());
             }
+            // A stage at which one load loses its equilibrium is never the best.
             *sum += judge.errors(&theta)?.and_then(|errors| mean(&errors)).unwrap_or(f64::INFINITY);
         }
     }

@@ -20,6 +20,7 @@ impl BodyRegions {
         let cells = mesh.regions().into_iter().enumerate().map(|(block, groups)| {
             let region = |(cell, mut own): (usize, Vec<&str>)| {
                 let part = material.regions()[*material.region().at(block, cell)].as_str();
+                // A material without regions has one part, without a name.
                 if !part.is_empty() && !own.contains(&part) {
                     own.push(part);
                 }

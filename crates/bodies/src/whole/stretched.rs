@@ -85,6 +85,7 @@ impl Stretched<'_> {
         let at_rest = Equations::of_system(Arc::new(Newton::equations(&pattern, &rest.tangent, support)?))?;
         let Some(at_rest) = at_rest else { return Ok(StretchedLoads::default()) };
         let follow = |load: &NodalLoad| self.follow(&load.forces, support, &at_rest, &pattern);
+        // Loads know nothing of each other and stay in their order: threads change no bit of the result.
         let followed: Vec<Option<Followed>> = first.par_iter().map(follow).collect::<Result<_>>()?;
         let mut all = StretchedLoads::default();
         for (load, followed) in first.into_iter().zip(followed) {
@@ -103,6 +104,7 @@ impl Stretched<'_> {
                 }
             }
             let Some(found) = best.filter(|found| found.stretch >= LEAST * self.stretch) else {
+                // The last draw has failed as well: the load is told once, as one that is left out.
                 all.anew.retain(|name| *name != load.name);
                 all.out.push(load.name);
                 continue;
@@ -123,6 +125,7 @@ impl Stretched<'_> {
         if !(strain > 0.0 && strain.is_finite()) {
             return Ok(None);
         }
+        // A linear body under a unit load may turn and stretch without bound, and its stretch would mean nothing.
         let small: Vec<f64> = linear.iter().map(|u| SMALL / strain * u).collect();
         // Where the linear body has the wanted stretch.
         let whole = self.stretch * SMALL / strain / self.stretch(&small);
@@ -161,6 +164,7 @@ impl Stretched<'_> {
                 break;
             }
         }
+        // Not one equilibrium was found on the way from rest.
         if now.factor == 0.0 {
             return Ok(None);
         }

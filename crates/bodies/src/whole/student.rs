@@ -9,6 +9,7 @@ const MANY: usize = 1000;
 /// number of them, those of the normal distribution (Abramowitz and Stegun 1964, 26.7.3, 26.7.4 and 26.7.5).
 pub fn ninety_five(freedom: Option<usize>) -> f64 {
     let Some(freedom) = freedom else { return NORMAL };
+    // The sum below has half as many terms as there are degrees of freedom, of which displacements have millions.
     if freedom >= MANY {
         return NORMAL + (NORMAL.powi(3) + NORMAL) / (4.0 * freedom as f64);
     }

@@ -45,6 +45,7 @@ impl Tangent {
                 equations.respond_all(&loads.iter().map(force).collect::<Vec<_>>(), tolerance)
             }
             Tangent::Engine { truncated, predictions, factors, .. } => {
+                // An engine takes changes of the logarithms of constants.
                 let relative: Vec<f64> = change.iter().zip(factors).map(|(change, factor)| change / factor).collect();
                 truncated.changes(predictions, &relative, tolerance)
             }

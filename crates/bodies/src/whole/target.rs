@@ -51,6 +51,7 @@ impl Target {
         let size = largest * known().map(|u| (u / largest).powi(2)).sum::<f64>().sqrt();
         let free = self.weights.iter().zip(&self.support.prescribed).any(|(w, p)| *w > 0.0 && p.is_none());
         let scale = |w: &f64| self.weight.sqrt() / size * w.sqrt();
+        // Without any displacement the size is 0/0, and NaN is refused as well.
         (free && size > 0.0 && size.is_finite()).then(|| self.weights.iter().map(scale).collect())
     }
 }

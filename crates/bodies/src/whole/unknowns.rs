@@ -86,6 +86,8 @@ impl Unknowns {
                 for (spring, &constant) in constants.iter().enumerate().filter(|(_, k)| **k != 0.0) {
                     let at = match fit.springs.pairs().get(spring) {
                         Some(&[a, b]) => place.get(&[nodes[a].min(nodes[b]), nodes[a].max(nodes[b])]).copied(),
+                        // Springs on more than two points are never added to others: the network has them in the order
+                        // of the cells.
                         None => {
                             next += 1;
                             Some(next - 1)
@@ -105,6 +107,7 @@ impl Unknowns {
         let mut unknowns = Unknowns { starts: vec![0], shares: Vec::new(), count: known.len() };
         for own in &shares {
             let total: f64 = own.iter().map(|(_, k)| k).sum();
+            // At θ = 0 the shares sum to one, so that the factor is one and the spring as it was.
             unknowns.shares.extend(own.iter().map(|(p, k)| (*p, k / total)));
             unknowns.starts.push(unknowns.shares.len());
         }

@@ -36,6 +36,7 @@ impl BodyConstants {
                 missing("thickness", "that of the membrane, such as \"0.5 mm\", for cells of a surface on a solid")
             }
             (1, _, None) => missing("area", "the cross-section of the rods, such as \"2 mm^2\", for lines in a body"),
+            // The plane state is that of the body; what is attached to it is in plane stress by itself.
             _ => BodyConstants { plane: None, ..*self }.of_dimension(dimension),
         }
     }

@@ -76,6 +76,7 @@ impl Controls {
         if !folder.is_dir() {
             return Err(Error::new("expected a folder that exists, for the checkpoint").in_file(folder));
         }
+        // A checkpoint that cannot be written is told at once, and not after hours of work.
         file::check_file(path)?;
         self.read().map(|_| ())
     }
@@ -90,6 +91,7 @@ impl Controls {
                 .in_file(path)
         };
         let value: Value = serde_json::from_str(&text).map_err(|e| other(e.to_string()))?;
+        // The first version had no format in it, and is known by its fits.
         let is_checkpoint = value["format"] == FORMAT || value["fits"].is_object();
         if is_checkpoint && value["version"] != VERSION {
             let found = value["version"].as_u64().map_or("an older one".into(), |version| format!("version {version}"));
@@ -202,6 +204,7 @@ impl DataSum {
     }
 
     fn numbers(&mut self, numbers: &[f64]) {
+        // By their bits: a fit goes on only where the run would make the same steps.
         numbers.iter().for_each(|x| self.word(x.to_bits()));
     }
 

@@ -46,6 +46,7 @@ pub fn fit_without_errors(
         let bending = named.bending.unwrap_or_default();
         bending.check(mesh)?;
         let sheet = bending.of(mesh, &material.moduli());
+        // Fits know the membrane; the springs that bend belong to no fit and are the same for all.
         fitted.network = std::mem::take(&mut fitted.network).joined(sheet);
     }
     let missing = || Error::at("engine", "belongs to a scene with supports");

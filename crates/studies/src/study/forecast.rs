@@ -246,6 +246,7 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
     let fit = &fit.clone().in_engine(None);
     let total = mesh.cell_count();
     let reference = Reference { large, ..Reference::default() };
+    // From a few cells on, because nothing is known yet of the time of one.
     let mut count = 8;
     loop {
         let some = mesh.of_first_cells(count);
@@ -257,6 +258,8 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
             let fit = fit_mesh(&some, &own, &reference, fit, &mut |_| {}).ok()?;
             let (whole, sampling) = (start.seconds(), fit.as_material.seconds);
             let (springs, entries) = (fit.network.len() as f64, fit.network.entries() as f64);
+            // The tensor of a network is sampled at no more than a number of places, so that its time does not grow
+            // with the body.
             Some(((whole - sampling).max(0.0), sampling / fit.as_material.samples as f64, [springs, entries]))
         };
         // The first trial touches memory for the first time.

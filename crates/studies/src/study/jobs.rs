@@ -24,6 +24,7 @@ pub fn each_of<R: Send>(
     let processors = thread::available_parallelism().map_or(1, usize::from);
     let pool = || ThreadPoolBuilder::new().num_threads((processors / jobs).max(1)).stack_size(STACK).build();
     let started = |e| Error::new(format!("no thread can be started: {e}"));
+    // A pool for each job: in one pool a thread that waits within a work may begin another.
     let pools: Vec<ThreadPool> = (0..jobs).map(|_| pool().map_err(started)).collect::<Result<_>>()?;
     let next = AtomicUsize::new(0);
     thread::scope(|scope| {
@@ -40,6 +41,7 @@ pub fn each_of<R: Send>(
             };
             scope.spawn(all);
         }
+        // The list of results ends when the last sender is gone; this one sends nothing.
         drop(sender);
         // With an error the channel closes, and the jobs end after their work.
         results.into_iter().try_for_each(|(place, result)| each(place, result))

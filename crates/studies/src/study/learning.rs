@@ -66,6 +66,7 @@ pub fn learning_curve(
                 let own = NamedFit::named(named.name.clone(), Recipe::Sampled(Box::new(recipe)), named.springs.clone());
                 fit_without_errors(mesh, material, reference, &own, &mut |_| {})
             };
+            // In a run of its own, without the errors on other shapes, which are no part of a fit.
             let seconds = fitted(false)?.0.seconds;
             let outcome = fitted(true)?.0;
             let missing = || Error::expected("shapes.held_out", "shapes apart from those of the fit", "none");
@@ -90,6 +91,7 @@ fn with_first(recipe: &SampledRecipe, (seed, count, longest): (u64, usize, usize
     let mut recipe = recipe.clone();
     recipe.fit.data = false;
     let of_set = |set: &mut Sampling| {
+        // Before the seed changes: shapes that are held out stay those of the fit's own seed.
         set.seed_held_out.get_or_insert(set.seed);
         (set.seed, set.shapes, set.laid) = (seed, count, Some(longest));
         if !held_out {

@@ -40,6 +40,7 @@ impl Locking {
             let [_, poisson] = poisson.range_of(index);
             (poisson >= LOCKS).then_some(Locking { poisson, of_simplices: element.cell.is_simplex() })
         };
+        // The worst cells decide what a report says.
         mesh.body_blocks().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
     }
 }

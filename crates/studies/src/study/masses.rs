@@ -30,6 +30,7 @@ pub fn point_masses(
     density.values().try_for_each(|density| range::positive("density", *density, "kg/m³").map(|_| ()))?;
     let sums = masses(mesh, density.clone(), thicknesses.clone());
     let total: f64 = sums.iter().sum();
+    // A sum below the least normal number is as good as zero: frequencies would divide by it.
     if !(sums.iter().all(|m| m.is_finite()) && total.is_normal()) {
         let found = format!("{total:e} kg in all");
         let error = Error::expected("density", "one with which the body has a mass", found);

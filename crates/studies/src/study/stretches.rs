@@ -264,6 +264,7 @@ impl Pulled {
             support.fix(&held, &all, d);
             support.fix(&pulled, &all, d);
             pulled.iter().for_each(|p| support.prescribed[p * d + d - 1] = Some(*stretch));
+            // From rest for each stretch: an equilibrium that is lost does not end the list.
             let newton = Newton { steps: (stretch / STEP).ceil() as usize, ..Newton::default() };
             let found = newton.solve(model, &self.mesh.points, &support, &vec![0.0; self.mesh.points.len()])?;
             if found.ending == Ending::Stalled {
@@ -297,6 +298,7 @@ impl Pulled {
             let clock = Clock::start();
             run(&fit)?;
             let seconds = clock.seconds();
+            // After the clock was read; the errors on other shapes are no part of the time of a fit.
             fit.sampling.held_out = 1000;
             Ok((seconds, run(&fit)?))
         })?;

@@ -77,6 +77,8 @@ impl ExplicitMemory {
         let first: Vec<BranchRule> = self
             .decays
             .iter()
+            // Forces against a jump are those of the state at rest and of the whole content. Then the state becomes `e
+            // G + (γ − e) H`, the one that the first step begins with.
             .map(|Decay { left, mean, .. }| BranchRule { content: 1.0, left: *left, taken: mean - left })
             .collect();
         self.force.fill(0.0);
@@ -88,6 +90,7 @@ impl ExplicitMemory {
     }
 
     pub(super) fn prepare(&mut self, step: f64) {
+        // A step of length zero asks for the present forces, which the last step has computed.
         self.is_prepared = step > 0.0;
     }
 

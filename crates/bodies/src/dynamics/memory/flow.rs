@@ -120,6 +120,7 @@ impl FlowMemory {
                 if let (Some(flow), Some(limit)) = (branch.flows.get_mut(i), term.yield_stress) {
                     let stress = stress(&present, &g, share * point.modulus);
                     let rate = if stress > limit { (1.0 - limit / stress) / term.time } else { 0.0 };
+                    // Both alike, because nothing is known of how the rate changes.
                     *flow = [rate; 2];
                 }
             }
@@ -137,6 +138,7 @@ impl FlowMemory {
         let [h1, h0] = self.steps;
         // The rate at the middle of this step, on the line through those at the middles of the last two.
         let ahead = if h1 + h0 > 0.0 { (last - before) * (self.step + h1) / (h1 + h0) } else { 0.0 };
+        // The line may lead below zero or beyond 1/τ, which no flow passes.
         Decay::new(self.step * (last + ahead).clamp(0.0, 1.0 / term.time), 1.0)
     }
 
@@ -148,6 +150,7 @@ impl FlowMemory {
         for (term, branch) in self.terms.iter().zip(&self.branches) {
             for (i, point) in self.form.points().each().enumerate() {
                 let share = term.shares.get(point.region).copied().unwrap_or(0.0);
+                // Each region has few of the terms of the body.
                 if share == 0.0 {
                     continue;
                 }
@@ -189,6 +192,7 @@ impl FlowMemory {
                             [deviator(&present, &(g - before)) * ahead, deviator(&present, &before) * ahead],
                         );
                         let x = Yield { limit, steps: self.step / term.time }.flow(&drive);
+                        // A jump has no length over which a mean could be taken.
                         let rate = if self.step > 0.0 { x / self.step } else { flow[0] };
                         *flow = [rate, flow[0]];
                         Decay::new(x, 1.0)

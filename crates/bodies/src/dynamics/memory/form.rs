@@ -71,6 +71,7 @@ impl Present {
         let across = [b.cross(&c), c.cross(&a), a.cross(&b)];
         let j = a.dot(&across[0]);
         let edge = j.cbrt();
+        // A point that is inverted or flat has no state; NaN has none either.
         (j > 0.0).then(|| Present { f, inverse: Matrix3::from_columns(&across) / j, size: edge * edge })
     }
 }
@@ -114,6 +115,7 @@ impl Form {
                 BranchForm::Tensors => {
                     let (h, c) = (size * inverse.transpose() * inverse, point.weight * f.transpose() * f);
                     target.extend(SYMMETRIC.map(|at| h[at]));
+                    // Six numbers stand for nine: those outside the diagonal count twice in a product of tensors.
                     measures.extend(SYMMETRIC.map(|at| if at.0 == at.1 { c[at] } else { 2.0 * c[at] }));
                 }
                 BranchForm::Edges => {
@@ -125,6 +127,8 @@ impl Form {
                         own.iter().zip(&spatial[a + 1..]).for_each(|(slot, b)| target[*slot] -= scale * first.dot(b));
                         slots = others;
                     }
+                    // In the plane F₃₃ is one, and no edge measures across: its part of the energy is a number of the
+                    // point.
                     if d < 3 {
                         target.push(size);
                         measures.push(point.weight);
@@ -243,6 +247,7 @@ fn each_entry(nodes: &[usize], d: usize, mut visit: impl FnMut(usize, usize, [us
     for (a, b) in (0..nodes.len()).flat_map(|a| (0..nodes.len()).map(move |b| (a, b))) {
         for (k, l) in (0..d).flat_map(|k| (0..d).map(move |l| (k, l))) {
             let (row, column) = (nodes[a] * d + k, nodes[b] * d + l);
+            // The two parts of an entry with its mirror image are one: the lower triangle is enough.
             if row >= column {
                 visit(row, column, [a, b], [k, l]);
             }

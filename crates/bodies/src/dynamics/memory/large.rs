@@ -96,6 +96,7 @@ impl LargeMemory {
         let Some(rest) = self.form.shape(&self.rest) else { return false };
         let Some(shape) = self.form.shape(&displaced(&self.rest, u)) else { return false };
         self.states.iter_mut().for_each(|state| state.copy_from_slice(&rest.target));
+        // The jump stores energy before anything relaxes; what is below zero is rounding.
         self.energies.fill(shape.energy(&rest.target).max(0.0));
         self.target = shape.target;
         self.dissipated = 0.0;

@@ -126,6 +126,7 @@ impl LinearMemory {
     /// w_i at the end of a step to u, one degree of freedom after the other.
     fn crept<'a>(&'a self, term: usize, u: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let decay = self.decays[term];
+        // `1 − e` by its own function, which keeps the digits of steps that are short beside τ.
         let (left, gone, late) = (decay.left, decay.gone(), 1.0 - decay.mean);
         let states = self.creep[term].iter().zip(&self.displacement).zip(u);
         states.map(move |((w, start), u)| left * w + gone * start + late * (u - start))
@@ -166,6 +167,7 @@ impl LinearMemory {
 
     /// What a step to u dissipates, J.
     fn dissipation(&self, u: &[f64]) -> f64 {
+        // A jump takes no time, and a product with each part is saved.
         if self.decays.iter().all(|decay| decay.steps == 0.0) {
             return 0.0;
         }

@@ -20,6 +20,7 @@ impl BranchTerm {
         for (region, own) in series.iter().enumerate() {
             for term in own.iter().flat_map(Relaxation::terms) {
                 let alike = |known: &&mut BranchTerm| {
+                    // A region may name one time twice: its second share is a term of its own.
                     (known.time, known.yield_stress) == (term.time, term.yield_stress) && known.shares[region] == 0.0
                 };
                 match terms.iter_mut().find(alike) {

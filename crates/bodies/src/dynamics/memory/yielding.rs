@@ -23,6 +23,7 @@ impl Pair {
     /// The von Mises stress of `a P + b Q`.
     fn stress(&self, a: f64, b: f64) -> f64 {
         let [pp, pq, qq] = self.0;
+        // A square of a sum; rounding may leave it just below zero where both cancel.
         (1.5 * (a * a * pp + 2.0 * a * b * pq + b * b * qq)).max(0.0).sqrt()
     }
 }
@@ -62,7 +63,9 @@ impl Yield {
             let [before, after] = drive.stresses(x);
             let end = self.end(start, start + (trial - start + after - before) / 2.0);
             let of = |x: f64| drive.stresses(x)[1];
+            // Flow only ever lowers the stress: an end that is not below the elastic one is rounding.
             let Some(end) = end.filter(|end| *end < trial) else { return 0.0 };
+            // r is at most one, so that x is at most h/τ.
             x = if of(self.steps) >= end { self.steps } else { root(self.steps, end, of) };
         }
         x
@@ -73,6 +76,8 @@ impl Yield {
         let y = self.limit;
         let rate = trial - start;
         // What of the step has gone when flow begins.
+        // Below σ_y the stress rises evenly to it. A stress that does not rise gives an infinite, negative or undefined
+        // share.
         let elastic = if start >= y { 0.0 } else { (y - start) / rate };
         if !(elastic < 1.0) || start.max(trial) <= y {
             return None;

@@ -11,6 +11,7 @@ impl Simulation<'_> {
         if !self.is_current {
             self.is_current = self.resistance.forces(&self.state.displacement, &mut self.trial.force);
         }
+        // Explicit methods have computed the damping forces of this state for the next step already.
         if self.equations.is_some() {
             self.resistance.viscous(&self.state.velocity, &mut self.viscous);
         }
@@ -47,7 +48,9 @@ impl Simulation<'_> {
             let (work, dissipated) = (ledger.work.value(), ledger.dissipated.value() + self.resistance.relaxed());
             let gained = energy - ledger.start - work + dissipated;
             ledger.largest = ledger.largest.max(energy.abs());
+            // A body that never moved has 0/0.
             let drift = if gained == 0.0 { 0.0 } else { gained / ledger.largest };
+            // What moves held points gives them their kinetic energy as well, which the sums leave out.
             EnergyBalance { work: work + held - ledger.held, dissipated, drift }
         };
         Account {

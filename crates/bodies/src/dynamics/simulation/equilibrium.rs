@@ -12,6 +12,7 @@ impl Simulation<'_> {
     /// Newton's method does not find it.
     pub(super) fn equilibrate(&mut self) -> Result<()> {
         self.hold_still();
+        // The length sets the coefficients alone; no stress relaxes, because these loads act at once.
         let step = self.settle(0.0, self.options.step, 0.0);
         if matches!(step.outcome, StepOutcome::NoResponse | StepOutcome::Stalled) {
             let expected = "loads at time zero whose equilibrium Newton's method finds: let them grow from zero";

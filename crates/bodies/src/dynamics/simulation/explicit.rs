@@ -11,9 +11,11 @@ impl Simulation<'_> {
             return self.leap_in_rows();
         }
         let h = self.options.step;
+        // A product and not a sum of steps, whose rounding would grow with their number.
         let time = (self.steps + 1) as f64 * h;
         let driven = &self.motion.drive.displacements;
         for ((dof, _), start) in driven.iter().zip(&mut self.target.delta) {
+            // `delta` is free in explicit methods, and keeps where driven points were.
             *start = self.state.displacement[*dof];
         }
         let (displacement, way, velocity) = (&mut self.state.displacement, &mut self.way, &mut self.before);
@@ -49,6 +51,7 @@ impl Simulation<'_> {
         let Some(rows) = &mut self.rows else { return Step::explicit(StepOutcome::NoResponse) };
         let driven = &self.motion.drive.displacements;
         let driven: Vec<_> = driven.iter().map(|(dof, curve)| (*dof, [curve.at(time), rate(curve, time, h)])).collect();
+        // Also if the step fails: the rows are then back, but only up to rounding.
         self.is_behind = true;
         if !rows.step(&driven) {
             return Step::explicit(StepOutcome::NoResponse);

@@ -78,6 +78,7 @@ impl<'a> Simulation<'a> {
             let values = resistance.rest.values().to_vec();
             trial.compare_tangents(&mut resistance, &values);
         }
+        // After the comparison, which has used the tangent as its room.
         trial.tangent.copy_from_slice(resistance.rest.values());
         let zero = || vec![0.0; dofs];
         let [z, y, delta, velocity, external] = std::array::from_fn(|_| zero());
@@ -86,6 +87,7 @@ impl<'a> Simulation<'a> {
             inverse: inverse.collect(),
             resistance,
             equations,
+            // NaN equals no coefficient, so that the first step factorises.
             factored: [f64::NAN; 3],
             state: MotionState { time: 0.0, displacement: zero(), velocity: zero() },
             steps: 0,
@@ -220,6 +222,7 @@ impl<'a> Simulation<'a> {
         let is_prepared = self.factor(coefficients, h);
         let Some(equations) = &mut self.equations else { return Ok(true) };
         let mut random = generator();
+        // A random force has a part along every motion; a smooth one may miss the motion that releases energy.
         let mut x: Vec<f64> = equations.order().iter().map(|_| random()).collect();
         if let Some(is_definite) = equations.is_definite(is_prepared, &mut x) {
             return Ok(is_definite);

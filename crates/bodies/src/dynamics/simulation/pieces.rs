@@ -52,6 +52,8 @@ impl Simulation<'_> {
                 return Step { outcome: StepOutcome::NoResponse, ..step };
             }
             self.estimate = self.estimate.max(error);
+            // A tenth leaves room: after a halving the error is 0.4 of what is allowed, and the next step does not
+            // double again at once.
             self.pieces = if error < SMALL * allowed { count / 2 } else { count };
             return step;
         }
@@ -63,6 +65,7 @@ impl Simulation<'_> {
         let mut all = Step::explicit(StepOutcome::Converged);
         let (mut last, mut curved) = (Vec::new(), 0.0f64);
         for i in 1..=count {
+            // Counted back from the end, so that the last piece ends there to the last bit.
             let end = time - (count - i) as f64 * piece;
             let step = self.step_to(end, piece);
             all.iterations += step.iterations;
@@ -93,6 +96,7 @@ impl Simulation<'_> {
         self.state.clone_from(&before.state);
         self.ledger.clone_from(&before.ledger);
         self.resistance.remember(before.memory.clone());
+        // The forces in the trial are those of the state that was left.
         self.refresh();
     }
 }

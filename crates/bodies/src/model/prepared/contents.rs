@@ -72,6 +72,7 @@ impl Contents {
         (all.slopes, all.pulls) = (vec![0.0; count], vec![0.0; count]);
         let mut lawful = Vec::new();
         for (s, table, point, (index, cell)) in found {
+            // Tables with few cells went together.
             let [index, cell] = [homes[index][0], homes[index][1] + cell];
             let (spring, cells) = (&network.others[s], &all.tables[index]);
             let Some(q) = point else {
@@ -86,10 +87,12 @@ impl Contents {
             if spring.law.is_some() {
                 lawful.push(Lawful { cell: at, scale, spring: s });
             } else {
+                // Linear springs on one point of a cell add up to one, which is evaluated once.
                 all.slopes[at] += spring.constant * scale * scale;
                 all.pulls[at] += spring.constant * scale * spring.rest;
             }
         }
+        // In the order of the cells, whose contents are then read one after the other.
         lawful.sort_by_key(|lawful| lawful.cell);
         all.laws = Laws::new(network, &lawful);
         all

@@ -42,6 +42,7 @@ impl<N: Coordinate> Edges<N> {
             for (&j, &k) in self.columns[springs.clone()].iter().zip(&self.constants[springs]) {
                 sum = sum.plus_scaled(k, xi.minus(zero.load(&x[j as usize])));
             }
+            // From (x, y, z) to (z, x, y): two turns of one place each.
             sum.turned().turned().store(force);
         }
     }
@@ -64,6 +65,7 @@ impl<N: Coordinate> Bars<N> {
     pub fn new(lengths: &[&LengthSpring], others: &[MeasureSpring], lawful: &[usize], place: &[usize]) -> Bars<N> {
         let rows = |points: &[usize]| [place[points[0]] as u32, place[points[1]] as u32];
         let mut springs: Vec<_> = lengths.iter().filter(|s| s.rest != 0.0).collect();
+        // In the order of the rows, so that positions of neighbours are still in the cache.
         springs.sort_by_key(|s| s.points.map(|p| place[p]).into_iter().min());
         Bars {
             points: springs.iter().map(|s| rows(&s.points)).collect(),
@@ -98,6 +100,8 @@ impl<N: Coordinate> Bars<N> {
                 stresses[s] = constants[s] * (lengths[s] - rests[s]) / lengths[s];
             }
             for s in 0..count {
+                // The quotient was 0/0 or infinite without a length; the answer tells it, and no branch breaks the loop
+                // above.
                 sound &= lengths[s] > N::zero();
                 add(stresses[s], rs[s], points[s], force);
             }

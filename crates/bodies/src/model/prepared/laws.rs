@@ -46,6 +46,7 @@ impl Laws {
         let mut kinds: Vec<(&Arc<Law>, Vec<Lawful>)> = Vec::new();
         for lawful in springs {
             let Some(law) = law(lawful) else { continue };
+            // Most springs share one law by its pointer, which is quicker to compare than its text.
             match kinds.iter_mut().find(|(known, _)| Arc::ptr_eq(known, law) || *known == law) {
                 Some((_, same)) => same.push(*lawful),
                 None => kinds.push((law, vec![*lawful])),
@@ -68,6 +69,8 @@ impl Laws {
         let mut sound = true;
         let LawsRoom { at, law } = room;
         for block in &self.blocks {
+            // In memory that is kept: contents at rest and parameters are those of the block, and the contents come
+            // from the cells.
             at.clone_from(&block.at);
             for (i, &cell) in block.cells.iter().enumerate() {
                 at[0][i] = block.scales[i] * determinant(cell);

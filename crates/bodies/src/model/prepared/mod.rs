@@ -74,6 +74,7 @@ impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
             _ => self.forces_in::<3>(x, force),
         };
         let others = &self.network.others;
+        // Without a short cut, so that the forces are complete.
         sound & self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force)
     }
 
@@ -98,6 +99,7 @@ impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
         let pull = |(part, room): (&Part<N>, &mut Room<N>)| part.pull(d, others, &position, room);
         match &self.parts[..] {
             [part] => pull((part, &mut rooms[0])),
+            // Each part has a room of its own; their forces are added later, in the order of the parts.
             parts => parts.par_iter().zip(rooms).map(pull).reduce(|| true, |a, b| a & b),
         }
     }
@@ -187,6 +189,7 @@ macro_rules! precision {
             }
 
             fn rows(&self) -> Option<Rows<'_>> {
+                // Springs that are evaluated without preparation read and write lists, not rows.
                 self.rest.is_empty().then(|| Rows::$rows(self))
             }
 

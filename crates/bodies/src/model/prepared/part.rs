@@ -56,6 +56,7 @@ pub fn parts<N: Coordinate>(network: &Network, order: &[usize]) -> (Vec<Part<N>>
     let others = network.others.iter().map(|spring| first(&spring.points));
     lengths.chain(others).for_each(|row| at[row] += 1);
     let wanted = (network.lengths.len() + network.others.len()).div_ceil(SPRINGS).max(1);
+    // Even shares: the last part would else have what is left over, and the others wait.
     let share = (network.lengths.len() + network.others.len()).div_ceil(wanted).max(1);
     let mut before = 0;
     let part_of: Vec<usize> = at
@@ -104,6 +105,7 @@ impl Draft<'_> {
         let of_measures = [&cells, &bars, &contents, &strains, &folds];
         let others = of_measures.into_iter().flatten().flat_map(|s| &network.others[*s].points);
         let mut order: Vec<usize> = lengths.iter().flat_map(|spring| &spring.points).chain(others).copied().collect();
+        // Equal entries are the same point, and leave with the next line.
         order.sort_unstable_by_key(|point| place[*point]);
         order.dedup();
         let mut own = vec![usize::MAX; place.len()];

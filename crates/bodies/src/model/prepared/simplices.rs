@@ -139,6 +139,7 @@ impl<N: Coordinate> Simplices<N> {
             *value = others[spring].tension(*value);
             sound &= value.is_finite();
         }
+        // The patch that never pulls has gathered the contents of unused entries.
         patches[self.patches.len()] = 0.0;
         for (tension, membership) in cells.iter_mut().zip(&self.memberships) {
             let mut sum = 0.0;
@@ -278,6 +279,7 @@ impl Builder {
     fn finish<N: Coordinate>(self, network: &Network) -> Simplices<N> {
         let Builder { nodes, cells, patches, shares, mut lawful, .. } = self;
         let mut order: Vec<usize> = (0..cells.len()).collect();
+        // In the order of the rows, so that positions of neighbours are still in the cache.
         order.sort_by_key(|&cell| cells[cell].nodes[..nodes].iter().copied().min());
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(at, &cell)| place[cell] = at);
@@ -291,6 +293,7 @@ impl Builder {
             patches.iter_mut().zip(own).for_each(|(patch, own)| *patch = *own);
             Membership { patches, share: *share }
         };
+        // Most networks have no patches, and need no list of memberships.
         let shared = if none > 0 { &order[..] } else { &[] };
         Simplices {
             cells: order.iter().map(|&cell| rounded(cells[cell])).collect(),

@@ -39,11 +39,13 @@ impl Sources {
         force: &mut [F],
         write: impl Fn(&mut F, [N; 4]) + Sync,
     ) {
+        // Points beyond the last that has a spring.
         let (points, beyond) = force.split_at_mut(self.starts.len() - 1);
         beyond.iter_mut().for_each(|point| write(point, [N::zero(); 4]));
         let piece = |(points, starts): (&mut [F], &[u32])| {
             for (point, ends) in points.iter_mut().zip(starts.windows(2)) {
                 let mut sum = [N::zero(); 4];
+                // In the order of the parts, so that the sum has the same bits on any number of threads.
                 for &[part, row] in &self.rows[ends[0] as usize..ends[1] as usize] {
                     let force = rooms[part as usize].force(row);
                     (0..4).for_each(|k| sum[k] = sum[k] + force[k]);

@@ -93,11 +93,13 @@ pub struct Tables {
 impl Tables {
     /// The table and the cell of it.
     pub fn cell(&mut self, table: &Tabulation, rows: Vec<u32>) -> (usize, usize) {
+        // The network holds its tables while they are collected, so that no two have one address.
         let index = match self.by_place.get(&std::ptr::from_ref(table)) {
             Some(index) => *index,
             None => self.table(table),
         };
         let (_, cells) = &mut self.cells[index];
+        // Several springs may measure one cell, whose content is then computed once.
         let next = cells.rows.len() / cells.nodes;
         let cell = *self.known.entry((index, rows)).or_insert_with_key(|(_, rows)| {
             cells.rows.extend(rows);
@@ -117,6 +119,7 @@ impl Tables {
             let cells = Cells { nodes, dimension, points, gradients, rows, first: 0 };
             self.cells.push((table.gradients.clone(), cells));
         }
+        // Cells of one element share its table: it is compared by its bits once, and then by where it is.
         self.by_place.insert(table, index);
         index
     }

@@ -90,6 +90,7 @@ impl Fold {
         if self.spring_count == TOGETHER {
             return false;
         }
+        // Changed in a copy: a spring without room leaves the fold as it was.
         let mut own = *self;
         for (places, weight) in turns.iter() {
             let rows = places.map(|p| place[spring.points[p]] as u32);

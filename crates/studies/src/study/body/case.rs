@@ -65,6 +65,7 @@ impl Case {
             (None, _) => fem,
             (Some(_), finer) => finer.as_ref()?.work,
         };
+        // Either way the compliance of the model stands over that of the body.
         let ratio = if self.is_prescribed { known? / found? } else { found? / known? };
         let error = 100.0 * (ratio - 1.0);
         Some(error).filter(|error| error.is_finite())
@@ -84,6 +85,7 @@ impl Case {
         for (measured, u) in field.displacements.chunks_exact(dimension).zip(found.chunks_exact(dimension)) {
             if measured.iter().any(Option::is_some) {
                 wanted.extend(measured.iter().map(|m| m.unwrap_or(0.0)));
+                // A direction that was not measured counts as zero on both sides, so that it adds no error.
                 own.extend(measured.iter().zip(u).map(|(m, u)| m.map_or(0.0, |_| *u)));
             }
         }

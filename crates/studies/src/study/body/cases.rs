@@ -66,6 +66,7 @@ pub fn load_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Result<
             let known = field.displacements.iter().zip(&case.support.prescribed);
             let free: Vec<f64> = known.filter(|(_, held)| held.is_none()).filter_map(|(u, _)| *u).collect();
             let rms = (free.iter().map(|u| u * u).sum::<f64>() / free.len().max(1) as f64).sqrt();
+            // Noise as large as the displacements leaves nothing to fit, and is mostly an error of the unit.
             if !(sigma < rms) {
                 let expected = format!("noise below the displacements under \"{}\", {rms:.3e} m (rms)", case.name);
                 return Err(at(Error::expected("sigma", expected, format!("{sigma:.3e} m"))));
@@ -97,6 +98,7 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
             }
             None => Acting { forces: Vec::new(), support: fixed.clone(), pressed: None, cavity: None },
         };
+        // Asked before anything is factorised: a zero pivot would not say which body is loose.
         if let Some(body) = unheld_bodies(mesh, &support).first() {
             let expected = "supports that hold every body";
             let place = mesh.point(body.first_point);
@@ -133,6 +135,7 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
             }
             cases[i].forces = forces;
             let pressed = parts.iter().filter_map(|&part| cases[part].pressed.clone());
+            // The parts keep following the body in a sum as well.
             cases[i].pressed = pressed.reduce(|mut all, pressed| {
                 all.append(pressed);
                 all
@@ -189,6 +192,7 @@ fn acting(
         Action::Pressure(p) => uses_z(p).then_some(0),
         Action::Force(_) | Action::Volume(_) | Action::Moment(_) => None,
     };
+    // An expression in z would be evaluated without a third coordinate.
     if let (Some(i), 2) = (of_z, d) {
         let key = if matches!(action, Action::Pressure(_)) { key.to_string() } else { format!("{key}[{i}]") };
         return Err(Error::expected(key, "an expression of x and y in a plane mesh", "z"));
@@ -228,6 +232,7 @@ fn acting(
         for &p in points.iter().chain(&moving) {
             for (k, u) in moved(p).enumerate().filter_map(|(k, u)| Some((k, u?))) {
                 let dof = p * d + k;
+                // A constant is what the user wrote: any difference from zero contradicts the support.
                 let rounding = if matches!(given[k], Some(Component::Varying(_))) { ROUNDING * largest } else { 0.0 };
                 if let Some(held) = fixed.prescribed[dof] {
                     if (held - u).abs() <= rounding {
@@ -241,6 +246,7 @@ fn acting(
             }
         }
     }
+    // A load of zero everywhere is allowed: it is what an expression may come to.
     let acts = |(dof, force): (usize, &f64)| *force != 0.0 && !support.is_fixed(dof);
     if forces.iter().any(|force| *force != 0.0) && !forces.iter().enumerate().any(acts) {
         return Err(Error::at(key, "acts on nothing that can move"));

@@ -33,6 +33,7 @@ pub fn judge_sheet<'a>(
     let level = Level::solve(scene, &finer, Standard::FinerBody, "halved triangles", progress).ok()?;
     let nodes = mesh.node_count() * mesh.dimension;
     let apart = |(own, finer): (&Vec<f64>, &[f64])| {
+        // What both differ by is the error less the quarter of it that halved triangles have.
         displacement_error(&own[..nodes], &finer[..nodes], mesh.dimension).map(|error| error.max / (1.0 - LEFT))
     };
     let answers = level.answers.iter().map(|answer| &*answer.displacement);

@@ -95,6 +95,8 @@ impl Factored {
                 let seconds = start.seconds();
                 let (body, body_factor) = (&*self.systems[index].0, &*self.systems[index].1);
                 let other = other.as_ref().map(|entries| body.renewed(entries, &case.support)).transpose()?;
+                // Energies are compared with those of the moduli that a network is meant for, and displacements with
+                // those of this body.
                 let other = other.map(|body| definite(&body, mesh).map(|factor| (body, factor))).transpose()?;
                 let (body, body_factor) = other.as_ref().map_or((body, body_factor), |(body, factor)| (body, factor));
                 let stability =
@@ -112,6 +114,8 @@ impl Factored {
             if let Some((_, (_, residual))) = &found {
                 unsolved = (!(*residual <= SOLVED)).then(|| format!("the factor leaves {residual:.1e} of the forces"));
             }
+            // A factor of a matrix that is all but singular may leave a small residual of useless displacements: NaN is
+            // told apart as well.
             let found = found.filter(|(_, (u, residual))| *residual <= SOLVED && u.iter().all(|u| u.is_finite()));
             let solved = found.as_ref().map(|(factor, (_, residual))| by_factor(factor, system, *residual));
             let displacement = found.map(|(_, (u, _))| u);

@@ -170,6 +170,7 @@ fn difference(mesh: &Mesh, fine: &Mesh) -> Result<Option<String>> {
     let content = |mesh: &Mesh| Moments::of_body(mesh, CellMap::Uniform(1.0), CellMap::Uniform(1.0)).mass;
     let [own, other] = [content(mesh), content(fine)];
     let unit = ["m", "m²", "m³"][mesh.cell_dimension() - 1];
+    // A body without content has a quotient that is infinite or NaN, and is refused as well.
     if !((own / other).max(other / own) <= OTHER) {
         let expected = format!("a mesh of the same body, of {own:.4e} {unit}");
         return Err(Error::expected("mesh", expected, format!("one of {other:.4e} {unit}")));
@@ -230,6 +231,7 @@ impl Finer for FineBody {
             )
         };
         let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
+        // The lock is not held while loads are solved, which takes long.
         known().insert(name, answers.clone());
         Ok(answers)
     }
@@ -244,6 +246,7 @@ impl Finer for FineBody {
     ) -> Result<Arc<StretchedLoads>> {
         let Some(large) = &self.large else { return Ok(Arc::default()) };
         let known = || self.stretched.lock().expect("nothing panics while it holds the loads");
+        // The same loads are others at another stretch.
         let name = format!("{name} {stretch}");
         if let Some(loads) = known().get(&name) {
             return Ok(loads.clone());
@@ -260,6 +263,8 @@ impl Finer for FineBody {
 
     fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {
         let known = || self.squares.lock().expect("nothing panics while it holds the frequencies");
+        // The same count alone: the last of fewer modes are less accurate, and results would depend on what was asked
+        // before.
         if let Some((_, squares)) = known().iter().find(|(own, squares)| own == support && squares.len() == count) {
             return Ok(squares.clone());
         }
@@ -317,6 +322,7 @@ impl Finer for FineBody {
             true => [&self.mesh, mesh].map(cells),
             false => [&self.mesh, mesh].map(Mesh::point_count),
         };
+        // The ratio of sizes is the root of that of numbers.
         (fine as f64 / coarse as f64).powf(1.0 / mesh.cell_dimension() as f64)
     }
 

@@ -55,6 +55,8 @@ impl Iterated {
             let support = &cases[group[0]].support;
             let levels = Levels::new(stiffness.clone(), &mesh.points, support).map_err(|e| e.at_key("mesh"))?;
             let levels = levels.map_err(|_| not_definite(mesh))?;
+            // Levels may be built of a matrix that is not definite, and iterations may end on it: a factor would have
+            // told.
             if levels.prove().map_err(|e| e.at_key("mesh"))?.is_some() {
                 return Err(not_definite(mesh));
             }
@@ -179,6 +181,7 @@ fn solutions(
     let start = Clock::start();
     let forces: Vec<&[f64]> = group.iter().map(|&i| &cases[i].forces[..]).collect();
     let found = levels.solve_each(&forces, solver, &mut share).map_err(keyed)?;
+    // Loads side by side have no times of their own.
     let seconds = start.seconds() / group.len() as f64;
     let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
         check_residual(solved.residual, largest_residual(solver), &cases[i])?;

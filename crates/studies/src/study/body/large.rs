@@ -105,6 +105,8 @@ impl LargeBody {
             let followed = Followed::of(&found, &Body::new(mesh, &self.laws));
             let complete = |followed: &Followed| followed.ending == Ending::Converged;
             let displacement = complete(&followed).then_some(found.displacement);
+            // Displacements of a load that the body has not reached are those of a smaller load, and no measure of the
+            // network.
             let known = case.measured.is_some() || complete(&self.followed[i]);
             let compared = displacement.as_ref().filter(|_| known);
             let own = compared.and_then(|u| work(case, model, &mesh.points, u));
@@ -177,6 +179,7 @@ fn pattern(model: &dyn Elastic, mesh: &Mesh, case: &Case) -> Result<Option<Syste
 }
 
 pub(super) fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) -> Option<f64> {
+    // The work of forces that follow is by where they are at the end.
     if case.pressed.is_some() {
         return Some(product(&case.applied().at(points, u), u)).filter(|work| work.is_finite());
     }
@@ -189,6 +192,7 @@ pub(super) fn work(case: &Case, model: &dyn Elastic, points: &[f64], u: &[f64]) 
 /// The largest pressure, if another one came after it.
 fn passed(pressures: &[f64]) -> Option<f64> {
     let largest = pressures.iter().copied().reduce(f64::max)?;
+    // A pressure that falls while the volume grows has passed a maximum.
     pressures.last().is_some_and(|last| *last < largest).then_some(largest)
 }
 

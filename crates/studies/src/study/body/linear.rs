@@ -144,6 +144,7 @@ impl LinearBody {
             Err(error) if matches!(self.systems, Systems::Iterated(_)) && self.solver.gives_way(&error) => {
                 progress(Event::Note(&format!("{}; the equations are factorised instead", error.problem())));
                 let solver = StaticSolver { method: StaticMethod::Cholesky, ..self.solver };
+                // Both models by the same method: the difference of two would have the residuals of iterations in it.
                 let body = LinearBody::factorize(mesh, &self.moduli, cases, solver, progress)?;
                 return body.compare(mesh, cases, (network, engine), compared, progress);
             }
@@ -183,6 +184,7 @@ fn in_engine(
             known.iter().find(|(support, _)| **support == case.support).and_then(|(_, found)| found.as_ref());
         let found = truncated.map(|truncated| truncated.answers(std::slice::from_ref(&case.forces))).transpose()?;
         let displacement = found.and_then(|mut found| found.pop());
+        // Prescribed displacements were left out above, so that the work is that of forces.
         let work = displacement.as_ref().and_then(|u| case.work(u, || None));
         all.push(NetworkAnswer { displacement, work, ..answer });
     }

@@ -48,6 +48,7 @@ fn contradicted(case: &Case, mesh: &Mesh) -> Option<String> {
     let pairs = field.displacements.iter().zip(&case.support.prescribed).enumerate();
     let apart = pairs.filter_map(|(dof, (measured, held))| Some((dof, (*measured)?, (*held)?)));
     let (dof, measured, held) = apart.max_by(|a, b| (a.1 - a.2).abs().total_cmp(&(b.1 - b.2).abs()))?;
+    // A support at rest has no size of its own: what it contradicts is measured by the displacements.
     ((measured - held).abs() > CONTRADICTS * largest.max(held.abs())).then(|| {
         let (point, axis) = (dof / mesh.dimension, ["x", "y", "z"][dof % mesh.dimension]);
         format!(

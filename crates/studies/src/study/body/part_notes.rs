@@ -31,6 +31,7 @@ fn of_names(scene: &Scene, mesh: &Mesh) -> Vec<String> {
 fn several(name: &str, group: &Group, mesh: &Mesh) -> Option<String> {
     let of_cells = group.cells.iter().flat_map(|cell| mesh.cell_nodes(*cell)).copied().collect();
     let all: [(&str, usize, BTreeSet<usize>); 4] = [
+        // The points of other lists are known as well, but the file does not name them as points.
         ("point", if group.lists_points { group.points.len() } else { 0 }, group.points.iter().copied().collect()),
         ("edge", group.edges.len(), group.edges.iter().flatten().copied().collect()),
         ("side", group.sides.len(), group.sides.iter().flatten().copied().collect()),
@@ -56,6 +57,7 @@ fn several(name: &str, group: &Group, mesh: &Mesh) -> Option<String> {
 fn of_tractions(scene: &Scene, mesh: &Mesh) -> Vec<String> {
     let on_points = scene.loads().iter().filter_map(|load| {
         let (Part::Group(name), Action::Traction(_) | Action::Pressure(_) | Action::Volume(_)) = load.single()? else { return None };
+        // A pressure on a surface in space acts on cells, which groups list.
         if load.key() == "pressure" && mesh.cell_dimension() < mesh.dimension {
             return None;
         }

@@ -85,6 +85,7 @@ pub fn judge_by_truth(
     };
     let first = level(1, &|| mesh.elevated(), Standard::Quadratic);
     let second = match &first {
+        // Without the first level the second one would be a truth of unknown error.
         Ok(Some(_)) => level(2, &|| mesh.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
         _ => Ok(None),
     };
@@ -153,15 +154,18 @@ impl Allowance {
     /// # Errors
     /// The finer mesh cannot be made.
     pub(super) fn afford(&self, halvings: u32, finer: impl FnOnce() -> Result<Mesh>) -> Result<Option<Mesh>> {
+        // Before the mesh is made: what it would have is known from the halvings.
         if self.growth.pow(halvings) * self.points > MOST_POINTS {
             return Ok(None);
         }
+        // Counted on the mesh itself, because the fill of its factor depends on its shape.
         Ok(Some(finer()?).filter(|finer| work(finer, 1, self.loads, 0) <= self.operations))
     }
 }
 
 /// Makes the errors of a load unknown.
 fn forget(case: &mut Case) {
+    // Known nowhere, rather than left to the finite elements that lock.
     case.measured = Some(Field { displacements: vec![None; case.forces.len()] });
     case.finer = Some(FinerSolution { standard: Standard::Quadratic, work: None, uncertainty: None });
 }

@@ -22,6 +22,7 @@ pub(super) fn meshes(scene: &Scene, mesh: Mesh, wanted: Option<usize>) -> Result
     let mut all = vec![mesh];
     for _ in 0..wanted.unwrap_or(TWICE) {
         let last = &all[all.len() - 1];
+        // The size of the next mesh by its growth, so that it need not be made to be refused.
         if wanted.is_none() && last.points.len() * growth > most {
             break;
         }
@@ -62,6 +63,7 @@ pub(super) fn level<'a>(
         ),
     };
     let places = Embedding::of(&observed.places, &mesh).map_err(outside)?;
+    // All meshes are of the same body: places that are in the first are in the others.
     if first.is_none() {
         observed.check_inside(mesh.dimension, &places.multiples)?;
     }

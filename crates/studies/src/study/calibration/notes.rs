@@ -24,6 +24,7 @@ impl CalibrationOutcome {
 
     /// Says that no modulus and no interval is to be trusted; the report begins with it.
     pub fn distrust(&self) -> Option<String> {
+        // The comparison is negated: a misfit that is NaN is not trusted.
         if let Some(misfit) = self.misfit.filter(|misfit| !(*misfit <= MANY)) {
             let scaled = if self.regions.is_empty() { "" } else { "; deviations by noise are multiplied by it" };
             return Some(format!(

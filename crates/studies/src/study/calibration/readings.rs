@@ -117,6 +117,8 @@ impl Observed {
             let held = held_places(mesh, &supports[number]);
             let rows = seen.displacements.places.chunks_exact(d).zip(seen.displacements.displacements.chunks_exact(d));
             for (place, moved) in rows {
+                // A place that is seen under several loads is written with the same digits in each file, and has the
+                // same bits. Floats have no hash, and a tolerance would need a search for each place.
                 let bits: Vec<u64> = place.iter().map(|x| x.to_bits()).collect();
                 let next = all.places.len() / d;
                 let index = *known_places.entry(bits.clone()).or_insert(next);
@@ -153,6 +155,7 @@ impl Observed {
                 for (axis, value) in reaction.force.iter().enumerate() {
                     let Some(value) = *value else { continue };
                     let is_held = |p: &usize| supports[number].is_fixed(p * d + axis);
+                    // The force on a free point is that of the load, whatever the moduli: it says nothing of them.
                     if !group.points.iter().all(is_held) {
                         let expected = "forces on groups that are held or moved in their direction";
                         let found = format!("\"{}\", which is free along {}", reaction.group, ["x", "y", "z"][axis]);
@@ -194,6 +197,8 @@ impl Observed {
     /// The noise of some is known, and of others it is not; or a load has moved nothing.
     pub fn weights(&self) -> Result<(Vec<f64>, bool)> {
         let known = self.observations.iter().filter(|observation| observation.sigma.is_some()).count();
+        // Residuals over σ have the variance one, those over the size of the displacements have another: a sum of both
+        // squares has no known distribution.
         if known != 0 && known != self.observations.len() {
             let found = format!("it for {known} of {} numbers", self.observations.len());
             return Err(Error::expected("sigma", "the noise of all measurements, or of none", found));

@@ -34,17 +34,23 @@ impl Spread<'_> {
             // The errors of the meshes move all unknowns together.
             slopes.iter().map(|&(p, a)| (a * mesh[p]).abs()).sum()
         });
+        // Rounding can take the quadratic form of a nearly singular covariance below zero.
         Some((self.excess * variance.max(0.0).sqrt(), mesh))
     }
 
     /// A value whose logarithm (or itself) has this spread, between the ends that `ends` makes of the way to either side.
     fn value(&self, value: f64, slopes: &Slopes, ends: impl Fn(f64) -> [f64; 2]) -> Value {
+        // A known region has no unknown: its moduli are those of the scene, without an interval.
         if slopes.is_empty() {
             return Value { value, interval: None, deviation: None, mesh_deviation: None };
         }
         let spread = self.of(slopes);
+        // The errors of the meshes do not depend on the noise, so that the squares of both add up. They are no estimate
+        // from a sample: their interval is that of the normal distribution, whatever the degrees of freedom of the
+        // residuals.
         let way =
             spread.map(|(noise, mesh)| (self.estimate.reach * noise).hypot(ninety_five(None) * mesh.unwrap_or(0.0)));
+        // The exponential of the way of an unknown that is hardly seen overflows: such a value has no interval.
         let interval = way.map(ends).filter(|[low, high]| low.is_finite() && high.is_finite());
         Value { value, interval, deviation: spread.map(|s| s.0), mesh_deviation: spread.and_then(|s| s.1) }
     }
@@ -82,6 +88,7 @@ fn region_of(
         young.map(|p| (p, by_young)).into_iter().chain(poisson.map(|p| (p, by_poisson))).collect()
     };
     let rate = |of: &dyn Fn(f64) -> f64| (of(poisson_of(t + STEP)) - of(poisson_of(t - STEP))) / (2.0 * STEP);
+    // E and μ are positive. Intervals of their logarithms have no end below zero.
     let share = |value: f64| move |way: f64| [value * (-way).exp(), value * way.exp()];
     let nu = poisson_of(t);
     let shear = |nu: f64| e / (2.0 * (1.0 + nu));

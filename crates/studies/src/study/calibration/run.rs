@@ -193,6 +193,7 @@ fn of_regions(
     // What is left of the error of the meshes is no fault of the model.
     let probability = noise.then(|| chi_squared_beyond((square - found.left).max(0.0), freedom));
     let is_unexplained = probability.is_some_and(|probability| probability < UNLIKELY);
+    // The probability above leaves out what the meshes cause, which may be nearly all of the residuals.
     let is_far = noise && found.misfit > MANY;
     let excess = if is_unexplained || is_far { found.misfit.max(1.0) } else { 1.0 };
     let region = |region: usize| &names[region];
@@ -205,6 +206,7 @@ fn of_regions(
     let correlation = |p: usize, q: usize| {
         let covariance = found.covariance[p][q]?;
         let sizes = found.covariance[p][p]? * found.covariance[q][q]?;
+        // Rounding can take the quotient of unknowns that are seen together alone beyond one.
         (sizes > 0.0).then(|| (covariance / sizes.sqrt()).clamp(-1.0, 1.0))
     };
     let all = 0..unknowns.len();
@@ -299,6 +301,7 @@ fn loads(limit: &Limit, residuals: &[f64], noise: bool) -> Vec<CalibratedLoad> {
 fn explained(limit: &Limit, residuals: &[f64]) -> f64 {
     let all = limit.observations.iter().zip(&limit.weights);
     let square: f64 = all.map(|(seen, weight)| (weight * seen.value).powi(2)).sum();
+    // All that was measured may be zero where sigma is given: the quotient is then infinite or zero, and never NaN.
     1.0 - residuals.iter().map(|r| r * r).sum::<f64>() / square.max(f64::MIN_POSITIVE)
 }
 
@@ -317,6 +320,7 @@ fn count_held(outcome: &mut CalibrationOutcome, limit: &Limit, held: &[(usize, f
 /// The probability that a number with the χ² distribution of `freedom` degrees of freedom exceeds `square` (Wilson and Hilferty 1931).
 fn chi_squared_beyond(square: f64, freedom: usize) -> f64 {
     let k = freedom.max(1) as f64;
+    // The cube root of χ²/k is nearly normal, with the mean 1 − 2/(9k) and the variance 2/(9k).
     let share = 2.0 / (9.0 * k);
     beyond(((square / k).cbrt() - (1.0 - share)) / share.sqrt())
 }

@@ -134,6 +134,7 @@ fn combinations(entry: &Table) -> Result<Vec<Combination>> {
             }
         }
         all = more;
+        // Checked after each key: the product of a few long lists would fill memory before the end.
         match all.len() > MOST {
             true => Err(Error::expected(key, format!("at most {MOST} combinations"), "more")),
             false => Ok(()),

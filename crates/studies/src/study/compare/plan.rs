@@ -184,11 +184,14 @@ impl Comparing {
     /// A sum of all that a case depends on: its settings, the fits, the files that it names and the version of the program.
     pub fn sum(&self, case: &Case) -> String {
         let mut sum = Sum::default();
+        // Another version may compute other numbers: its cases are run again.
         sum.write(env!("CARGO_PKG_VERSION").as_bytes());
         sum.write(self.text.as_bytes());
         sum.write(serde_json::to_string(&case.settings).unwrap_or_default().as_bytes());
         for path in case.inputs(&self.folder) {
             // A file that cannot be read fails in the case.
+            // The sum of each file has a fixed length, so that text which moves from the end of one file to the start
+            // of the next changes the total.
             sum.write(&Sum::of_file(&path).unwrap_or_default().finish().to_le_bytes());
         }
         format!("{:016x}", sum.finish())
@@ -231,6 +234,7 @@ fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
     let elements = load_elements(&entry.elements, folder)?;
     let ratios = numbers("poisson", entry.poisson.as_ref(), POISSON)?;
     let sets = shape_sets(entry.shapes.as_ref())?;
+    // Counted before any material is made, and in floating point, which does not wrap.
     let all = elements.len() as f64 * ratios.len() as f64 * (sets.len().max(entry.laws.len())) as f64;
     if all > MOST_CASES {
         return Err(Error::expected("elements", format!("at most {MOST_CASES} cases"), format!("{all}")));
@@ -239,6 +243,7 @@ fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
     for (name, element) in entry.elements.iter().zip(elements) {
         let d = element.dimension();
         for ratio in &ratios {
+            // A list may have plane and solid elements: the state is that of the plane ones.
             let plane = entry.plane.filter(|_| d == 2);
             let material = Material::for_body(d, YOUNG, *ratio, plane, None)?;
             let mut settings = BTreeMap::from([("element".to_string(), json!(name)), ("poisson".into(), json!(ratio))]);

@@ -68,10 +68,13 @@ fn sets_of(table: &toml::Table) -> Result<Vec<ShapeSet>> {
     };
     let counts = whole("count", usual.count, bound::RANDOM_SHAPES)?;
     counts.iter().try_for_each(|count| check_count("count", *count, 1, bound::RANDOM_SHAPES).map(|_| ()))?;
+    // Numbers of the table are read as floating point, which holds all whole numbers up to 2⁵³.
     let seeds = whole("seed", usual.seed as usize, 1 << 53)?;
     let (distortions, aspects) =
         (between("distortion", usual.distortion, [0.0, 1.0])?, between("aspect", usual.aspect, [1e-3, 1e3])?);
     let lists = [families.len(), distortions.len(), aspects.len(), seeds.len(), counts.len()];
+    // The product of five lengths may exceed an integer. In floating point it is large, and is refused before a set is
+    // made.
     let all: f64 = lists.iter().map(|list| *list as f64).product();
     if all > MOST {
         return Err(Error::new(format!("expected at most {MOST} sets of shapes, found {all}")));

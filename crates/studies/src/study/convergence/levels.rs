@@ -31,11 +31,14 @@ pub fn plan(scene: &Scene, asked: Option<usize>, usual: usize) -> Result<usize> 
     // The second level is counted, because the first refinement of a file has another growth than that of a box; later
     // levels grow about alike.
     let first = unknowns(&coarse);
+    // A first level that is too large is not divided: that alone could fill memory.
     let second = if first > most { first } else { unknowns(&scene.clone().halved(1).build_mesh()?) };
+    // The product may exceed an integer of 32 bits.
     let at_level = |level: usize| (2..level).fold(second, |n, _| n.saturating_mul(growth));
     let room = (2..=asked.unwrap_or(usual)).take_while(|&level| at_level(level) <= most).last();
     let enough = match asked {
         Some(asked) => room.filter(|room| *room == asked),
+        // Two levels are the least of which a difference is known, even if the second takes long.
         None => room.map(|room| (3..=room).take_while(|&level| at_level(level) <= most / UNASKED).last().unwrap_or(2)),
     };
     enough.ok_or_else(|| {

@@ -62,6 +62,7 @@ pub fn limit_of(values: &[f64]) -> Option<Limit> {
     let differences: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let last = differences.last().copied().unwrap_or(0.0);
     let of_finest = |kind| Some(Limit { value: finest, uncertainty: last.abs(), kind });
+    // Before the signs are compared, for those of rounding are random.
     if !differences.is_empty() && last.abs() <= EQUAL * finest.abs() {
         return of_finest(LimitKind::Constant);
     }
@@ -78,6 +79,8 @@ pub fn limit_of(values: &[f64]) -> Option<Limit> {
         return of_finest(LimitKind::TooSlow(order));
     }
     let value = finest + correction;
+    // The limit that was known one level before, from the finest value of then. Its distance shows how far the order
+    // still changes.
     let coarser = aitken(&differences[..differences.len() - 1]).map(|(_, correction)| finest - last + correction);
     let uncertainty = coarser.map_or(correction.abs(), |coarser| (value - coarser).abs());
     Some(Limit { value, uncertainty, kind: LimitKind::Extrapolated(order) })

@@ -128,6 +128,7 @@ pub fn percent(value: f64, of: f64) -> Option<f64> {
 
 /// The observed orders `log₂ |e_l/e_{l+1}|`, `[levels]`: none for the first level, nor if an error is zero.
 pub fn rates(errors: &[Option<f64>]) -> Vec<Option<f64>> {
+    // Cells are halved from level to level, so that the order is a logarithm of base two.
     let rate = |pair: &[Option<f64>]| Some((pair[0]? / pair[1]?).abs().log2()).filter(|rate| rate.is_finite());
     std::iter::once(None).chain(errors.windows(2).map(rate)).collect()
 }

@@ -31,6 +31,8 @@ impl Quantities {
             let along_x: Vec<f64> = (0..mesh.dimension).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
             let (unit, part) = match load.single() {
                 Some((_, Action::Displacement(_) | Action::Volume(_) | Action::Moment(_))) => return Ok(None),
+                // The cells of a surface in space carry the pressure themselves: their sides are edges, over which a
+                // traction would be integrated.
                 Some((part, Action::Pressure(_))) if mesh.cell_dimension() < mesh.dimension => {
                     (Action::body(&along_x), part)
                 }

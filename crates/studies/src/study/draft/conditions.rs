@@ -176,5 +176,6 @@ fn lowest(mesh: &Mesh, pieces: &[Vec<usize>]) -> Option<(Vec<usize>, String)> {
     let limit = *gaps.get(place)?;
     let text = rounded(limit, 6);
     let written: f64 = text.parse().ok()?;
+    // The rounded number is what the scene has: it is given where it selects the same points.
     (below(written) == below(limit)).then(|| (below(limit), format!("{} < {text}", ["x", "y", "z"][axis])))
 }

@@ -42,12 +42,14 @@ fn minus(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 fn plane(points: &[[f64; 3]]) -> Option<Hull> {
     let size = extent(points);
     let mut order: Vec<usize> = (0..points.len()).collect();
+    // Points with the same x follow each other in the order of y, so that a side along y is passed in one direction.
     order.sort_by(|&a, &b| points[a][0].total_cmp(&points[b][0]).then(points[a][1].total_cmp(&points[b][1])));
     let half = |order: &mut dyn Iterator<Item = usize>| {
         let mut chain: Vec<usize> = Vec::new();
         for p in order {
             while let [.., a, b] = chain[..] {
                 let turn = cross(minus(&points[b], &points[a]), minus(&points[p], &points[a]))[2];
+                // A point that turns less lies on a side, and is no corner.
                 if turn > ON * size * size {
                     break;
                 }
@@ -55,6 +57,7 @@ fn plane(points: &[[f64; 3]]) -> Option<Hull> {
             }
             chain.push(p);
         }
+        // The last point is the first one of the other half.
         chain.pop();
         chain
     };
@@ -103,12 +106,15 @@ fn solid(points: &[[f64; 3]]) -> Option<Hull> {
     let near = ON * size;
     let mut sides = first_sides(points, near)?;
     for (p, x) in points.iter().enumerate() {
+        // A point that lies on a side up to rounding does not see it: the side that it would make with the rim would
+        // have a random normal.
         let (seen, kept): (Vec<Side>, Vec<Side>) = sides.into_iter().partition(|side| side.distance(x) > near);
         sides = kept;
         let edges = |side: &Side| {
             let [a, b, c] = side.corners;
             [[a, b], [b, c], [c, a]]
         };
+        // The set is only asked. Sides are made in the order of the list, whatever the order of the hashes.
         let all: std::collections::HashSet<[usize; 2]> = seen.iter().flat_map(edges).collect();
         for [a, b] in seen.iter().flat_map(edges).filter(|[a, b]| !all.contains(&[*b, *a])) {
             sides.extend(Side::new(points, [a, b, p]));
@@ -143,6 +149,7 @@ fn first_sides(points: &[[f64; 3]], near: f64) -> Option<Vec<Side>> {
     if !(base.distance(&points[e]).abs() > near) {
         return None;
     }
+    // Normals are to point outwards, away from the fourth corner.
     let turned = base.distance(&points[e]) > 0.0;
     let corners = if turned { [a, c, b] } else { [a, b, c] };
     let [a, b, c] = corners;

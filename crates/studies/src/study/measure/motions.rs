@@ -73,15 +73,18 @@ impl<'a> Motions<'a> {
             let zero = all.iter().filter(|value| value.abs() <= floor).count();
             return Ok(counted(releasing, zero, true));
         }
+        // A factor that is not there shows that some motion releases energy, and not how many do.
         if !is_definite(&self.entries, &self.support, NOTHING)? {
             return Ok(counted(1, self.rigid, false));
         }
         // Any masses show the motions without resistance.
         let ones = vec![1.0; self.at().0.len() / self.at().1];
         let masses = masses.filter(|masses| masses.iter().all(|m| *m > 0.0)).unwrap_or(&ones);
+        // There are no more motions than degrees of freedom.
         let wanted = (self.rigid + SOUGHT).min(self.free());
         let (squares, largest) = self.squares(masses, wanted)?;
         let zero = squares.iter().filter(|square| **square <= NOTHING * largest).count();
+        // If all that were looked for are without resistance, there may be more of them.
         Ok(counted(0, zero, zero < wanted))
     }
 
@@ -93,6 +96,7 @@ impl<'a> Motions<'a> {
         let d = self.at().1;
         let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !self.support.is_fixed(dof));
         let is_sound = masses.iter().enumerate().all(|(p, mass)| *mass > 0.0 || !moves(p));
+        // ω² of K φ = ω² M φ needs a mass wherever something moves.
         if stability.releasing > 0 || !is_sound {
             return Ok(None);
         }
@@ -114,6 +118,7 @@ impl<'a> Motions<'a> {
         };
         let factor = system.cholesky()?.ok_or_else(releases)?;
         let modes = lowest_modes(&system, &factor, masses, self.at().1, count)?;
+        // The difference of two numbers of the size of the shift: what is left below this is their rounding.
         let square = |square: &f64| if (square - shift).abs() <= RELEASE * largest { 0.0 } else { square - shift };
         Ok((modes.squares.iter().map(square).collect(), largest))
     }
@@ -161,6 +166,7 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
             (0..d).map(|k| points.iter().map(|&p| specimen.points[p * d + k]).sum::<f64>() / count).collect();
         let from = |p: usize, k: usize| specimen.points[p * d + k] - centre[k];
         let extent = points.iter().flat_map(|&p| (0..d).map(move |k| (p, k))).map(|(p, k)| from(p, k).abs());
+        // A part of one point has no extent, by which rotations are divided.
         let extent = extent.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
         let row = |dof: usize| -> Vec<f64> {
             let (p, axis) = (dof / d, dof % d);

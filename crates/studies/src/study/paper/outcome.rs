@@ -88,6 +88,7 @@ impl PaperRow {
     /// Whether a figure differs from the printed one by more than two percent.
     pub fn differs(&self) -> bool {
         let far = |(printed, found): (&f64, &Option<f64>)| {
+            // A printed zero is met by zero alone.
             found.is_none_or(|found| (found - printed).abs() > SAME * printed.abs().max(1e-300))
         };
         self.printed.as_ref().is_some_and(|printed| printed.iter().zip(&self.found).any(far))

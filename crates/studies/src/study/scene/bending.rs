@@ -71,6 +71,8 @@ impl Bending {
         };
         let contents = material.thicknesses();
         if self == Bending::Plate {
+            // I/A of a rectangle is t²/12. A stiffness in N·m that is given is divided by the stretching stiffness of
+            // the cell, which is that share too.
             let gyration = of_cells(&flexural.map_or_else(|| contents.map(|t| t * t / 12.0), over_stretch));
             return mesh.with_directors(gyration);
         }
@@ -78,11 +80,13 @@ impl Bending {
             let found = format!("cells of {} dimensions in {}", mesh.cell_dimension(), mesh.dimension);
             return Err(Error::expected("bending", "lines in space, which bend as a \"rod\"", found));
         }
+        // A round section has I = π r⁴/4 and A = π r², so that I/A = r²/4 = A/(4 π).
         let gyration = of_cells(&flexural.map_or_else(|| contents.map(|area| area / (4.0 * PI)), over_stretch));
         let torsion = match torsional {
             Some(torsional) => of_cells(&over_stretch(torsional)),
             None => {
                 let poisson = of_cells(&material.materials()?.map(|material| material.poisson()));
+                // A round section has J = 2 I, and G = E/(2 (1 + ν)): G J/(E A) is I/A over 1 + ν.
                 gyration.iter().zip(poisson).map(|(gyration, poisson)| gyration / (1.0 + poisson)).collect()
             }
         };

@@ -34,6 +34,8 @@ pub(super) fn young_and_poisson(constants: (Constant, Constant), a: f64, b: f64)
         (Young, Poisson) => (a, b),
         (Young, Shear) => (a, a / (2.0 * b) - 1.0),
         (Young, Bulk) => (a, (3.0 * b - a) / (6.0 * b)),
+        // The root of the quadratic equation in ν in the form that does not subtract numbers which are near each other
+        // for a small λ.
         (Young, Lambda) => (a, 2.0 * b / (a + b + (a * a + 9.0 * b * b + 2.0 * a * b).sqrt())),
         (Poisson, Shear) => (2.0 * b * (1.0 + a), a),
         (Poisson, Bulk) => (3.0 * b * (1.0 - 2.0 * a), a),

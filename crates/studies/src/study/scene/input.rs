@@ -240,6 +240,7 @@ impl DiscEntry {
         let rings = match (self.points, self.rim) {
             (None, None) => DiscMesh::even(self.rings),
             (Some(points), Some(rim)) => {
+                // Bounded before the rings are made; that the bound was reached shows in the sum below.
                 let rings = DiscMesh::rings_of(points.min(MOST_POINTS), self.rings, rim.min(MOST_POINTS));
                 if rings.iter().any(|n| *n < 3) || rings.iter().sum::<usize>() + 1 != points {
                     let expected = format!("a middle, {rim} points on the rim and three or more on each other ring");
@@ -320,6 +321,7 @@ impl MeshInput {
         let element = load_element(&entry.element, folder).map_err(at("mesh.box"))?;
         let scaled = |lengths: &[f64]| lengths.iter().map(|x| x * self.scale).collect::<Vec<_>>();
         let origin = entry.origin.clone().unwrap_or_else(|| vec![0.0; element.dimension()]);
+        // Counts that do not fit saturate, and the limit of cells refuses them. Wrapped ones would be a coarse mesh.
         let factor = 1usize.checked_shl(halvings).unwrap_or(usize::MAX);
         let cells = entry.cells.iter().map(|n| n.saturating_mul(factor)).collect();
         let spec = BoxMesh { element, size: scaled(&entry.size), cells, origin: scaled(&origin) };

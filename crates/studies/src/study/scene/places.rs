@@ -281,6 +281,7 @@ impl<'a> Places<'a> {
 
 /// A vector that is not along this one.
 fn across(a: [f64; 3]) -> [f64; 3] {
+    // The axis that is farthest from the direction, so that their cross product is far from zero.
     let least = (0..3).fold(0, |best, k| if a[k].abs() < a[best].abs() { k } else { best });
     std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 })
 }

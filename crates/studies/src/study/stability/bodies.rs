@@ -62,6 +62,8 @@ fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
     let pulled = Selection::Group("xmax".into());
     let f = nodal_forces(&whole, &pulled, &Action::traction(&[1.0, 0.0, 0.0]), 1.0)?;
     let ends: Vec<usize> = pulled.points(&whole)?.iter().map(|p| 3 * p).collect();
+    // Two halves of length 1 m under 1 Pa. With ν = 0 nothing contracts, so that the held end does not disturb the
+    // uniaxial stress.
     let exact = 1.0 + 1.0 / ratio;
     // The entries of an element are rounded, and those of a stiff one have errors as large as those of a soft one.
     solved((&format!("bar of {}", element.name), case, true), &entries, &support, &f, &ends, exact)
@@ -131,6 +133,7 @@ fn solved(
 
 /// The largest eigenvalue of the inverse, by power iteration.
 fn compliance(factor: &Factor, size: usize) -> f64 {
+    // A start without the symmetry of a body has a part along each motion.
     let mut x: Vec<f64> = (0..size).map(|i| 1.0 + (i as f64).sin()).collect();
     let mut largest = 0.0;
     for _ in 0..POWERS {

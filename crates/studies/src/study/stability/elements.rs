@@ -56,6 +56,7 @@ const DENSITY: f64 = 1000.0;
 /// The element has no springs, or no valid shape.
 pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
     let springs = Springs::select(element, None)?;
+    // Cases do not depend on each other, and rows keep their order.
     let rows = shape_cases(element)?.into_par_iter().enumerate().flat_map_iter(|(i, case)| {
         let subject = Subject { element, springs: &springs, case: &case };
         let objectives = Objective::all(element.has_higher_modes());
@@ -226,6 +227,7 @@ impl Subject<'_> {
         for pattern in 0..PATTERNS {
             let change = |step: f64| {
                 let mut random = Random::new(pattern);
+                // Each coordinate moves by the whole step, up or down, as it does by the worst rounding.
                 let x: Vec<f64> = case.x.iter().map(|x| x + step * size * random.symmetric().signum()).collect();
                 of(&x).map_or(f64::INFINITY, |other| difference(&other, &k))
             };

@@ -68,6 +68,7 @@ fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Linear
     };
     let share = masses[1] / (masses[0] + masses[1]);
     let stretch = 1e-3;
+    // The centre of mass is at rest, so that the spring alone moves the masses.
     let start = [-share * stretch, 0.0, (1.0 - share) * stretch, 0.0];
     if let Err(e) = simulation.start(&start, &[0.0; 4]) {
         return of(Verdict::Refused(e.to_string())).with_way_out("take a shorter step");

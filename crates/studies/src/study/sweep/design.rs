@@ -43,6 +43,7 @@ impl Plan {
                 )),
             };
             let lists: Vec<(String, Vec<toml::Value>)> = keys.into_iter().map(list).collect::<Result<_>>()?;
+            // In floating point, which is large where a product of integers would wrap.
             let count = lists.iter().fold(1.0, |count, (_, values)| count * values.len() as f64);
             if count > bound::STUDIES as f64 {
                 let expected = format!("at most {} combinations", bound::STUDIES);

@@ -82,6 +82,7 @@ impl Values {
     /// The value at a share from 0 to below 1 of all.
     pub fn at(&self, share: f64) -> Value {
         match self {
+            // A share just below 1 may be rounded up to the length.
             Values::List(list) => list[((share * list.len() as f64) as usize).min(list.len() - 1)].clone(),
             Values::Range(range) => range.at(share),
         }

@@ -172,11 +172,15 @@ impl Vibrations<'_> {
         let mut raised = Raised::new(stiffness.clone(), masses, self.support, (&self.mesh.points, d));
         let largest = raised.largest;
         let releases = || Error::new("some motion releases energy: it does not vibrate");
+        // With the small shift a factor shows that no ω² is negative by more than rounding. The larger shift below
+        // would hide motions that release energy.
         raised.by(RELEASE * largest)?.cholesky()?.ok_or_else(releases)?;
         let system = raised.by(SHIFT * largest)?;
         let factor = system.cholesky()?.ok_or_else(releases)?;
         let modes = lowest_modes(&system, &factor, masses, d, self.rigid + self.count)?;
+        // Rigid motions have ω² = 0 and are the lowest: they are found with the others, and left out.
         let squares = modes.squares[self.rigid..].iter().map(|square| square - SHIFT * largest);
+        // A mechanism has ω² = 0 up to rounding of either sign.
         Ok(squares.map(|square| square.max(0.0).sqrt() / std::f64::consts::TAU).collect())
     }
 }

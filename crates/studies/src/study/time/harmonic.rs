@@ -50,6 +50,7 @@ pub(super) fn dynamic_moduli(
     let count = outcome.fits.len() + 1;
     progress(Event::stage("dynamic moduli", 0, count));
     let is_of_springs = recipe.is_some_and(|recipe| matches!(recipe.damping, DampingRecipe::Ratio(_)));
+    // Dampers of a ratio lie along springs, which the finite elements do not have.
     if !is_of_springs {
         check_body(mesh)?;
         let parts = match relaxing {
@@ -213,6 +214,8 @@ fn of_model(
         moduli.young.add(mean(0..d));
         moduli.shear.add(mean(d..stress.forces.len()));
         if let Some(bulk) = &mut moduli.bulk {
+            // An even pressure is the sum of the tensions along all axes: the work is that of each tension on the
+            // displacements of each other one, and no further equations are solved.
             let all: Complex<f64> = (0..d).flat_map(|k| (0..d).map(move |l| (k, l))).map(|(k, l)| work(k, l)).sum();
             bulk.add(Complex::from(stress.volume) / all);
         }

@@ -113,6 +113,7 @@ impl<'a> Costed<'a> {
                 simulation.step();
             }
             let each = clock.seconds() / count as f64;
+            // A clock may not have moved during a short pass. The next pass has as many steps as fill its time.
             count = ((PASS / each.max(1e-12)) as usize).clamp(1, MOST_STEPS);
             Ok(each)
         })))

@@ -48,6 +48,7 @@ impl Times {
 fn is_enough(seconds: &[f64]) -> bool {
     let longest = seconds.iter().copied().fold(0.0, f64::max);
     let count = seconds.len();
+    // Passes shorter than 125 µs do not reach the time together: their number ends them.
     longest > PATIENCE || count >= MOST || count >= LEAST && seconds.iter().sum::<f64>() >= TOGETHER
 }
 

@@ -50,6 +50,7 @@ impl FitKind for ExactRecipe {
         let total = mesh.cell_count();
         let (mut done, mut cells) = (0, Vec::new());
         // What is attached to the body has springs on its own cells, whatever those of the body are on.
+        // Springs on strains are those of domains of edges alone.
         let energy = if fit.energy.has_contents().is_ok() { fit.energy } else { ExactEnergy::default() };
         let attached = ExactFit { energy, shear: ShearSprings::Cells, volume: VolumeSprings::Points, ..fit };
         for (index, block) in mesh.blocks.iter().enumerate() {

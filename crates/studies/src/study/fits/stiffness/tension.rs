@@ -19,6 +19,7 @@ pub struct TensionOutcome {
 impl TensionOutcome {
     pub(super) fn of(cells: &[CellFits], network: &Network, points: &[f64]) -> TensionOutcome {
         let idle = |fits: &CellFits| {
+            // An element may have no springs of the groups that were chosen: chunks of none would panic.
             let count = fits.springs.len().max(1);
             let pairs = fits.constants.chunks_exact(count).zip(fits.parameters.chunks_exact(count));
             pairs.filter(|(k, p)| k.iter().chain(*p).all(|number| *number == 0.0)).count()

@@ -156,6 +156,7 @@ impl<'a> WholeBody<'a> {
         };
         let settings = super::identity::identity(recipe, springs, self.newton.as_ref());
         let none = vec![0.0; object.unknowns().count()];
+        // The checkpoint belongs to the network at θ = 0: with another start the same θ is another network.
         let identity = Identity::of(settings, &self.mesh.points, &object.network(&none), &wanted);
         let (mut saved, snapshot) = Saved::open(self.controls, name, identity)?;
         if recipe.start == Start::Equal {

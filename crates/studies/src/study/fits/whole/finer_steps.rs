@@ -95,6 +95,7 @@ impl FinerSteps<'_> {
                 let theta: Vec<f64> = at.theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
                 let moved = self.moved(&theta, progress)?;
                 let residuals = self.residuals(&moved)?;
+                // A value that is not a number is no improvement either.
                 if value(&residuals, &theta) < now {
                     found = Some((theta, moved, residuals));
                     break;
@@ -122,6 +123,7 @@ impl FinerSteps<'_> {
 
 /// The step of the linearised problem, with ρ as residuals of its own.
 fn regularized_step(at: &FinerPoint, share: f64) -> Result<Vec<f64>> {
+    // Residuals √(ρ/m) θ_p of their own have the squares of the term ρ/m ‖θ‖², so that one routine serves both sums.
     let root = share.sqrt();
     let column = |(p, column): (usize, &Vec<f64>)| {
         let own = (0..at.theta.len()).map(|q| if p == q { root } else { 0.0 });

@@ -109,6 +109,7 @@ impl WholeBody<'_> {
             Ok(SupportFrequencies { support: held.words(), part: *part, models })
         };
         let own = Moments::of_masses(&mesh.points, d, &found.masses);
+        // A flat body has no second moment across itself: the quotient is not finite, and left out below.
         let off = |k: usize| (own.second[k * d + k] / moments.second[k * d + k] - 1.0).abs();
         let second_error = (0..d).map(off).filter(|off| off.is_finite()).fold(0.0, f64::max);
         Ok(FittedMasses {

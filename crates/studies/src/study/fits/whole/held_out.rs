@@ -192,11 +192,13 @@ fn followed_answers(
         let found = newton.reach_stable(model, &mesh.points, support, forces, Some(displacement), &pattern)?;
         Ok(found.map_or(f64::INFINITY, |(u, _)| load_error(target, &u)))
     };
+    // Each load is followed on its own, and the list keeps its order: threads do not change the errors.
     Ok(ModelAnswers { errors: targets.par_iter().map(error).collect::<Result<_>>()?, seconds: None })
 }
 
 fn model_error(model: &str, answers: &ModelAnswers, targets: &[Target]) -> ModelError {
     let known = answers.errors.iter().zip(targets).map(|(error, target)| (*error, target.name.as_str()));
+    // A load that moves nothing has the relative error 0/0.
     let mut errors: Vec<(f64, &str)> = known.filter(|(error, _)| !error.is_nan()).collect();
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
     let lost = errors.iter().filter(|(error, _)| error.is_infinite()).count();

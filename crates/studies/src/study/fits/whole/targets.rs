@@ -100,6 +100,8 @@ impl WholeBody<'_> {
             square.sqrt() / sigma
         };
         let sizes: Vec<f64> = trained.iter().zip(sigmas.into_iter().flatten()).map(size).collect();
+        // Only ratios of weights matter to the minimum. Relative to the largest, errors are of the size that they have
+        // without noise, so that ρ means the same.
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         trained.iter_mut().zip(&sizes).for_each(|(target, size)| target.weight = (size / largest).powi(2));
         Ok(Some(1.0 / largest))
@@ -258,6 +260,7 @@ impl WholeBody<'_> {
 fn weigh_by_compliance(trained: &mut [Target]) {
     let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let compliance = |target: &Target| norm(&target.displacement) / norm(&target.forces);
+    // A load without forces has an infinite compliance, or none.
     let mut sorted: Vec<f64> = trained.iter().map(compliance).filter(|c| c.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let Some(median) = sorted.get(sorted.len() / 2).copied().filter(|median| *median > 0.0) else { return };

@@ -124,6 +124,8 @@ impl RelaxingBody {
                 // That every cell is isotropic was checked.
                 let Moduli { lambda, mu } = hooke.moduli().unwrap_or(Moduli { lambda: 0.0, mu: 0.0 });
                 Hooke::Isotropic(match share {
+                    // The energy of a change of volume is K/2 tr²: λ alone with the value of K. The rest of the energy
+                    // is that of the deviator, for which λ is −2/3 μ.
                     Share::Bulk(_) => Moduli { lambda: lambda + 2.0 / 3.0 * mu, mu: 0.0 },
                     Share::Shear(_) | Share::Elastic => Moduli { lambda: -2.0 / 3.0 * mu, mu },
                 })
@@ -220,6 +222,7 @@ impl RelaxingBody {
             relaxed.push((left - 1.0, &part.entries));
             let between = made(&self.softened(part.share, BETWEEN)?)?;
             let curved = combined(&[(1.0, own), (BETWEEN - 1.0, &part.entries), (-1.0, &between)]);
+            // The comparison is negated, so that NaN is not linear.
             if !(size(mesh, &curved) <= limit) {
                 return Ok(false);
             }
