@@ -192,6 +192,145 @@ fn files_of_other_programs_hold_the_same_network() {
     refused(at, &["measure", "phystwin/phystwin.npz", "--engine", "nonsense", "--hull"], "--engine");
 }
 
+/// A chain of two bonds, in the units of the title.
+fn chain(title: &str, more: &str) -> String {
+    format!(
+        "{title}\n\n4 atoms\n6 bonds\n1 atom types\n1 bond types\n{more}\nMasses\n\n1 2.0\n\nBond Coeffs # harmonic\n\n1 1.5 1.0\n\n\
+         Atoms # bond\n\n1 1 1 0 0 0\n2 1 1 1 0 0\n3 1 1 0 1 0\n4 1 1 0 0 1\n\n\
+         Bonds\n\n1 1 1 2\n2 1 1 3\n3 1 1 4\n4 1 2 3\n5 1 2 4\n6 1 3 4\n"
+    )
+}
+
+/// What the units of a file are is that of its first line, and what it promises or holds beside bonds is told.
+#[test]
+fn files_of_lammps_keep_their_units_and_promises() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let read = |text: &str| {
+        fs::write(at.join("n.data"), text).unwrap();
+        read_specimen(&at.join("n.data"), &SpecimenOptions::default()).unwrap()
+    };
+    let si = read(&chain("units = si", ""));
+    assert_eq!(si.notes[0], "the units of the file are si");
+    assert!(read(&chain("a title", "")).notes[0].contains("names no units"));
+    // NIST: a kilocalorie for a mole is 6.947 695e-21 J, an electron volt 1.602 176 634e-19 J, a hartree 27.211 386 245 988 eV, a Bohr
+    // radius 0.529 177 210 903 Å, and an atomic mass unit 1.660 539e-27 kg.
+    let units = [
+        ("real", 1e-10, 6.947695e-21, 1.660539e-27),
+        ("metal", 1e-10, 1.602176634e-19, 1.660539e-27),
+        ("electron", 0.529177210903e-10, 27.211386245988 * 1.602176634e-19, 1.660539e-27),
+        ("cgs", 0.01, 1e-7, 1e-3),
+        ("micro", 1e-6, 1e-15, 1e-15),
+        ("nano", 1e-9, 1e-21, 1e-21),
+        ("lj", 1.0, 1.0, 1.0),
+    ];
+    for (name, length, energy, mass) in units {
+        let title = format!("LAMMPS data file via write_data, version 2 Aug 2023, timestep = 0, units = {name}");
+        let found = read(&chain(&title, ""));
+        let near = |found: f64, expected: f64| (found - expected).abs() < 3e-7 * expected.abs();
+        assert!(near(found.specimen.network.lengths[0].constant, 3.0 * energy / (length * length)), "{name}");
+        assert!(
+            near(found.specimen.network.lengths[0].rest, length) && near(found.specimen.points[3], length),
+            "{name}"
+        );
+        assert!(near(found.specimen.masses.as_ref().unwrap()[0], 2.0 * mass), "{name}");
+        assert!(found.notes[0].contains(name), "{:?}", found.notes);
+    }
+    let with_angles = read(&(chain("units si", "") + "\nAngle Coeffs\n\n1 3.0 90\n\nAngles\n\n1 1 2 1 3\n2 1 2 1 4\n"));
+    assert!(with_angles.notes.iter().any(|note| note.contains("Angles (2 lines)")), "{:?}", with_angles.notes);
+    for (text, words) in [
+        (chain("units = furlongs", ""), "n.data:1: units: expected one of lj, si, cgs"),
+        (chain("", "").replace("6 bonds", "7 bonds"), "Bonds: expected 7 lines, as line 4 says, found 6"),
+        (chain("", "").replace("\n2 1 1 1 0 0", "\n1 1 1 1 0 0"), "a number of its own for each atom, found 1"),
+    ] {
+        fs::write(at.join("n.data"), text).unwrap();
+        refused(at, &["measure", "n.data", "--hull"], words);
+    }
+}
+
+/// Rows of a table of points in any order, with the numbers by which springs name them.
+#[test]
+fn points_of_a_table_have_their_numbers() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let springs = |first: usize| {
+        let ends = [(0, 1, 50), (0, 2, 5), (0, 3, 6), (1, 2, 7), (1, 3, 8), (2, 3, 1)];
+        let row = |(i, j, k): (usize, usize, i32)| format!("{},{},{k}\n", i + first, j + first);
+        "i,j,k\n".to_string() + &ends.map(row).concat()
+    };
+    let measured = |points: &str, first: usize| {
+        fs::write(at.join("s.csv"), springs(first)).unwrap();
+        fs::write(at.join("p.csv"), points).unwrap();
+        let options = SpecimenOptions { points: Some(at.join("p.csv")), ..SpecimenOptions::default() };
+        let file = read_specimen(&at.join("s.csv"), &options).unwrap();
+        measure(&file.specimen, &MeasureOptions { hull: true, ..MeasureOptions::default() }).unwrap().affine.matrix()
+    };
+    let plain = measured("x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n", 0);
+    for name in ["point", "id", "node", "Number", "index"] {
+        let points = format!("{name},x,y,z\n3,0,0,1\n0,0,0,0\n2,0,1,0\n1,1,0,0\n");
+        assert!((measured(&points, 0) - &plain).amax() < 1e-12 * plain.amax(), "{name}");
+    }
+    let later = "id,x,y,z\n11,0,0,0\n12,1,0,0\n13,0,1,0\n14,0,0,1\n";
+    assert!((measured(later, 11) - &plain).amax() < 1e-12 * plain.amax());
+    fs::write(at.join("p.csv"), later).unwrap();
+    fs::write(at.join("s.csv"), springs(10)).unwrap();
+    refused(at, &["measure", "s.csv", "--points", "p.csv", "--hull"], "the number of a point in p.csv, found 10");
+    fs::write(at.join("p.csv"), later.replace("12,", "11,")).unwrap();
+    refused(
+        at,
+        &["measure", "s.csv", "--points", "p.csv", "--hull"],
+        "a number of its own, found 11, which line 2 has as well",
+    );
+}
+
+/// The thickness, the mean of one that varies, and the settings of an engine go with the network into its files.
+#[test]
+fn files_keep_the_thickness_and_the_engine() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let scene = |thickness: &str, more: &str| {
+        format!(
+            "mesh = {{ box = {{ element = \"tri3\", size = [40, 20], cells = [4, 3] }}, scale = \"mm\" }}\n\
+             material = {{ young = 2e4, poisson = 0.3, plane = \"strain\", thickness = {thickness}, density = 1100 }}\n\
+             fit = [{{ name = \"net\", {more} }}]\nfix = [{{ group = \"xmin\" }}]\n"
+        )
+    };
+    let run = |text: &str| {
+        fs::write(at.join("s.toml"), text).unwrap();
+        prints(at, &["run", "s.toml", "--out", "out"]);
+        prints(at, &["export", "out/net.json", "--to", "npz", "--out", "arrays", "--gravity", "0 0"]);
+    };
+    let json_of = |arguments: &[&str]| -> serde_json::Value { serde_json::from_str(&prints(at, arguments)).unwrap() };
+    for (thickness, mean) in [("\"3 mm\"", 0.003), ("\"0.003*(1 + 10*x)\"", 0.0036)] {
+        run(&scene(thickness, "objective = \"exact\""));
+        for file in ["out/net.json", "arrays/network.npz"] {
+            let found = json_of(&["measure", file, "--json"]);
+            let number = |value: &serde_json::Value| value.as_f64().unwrap();
+            assert!((number(&found["affine"]["young"]) / 2e4 - 1.0).abs() < 1e-9, "{file}: {}", found["affine"]);
+            assert!(
+                (number(&found["affine"]["poisson"]) - 0.3).abs() < 1e-9
+                    && (number(&found["density"]) / 1100.0 - 1.0).abs() < 1e-9
+            );
+            assert!((number(&found["volume"]) / (0.0008 * mean) - 1.0).abs() < 1e-9, "{file}");
+        }
+        let notes = json_of(&["measure", "out/net.json", "--json"])["notes_of_file"].to_string();
+        assert_eq!(notes.contains("the thickness differs from cell to cell"), mean > 0.003, "{notes}");
+    }
+    run(&scene(
+        "\"3 mm\"",
+        "objective = \"offdiag\", nonnegative = true, engine = { method = \"xpbd\", substeps = 10 }",
+    ));
+    for file in ["out/net.json", "arrays/network.npz"] {
+        let notes = json_of(&["measure", file, "--json"])["notes"].to_string();
+        assert!(notes.contains("the constants belong to"), "{file}: {notes}");
+    }
+    // A table says no thickness.
+    fs::write(at.join("p.csv"), "x,y\n0,0\n1,0\n0,1\n").unwrap();
+    fs::write(at.join("s.csv"), "i,j,k\n0,1,1\n1,2,1\n0,2,1\n").unwrap();
+    let notes = json_of(&["measure", "s.csv", "--points", "p.csv", "--hull", "--json"])["notes"].to_string();
+    assert!(notes.contains("no thickness is known"), "{notes}");
+}
+
 /// A face-centred lattice in a periodic box of LAMMPS, whose bonds cross the box: the tensor of the crystal, by the file alone.
 #[test]
 fn a_periodic_box_is_homogenised() {
@@ -231,10 +370,52 @@ fn a_periodic_box_is_homogenised() {
     // Taken as a body, it is not said that no bond crosses the box.
     let body = SpecimenOptions { is_periodic: Some(false), ..SpecimenOptions::default() };
     let notes = read_specimen(&path, &body).unwrap().notes;
-    assert_eq!(notes, ["bonds cross the box of the file, with which the network does not repeat itself"]);
+    assert_eq!(notes[1..], ["bonds cross the box of the file, with which the network does not repeat itself"]);
     // As a body the same bonds would cross it: a cell of one lattice spacing leaves two images equally near.
     let small = SpecimenOptions { cell: Some(DMatrix::identity(3, 3) * 2.0), ..SpecimenOptions::default() };
     assert!(read_specimen(&path, &small).is_err());
+}
+
+/// The area of the hull of points that are far from the origin.
+#[test]
+fn hulls_may_be_far_from_the_origin() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    fs::write(at.join("s.csv"), "i,j,k\n0,1,1\n1,2,1\n2,3,1\n3,0,1\n0,2,1\n").unwrap();
+    let corners = [[0.0, 0.0], [0.01, 0.0], [0.01, 0.005], [0.0, 0.005]];
+    let row = |[x, y]: [f64; 2]| format!("{},{}\n", 1234567.875 + x, 1234567.875 + y);
+    fs::write(at.join("p.csv"), "x,y\n".to_string() + &corners.map(row).concat()).unwrap();
+    let text = prints(at, &["measure", "s.csv", "--points", "p.csv", "--hull", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert!((found["volume"].as_f64().unwrap() / 5e-5 - 1.0).abs() < 1e-6, "{}", found["volume"]);
+}
+
+/// A lattice whose cells give way together is not stable, one point that repeats itself has no step, and a piece has the volume of its cells.
+#[test]
+fn lattices_are_judged_as_a_whole() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let text = prints(at, &["measure", "--lattice", "fcc", "--density", "1000"]);
+    assert!(!text.contains("longest stable"), "{text}");
+    let negative = prints(at, &["measure", "--lattice", "fcc", "--constants", "-1"]);
+    assert!(
+        negative.contains("unstable: 6 uniform strains release energy") && !negative.contains("stable: every"),
+        "{negative}"
+    );
+    let cubic = prints(at, &["measure", "--lattice", "cubic"]);
+    assert!(
+        cubic.contains("not stiff: 3 uniform strains meet no resistance") && !cubic.contains("stable: every"),
+        "{cubic}"
+    );
+    let piece = prints(
+        at,
+        &["measure", "--lattice", "fcc", "--cells", "4,4,4", "--spacing", "2mm", "-o", "fcc.json", "--json"],
+    );
+    let piece: serde_json::Value = serde_json::from_str(&piece).unwrap();
+    // A cell has one point: a quarter of the cube.
+    let volume = 64.0 * 2e-3f64.powi(3) / 4.0;
+    assert!((piece["volume"].as_f64().unwrap() / volume - 1.0).abs() < 1e-12, "{piece}");
+    assert!(at.join("fcc.json").exists());
 }
 
 /// A flex whose edges are springs, and one of finite elements, which has its material in the file.
@@ -401,6 +582,8 @@ fn a_matrix_is_proved_before_it_is_fitted() {
     let mut odd = r.clone();
     odd[(2, 3)] = f64::NAN;
     assert_eq!(key(odd, x.clone()), "matrix[2][3]");
+    // The tangent of a solver whose sign is turned round.
+    assert_eq!(key(-r.clone(), x.clone()), "matrix");
     // Two hexahedra on each other, whose middle points are condensed, are a superelement: R_kk − R_kc R_cc⁻¹ R_ck.
     let kept: Vec<usize> = (0..12).collect();
     let own = condense(&r, &kept).unwrap();

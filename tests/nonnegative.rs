@@ -327,3 +327,24 @@ fn the_nearest_network_is_the_material() {
         assert!(found.distance < 0.05 && (found.young.unwrap() / 1e4 - 1.0).abs() < 0.1, "{volume}: {found:?}");
     }
 }
+
+/// A sheet in a coordinate plane has equations without coefficients: those of the direction across it.
+#[test]
+fn a_sheet_in_a_coordinate_plane_has_a_nearest_network() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let place = |i: usize, j: usize| {
+        let shift = |seed: usize| 0.2 * ((seed * 37 % 11) as f64 / 11.0 - 0.5);
+        [i as f64 + shift(i + 5 * j), j as f64 + shift(2 * i + 7 * j + 3)]
+    };
+    let points: String = (0..25).map(|p| place(p % 5, p / 5)).map(|[x, z]| format!("v {x} 0 {z}\n")).collect();
+    let quad = |c: usize| (c % 4 + 5 * (c / 4) + 1, c % 4 + 5 * (c / 4) + 2);
+    let cells: String =
+        (0..16).map(quad).map(|(a, b)| format!("f {a} {b} {}\nf {a} {} {}\n", b + 5, b + 5, a + 5)).collect();
+    std::fs::write(folder.path().join("sheet.obj"), points + &cells).unwrap();
+    let text = "[mesh]\nfile = \"sheet.obj\"\n[material]\nyoung = 1e4\npoisson = 0.3\nthickness = 0.01\n[[fit]]\nobjective = \"exact\"\n\
+                nonnegative = true\n";
+    let scene = Scene::parse(text, &folder.path().join("scene.toml")).unwrap();
+    let found = run(&scene, &mut |_| {}).unwrap().fits.remove(0);
+    assert!(found.network.lengths.iter().all(|spring| spring.constant >= 0.0 && spring.constant.is_finite()));
+    assert!(found.network.lengths.iter().any(|spring| spring.constant > 0.0));
+}

@@ -262,3 +262,19 @@ fn forces_without_bounds_are_told() {
     assert!(notes.iter().any(|note| note.contains("no finite force at shapes that are held out")), "{notes:?}");
     assert!(report::tables(&outcome).split_whitespace().all(|word| word != "inf" && word != "NaN"));
 }
+
+/// Springs whose rest lengths are fitted to forces need not balance where the element is at rest.
+#[test]
+fn a_network_that_is_not_at_rest_is_told_first() {
+    let folder = TempDir::new().unwrap();
+    let fit = |force: &str| {
+        format!(
+            "{BODY}[[fit]]\nname = \"net\"\nobjective = \"sampled\"\nsprings = [\"edge\"]\nforce = \"{force}\"\n\
+             shapes = {{ count = 60, stretch = [0.0, 0.4] }}\n"
+        )
+    };
+    let notes = |force: &str| report::notes(&ran(folder.path(), &fit(force)).unwrap());
+    let told = notes("free-rest");
+    assert!(told.iter().any(|note| note.starts_with("net: the network is not at rest in the mesh")), "{told:?}");
+    assert!(!notes("linear").iter().any(|note| note.contains("is not at rest")));
+}

@@ -83,6 +83,8 @@ fn ranges_have_their_ends_units_and_spacings() {
         ("{ from = 2, to = 9, step = 3 }", json!([2, 5, 8])),
         ("{ from = 0, to = 0.3, step = 0.1 }", json!([0.0, 0.1, 0.2, 0.30000000000000004])),
         ("{ from = 3, to = 1, step = -1 }", json!([3, 2, 1])),
+        // Both ends are far from zero beside the step.
+        ("{ from = 100, to = 100.3, step = 0.1 }", json!([100.0, 100.1, 100.2, 100.3])),
         ("{ from = 5, to = 7, count = 1 }", json!([5.0])),
     ] {
         let found = values(&format!("[sweep.over]\n\"material.young\" = {range}\n"));

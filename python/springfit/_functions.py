@@ -134,6 +134,10 @@ def _unmasked(key: str, function: Callable) -> Callable:
     return lambda *given: array(key, function(*given))
 
 
+#: Energies in single precision are as far from invariant.
+_TURNED = 1e-4
+
+
 def warn_of_rest(material: MaterialLike, energy: Callable | None, stress: Callable | None) -> None:
     """Warns where the stiffness of an energy at rest is not that of the material. What a function does wrong is left to the fit."""
     if not isinstance(material, Material) or not (isinstance(material.young, float) and isinstance(material.poisson, float)):
@@ -161,3 +165,28 @@ def warn_of_rest(material: MaterialLike, energy: Callable | None, stress: Callab
         apart = float(np.max(np.abs(found / known - 1)))
     if apart > _TOLD:
         warn(f"the stiffness of the energy at rest differs by up to {100 * apart:.0f} % from that of the material")
+
+
+def warn_of_turns(energy: Callable | None, stress: Callable | None) -> None:
+    """Warns where a rotation changes an energy, W(QF) = W(F), or a stress is not that of one: P Fᵀ is symmetric. What a function does wrong is left
+    to the fit."""
+    random = np.random.default_rng(1)
+    f = np.eye(3) + random.uniform(-0.2, 0.2, (6, 3, 3))
+    q = np.linalg.qr(random.normal(size=f.shape))[0]
+    q *= np.linalg.det(q)[:, None, None]
+    try:
+        if energy is not None:
+            # Without a shape at rest an energy might be a constant beside which a change is rounding.
+            w = np.asarray(energy(np.concatenate([f, q @ f, np.eye(3)[None]])), np.float64)
+            size, apart = np.max(np.abs(w[:6] - w[-1])), np.max(np.abs(w[6:12] - w[:6]))
+            words = "the energy is not that of a body: a rotation changes it, by {:.1f} % of the largest (W(QF) = W(F) does not hold)"
+        elif stress is not None:
+            kirchhoff = np.asarray(stress(f), np.float64) @ f.transpose(0, 2, 1)
+            size, apart = np.max(np.abs(kirchhoff)), np.max(np.abs(kirchhoff - kirchhoff.transpose(0, 2, 1)))
+            words = "the stress is not the first Piola-Kirchhoff stress of a body: P Fᵀ is not symmetric, by {:.1f} % of the largest"
+        else:
+            return
+    except Exception:  # of the user, who hears of it from the fit
+        return
+    if apart > _TURNED * size:
+        warn(words.format(100 * apart / size))

@@ -51,8 +51,14 @@ def state(net: "Network") -> "tuple[Any, ...]":
             "statistics": net._core.statistics(False),
             "sampled": net._core.sampled,
         }
-    masses, points = net.masses, None if net.mesh is not None else net.points
+    masses, points = net.masses, None if net.mesh is not None and not _has_loose_points(net.mesh) else net.points
     return points, net.springs, net.constants, net.rest, net.contents, masses, net.mesh, facts, net._core.facts
+
+
+def _has_loose_points(mesh: Any) -> bool:
+    # A mesh that is read has no points without cells, such as directors of sheets.
+    used = np.unique(np.concatenate([np.ravel(cells) for cells in mesh.cells.values()])) if mesh.cells else np.zeros(0)
+    return len(used) < len(mesh.points)
 
 
 def restored(
@@ -61,8 +67,12 @@ def restored(
     """The network of a pickle."""
     from .springs import Network
 
-    points = mesh.points if points is None else points
-    net = Network._given(points, springs, constants, rest=rest, contents=contents, masses=masses, mesh=mesh, known=known)
+    arrays = {"rest": rest, "contents": contents, "masses": masses, "known": known}
+    if points is None:
+        net = Network._given(mesh.points, springs, constants, mesh=mesh, **arrays)
+    else:
+        net = Network._given(points, springs, constants, **arrays)
+        net._mesh = mesh
     net._facts = facts
     return net
 

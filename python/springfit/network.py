@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import failure, number, shown, warn
-from ._functions import separated, warn_of_rest
+from ._functions import separated, warn_of_rest, warn_of_turns
 from ._progress import listener
 from ._sparse import csr
 from ._supports import held_flags
@@ -60,6 +60,10 @@ def fit(
     entry, functions = separated(entry)
     if functions is not None and functions["energy"] is not None:
         warn_of_rest(material, *functions["energy"][1:])
+        warn_of_turns(*functions["energy"][1:])
+    law = material.law if isinstance(material, Material) else None
+    if objective == "exact" and law is not None and "energy" not in keys:
+        warn(f'the law "{law}" of a material is that of scenes: this network has its usual energy at large deformation, or that of the key "energy"')
     with listener(progress) as told:
         found = _core.fit(mesh._core, material, entry, held, told, functions)
     unreached = (found.statistics(False) or {}).get("unreached_cells", 0)

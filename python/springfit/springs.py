@@ -56,6 +56,9 @@ class Network:
         SpringfitError: An array has a wrong shape or type, or a place is not that of a point.
     """
 
+    #: What is known beside arrays, as the core writes it.
+    _known: "str | None" = None
+
     def __init__(
         self,
         points: Any,
@@ -96,14 +99,15 @@ class Network:
         # What is known beside the arrays, as the core writes it.
         net = cls.__new__(cls)
         net._known = known
-        net.__init__(*arrays, **keys)  # type: ignore[misc]
+        cls.__init__(net, *arrays, **keys)
         return net
 
     @classmethod
     def load(cls, path: "str | os.PathLike[str]", *, elements: "Sequence[ElementLike]" = ()) -> "Network":
         """The network of a ``.json`` or ``.npz`` file of :meth:`save`, ``springfit run`` or ``springfit fit``.
 
-        It has its points, springs, masses and, where their elements are known, its cells as :attr:`mesh`; supports and loads of a scene are left out.
+        It has its points, springs, masses and, where their elements are known, its cells as :attr:`mesh`. The thickness, the settings of an engine and,
+        of a ``.json`` file, supports, loads, damping and relaxation are not seen here, and are in the files that :meth:`save` and :meth:`export` write.
 
         Args:
             elements: Element files, or elements, of cells that are not shipped.
@@ -140,7 +144,7 @@ class Network:
     def with_constants(
         self, constants: Any = None, *, rest: Any = None, contents: "Sequence[Any] | None" = None
     ) -> "Network":
-        """The same springs with other numbers, such as those of a calibration elsewhere.
+        """The same springs with other numbers, such as those of a calibration elsewhere. All else that is known of the network stays.
 
         Args:
             constants: Of the springs between two points, N/m, shape (springs,); as they are if None.

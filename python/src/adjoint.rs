@@ -14,6 +14,7 @@ use springfit::element::SpringKind;
 use springfit::error::{Error, Result};
 use springfit::mesh::Mesh;
 use springfit::model::{self, CompressedRows, Elastic, Entries, LengthSpring, MeasureSpring, NetworkNumbers, Support};
+use springfit::report::NetworkFacts;
 use springfit::solve::System;
 use springfit::springs::Measure;
 use std::sync::Arc;
@@ -157,7 +158,7 @@ impl SpringBody {
 
     fn body(&self, points: Vec<f64>, network: model::Network) -> Body {
         let mesh = Arc::new(Mesh::of_cells(self.dimension, points, Vec::new()));
-        Body::given(GivenBody { mesh, network, masses: None }, false)
+        Body::given(GivenBody { mesh, network, masses: None, facts: NetworkFacts::default() }, false)
     }
 
     fn support(&self, py: Python, held: &PyReadonlyArray2<bool>, u: Option<Vec<f64>>) -> PyResult<Support> {

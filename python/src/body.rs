@@ -108,7 +108,7 @@ impl Body {
 
     pub fn masses(&self) -> Option<&[f64]> {
         match &self.source {
-            Source::Fitted(outcome) => outcome.masses.as_deref(),
+            Source::Fitted(outcome) => NetworkFile::of(outcome, &outcome.fits[0]).masses(),
             Source::Given(given) => given.masses.as_deref(),
         }
     }

@@ -60,14 +60,18 @@ pub fn fit(
     let work = move |told: &mut dyn FnMut(Event)| {
         let (body, map, named) = posed(&mesh, &entry, &stated, functions.as_ref())?;
         let controls = Controls::default();
+        let masses = map.density().map(|density| point_masses(&body, density, &map)).transpose()?;
         let whole = match (named.recipe.whole(), &support) {
-            (Some(_), Some(support)) => Some(WholeBody::new(&body, &map, support, &controls)),
+            (Some(_), Some(support)) => {
+                let mut whole = WholeBody::new(&body, &map, support, &controls);
+                whole.masses = masses.as_ref().map(|masses| &masses.values[..]);
+                Some(whole)
+            }
             (Some(_), None) => return Err(Error::expected("fix", "what is held, for whole-object fits", "nothing")),
             (None, _) => None,
         };
         let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
         let (fit, cells) = fit_without_errors(&body, &map, &reference, &named, told)?;
-        let masses = map.density().map(|density| point_masses(&body, density, &map)).transpose()?;
         let assumed = stated.assumption(&body);
         let outcome = Outcome::of_fit(String::new(), body.into_owned(), map, masses, fit);
         Ok((Outcome { assumed, ..outcome }, cells))

@@ -27,7 +27,7 @@ use springfit::export::{target_named, with_warnings, write_files};
 use springfit::fit::{CellFits, Spread};
 use springfit::mesh;
 use springfit::model::Elastic;
-use springfit::report::{self, NetworkFacts, NetworkFormat, read_network};
+use springfit::report::{self, NetworkFormat, read_network};
 use springfit::study::{Outcome, matrix_errors};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -122,8 +122,7 @@ impl Network {
             let has_cells = mesh.is_some();
             let bare = || mesh::Mesh::of_cells(record.dimension, record.points.concat(), Vec::new());
             let mesh = Arc::new(mesh.unwrap_or_else(bare));
-            let known =
-                NetworkFacts { material: record.provenance.material, plane: record.plane, engine: record.engine };
+            let known = record.facts();
             let fit = record.provenance.fit;
             let facts = (fit.as_ref().map(|fit| fit.name.clone()), fit.map(|fit| fit.status), record.notes);
             Ok((GivenBody { mesh, network, masses: record.masses, facts: known }, has_cells, facts))

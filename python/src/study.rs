@@ -59,9 +59,9 @@ impl Ran {
         let Some(own) = self.outcome.fits.get(fit) else {
             return Err(invalid(py, "fit", &format!("a place below {}", self.outcome.fits.len()), fit));
         };
-        let Outcome { mesh, material, masses, lumping, source, .. } = &*self.outcome;
-        let fit = Outcome::of_fit(source.clone(), mesh.clone(), material, None, own.clone());
-        Ok(Network::new(Outcome { masses: masses.clone(), lumping: *lumping, ..fit }, Vec::new(), false))
+        // All that the files of the run have: masses, supports, loads and the motion.
+        let outcome = Outcome { fits: vec![own.clone()], ..Outcome::clone(&self.outcome) };
+        Ok(Network::new(outcome, Vec::new(), false))
     }
 }
 

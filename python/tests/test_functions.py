@@ -362,3 +362,32 @@ def test_functions_that_use_what_is_asked_at_once_are_asked_for_one_spring():
     known = sf.sampled(box(), MATERIAL, "neo-hookean", force="k*s", springs=["edge"], shapes=SHAPES)
     same(net, known, 1e-9)
     assert len(sf.sampled(box(), MATERIAL, "neo-hookean", force=mixed, springs=["edge"], shapes=SHAPES)) == len(net)
+
+
+def test_energies_and_stresses_that_a_rotation_changes_are_told():
+    def small(f):
+        strain = (f + f.transpose(0, 2, 1)) / 2 - np.eye(3)
+        trace = np.trace(strain, axis1=1, axis2=2)
+        lam, mu = 1e4 * 0.3 / (1.3 * 0.4), 1e4 / 2.6
+        return mu * (strain**2).sum((1, 2)) + lam / 2 * trace**2
+
+    with pytest.warns(UserWarning, match="a rotation changes it"):
+        sf.sampled(box(), sf.Material(1e4, 0.3), small, springs=["edge"], shapes={"count": 20})
+    with pytest.warns(UserWarning, match="is not symmetric"):
+        turned = lambda f: stress(f).transpose(0, 2, 1)  # noqa: E731
+        sf.sampled(box(), sf.Material(1e4, 0.3), stress=turned, springs=["edge"], shapes={"count": 20})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sf.sampled(box(), sf.Material(1e4, 0.3), energy, springs=["edge"], shapes={"count": 20})
+        sf.sampled(box(), sf.Material(1e4, 0.3), stress=stress, springs=["edge"], shapes={"count": 20})
+
+
+def test_an_exact_network_tells_that_it_does_not_take_the_law_of_scenes():
+    with pytest.warns(UserWarning, match="yeoh"):
+        sf.fit(box(), sf.Material(1e4, 0.3, law="yeoh"), "exact")
+
+
+def test_shapes_without_forces_are_the_fault_of_the_shapes():
+    rest = lambda n, random: np.tile(np.eye(3), (n, 1, 1))  # noqa: E731
+    with pytest.raises(sf.SpringfitError, match="shapes: expected shapes that deform"):
+        sf.sampled(box(), sf.Material(1e4, 0.3), "neo-hookean", springs=["edge"], shapes={"sampler": rest, "count": 20, "perturbation": 0})

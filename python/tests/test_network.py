@@ -1,5 +1,8 @@
 """Networks: their arrays are the energy, its slope and its curvature."""
 
+import json
+import pickle
+
 import numpy as np
 import pytest
 
@@ -217,3 +220,81 @@ def test_a_word_stands_for_groups_as_in_scenes():
     assert np.array_equal(word.constants, listed.constants) and len(word.constants) > 0
     with pytest.raises(sf.SpringfitError, match="springs"):
         sf.fit(mesh, sf.Material(1e4, 0.3), "frobenius", springs=3)
+
+
+def ways(net, folder):
+    """The same network, by each way out of and into Python."""
+    net.save(folder / "n.json")
+    yield "json", sf.Network.load(folder / "n.json")
+    yield "pickle", pickle.loads(pickle.dumps(net))
+    yield "constants", net.with_constants(net.constants)
+    if all(group["kind"] in ("area", "volume", "bulk") for group in net.contents):
+        net.save(folder / "n.npz")
+        yield "npz", sf.Network.load(folder / "n.npz")
+
+
+def test_plane_networks_keep_their_thickness(tmp_path):
+    mesh = sf.Mesh.box("tri3", size=[0.04, 0.02], cells=[4, 2])
+    net = sf.fit(mesh, sf.Material(2e4, 0.3, plane="strain", thickness=0.003, density=1100))
+    for way, other in ways(net, tmp_path):
+        found = sf.measure(other)
+        assert found.affine.young == pytest.approx(2e4, rel=1e-9), way
+        assert found.affine.poisson == pytest.approx(0.3, rel=1e-9), way
+        assert found.density == pytest.approx(1100, rel=1e-9), way
+        other.save(tmp_path / "again.json")
+        assert sf.measure(tmp_path / "again.json").affine.young == pytest.approx(2e4, rel=1e-9), way
+
+
+def test_networks_of_engines_stay_those_of_their_engine(tmp_path):
+    mesh = sf.Mesh.box("tet4", size=[0.04, 0.02, 0.02], cells=[4, 2, 2])
+    fit = {"name": "e", "objective": "offdiag", "nonnegative": True, "engine": {"method": "xpbd", "substeps": 10}}
+    scene = {"mesh": mesh, "material": {"young": 2e4, "poisson": 0.3, "density": 1100}, "fit": [fit], "fix": [{"group": "xmin"}]}
+    net = sf.run(scene | {"load": [{"name": "a", "group": "xmax", "traction": [0, 0, 1]}]}).networks["e"]
+    for way, other in ways(net, tmp_path):
+        with pytest.raises(sf.SpringfitError, match="engine"):
+            other.export("lammps", tmp_path / way, gravity=[0, 0, 0])
+
+
+def test_networks_of_runs_keep_damping_supports_and_fitted_masses(tmp_path):
+    mesh = sf.Mesh.box("tet4", size=[0.04, 0.02, 0.02], cells=[4, 2, 2])
+    scene = {
+        "mesh": mesh,
+        "material": {"young": 2e4, "poisson": 0.3, "density": 1100},
+        "fit": [{"name": "e", "objective": "offdiag", "nonnegative": True}],
+        "fix": [{"group": "xmin"}],
+        "load": [{"name": "a", "group": "xmax", "traction": [0, 0, 1]}],
+        "motion": {"duration": 1e-3, "step": 1e-5, "damping": {"rayleigh": [0.5, 0.0]}},
+    }
+    report = sf.run(scene, out=tmp_path / "out")
+    written = json.loads((tmp_path / "out" / "e.json").read_text())
+    assert written["damping"]["mass"] == 0.5 and written["held"]
+    for way, other in ways(report.networks["e"], tmp_path):
+        other.save(tmp_path / "again.json")
+        again = json.loads((tmp_path / "again.json").read_text())
+        keys = ("damping", "motion", "held", "loads", "gravity") if way != "npz" else ()
+        assert all(again[key] == written[key] for key in keys), way
+    # Fitted masses are those of the file, not the row sums of the mesh.
+    whole = {"name": "w", "objective": "whole", "masses": 2, "loads": ["a"]}
+    del scene["motion"]
+    report = sf.run(scene | {"fit": [whole]}, out=tmp_path / "whole")
+    written = json.loads((tmp_path / "whole" / "w.json").read_text())
+    assert report.networks["w"].masses == pytest.approx(written["masses"], rel=1e-15)
+    plain = sf.fit(mesh, sf.Material(2e4, 0.3, density=1100)).masses
+    assert np.abs(report.networks["w"].masses - plain).max() > 1e-3 * plain.max()
+    # Outside of a scene they are fitted as well.
+    alone = sf.whole(mesh, sf.Material(2e4, 0.3, density=1100), "xmin", masses=2)
+    assert alone.masses.sum() == pytest.approx(plain.sum(), rel=1e-6)
+
+
+def test_sheets_that_bend_are_pickled():
+    scene = {
+        "mesh": {"box": {"element": "tri3", "size": [0.04, 0.02], "cells": [4, 2]}, "space": 3},
+        "material": {"young": 1e6, "poisson": 0.3, "density": 1000, "thickness": 0.001, "bending": "plate"},
+        "fit": [{"objective": "offdiag", "bending": "hinges", "name": "h"}, {"objective": "exact", "name": "d"}],
+        "fix": [{"group": "xmin"}],
+    }
+    for net in sf.run(scene).networks.values():
+        again = pickle.loads(pickle.dumps(net))
+        assert len(again) == len(net) and again.points.shape == net.points.shape
+        moved = net.points + 1e-3 * np.sin(7 * net.points[:, [1, 2, 0]])
+        assert again.energy(moved[None]) == pytest.approx(net.energy(moved[None]), rel=1e-12)

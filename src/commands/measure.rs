@@ -167,6 +167,16 @@ impl Measure {
         read_specimen(path, &options)
     }
 
+    /// The volume of a piece of a lattice, that of its cells, m³ or m².
+    fn piece_volume(&self) -> Result<Option<f64>> {
+        let (Some(name), false) = (&self.lattice, self.cells.is_empty()) else { return Ok(None) };
+        let lattice = NamedLattice::named(name).map_err(|e| e.at_key("--lattice"))?;
+        let spacing = self.length("--spacing", &self.spacing)?.unwrap_or(1.0);
+        let d = lattice.dimension();
+        let count: usize = if let [all] = self.cells[..] { all.pow(d as u32) } else { self.cells.iter().product() };
+        Ok(Some(count as f64 * lattice.content(spacing)))
+    }
+
     fn length(&self, key: &str, text: &Option<String>) -> Result<Option<f64>> {
         text.as_deref().map(|text| Quantity::Length.parse(text).map_err(|e| e.under(key))).transpose()
     }
@@ -201,7 +211,7 @@ impl Measure {
             None => file.engine,
         };
         Ok(MeasureOptions {
-            volume: self.volume,
+            volume: self.volume.or(self.piece_volume()?.filter(|_| !self.hull)),
             hull: self.hull,
             point_volumes: None,
             state: state.filter(|_| d == 2),

@@ -260,7 +260,8 @@ impl<'a> Job<'a> {
             }
         }
         let largest = sums.values().map(|sum| sum[1]).fold(0.0, f64::max);
-        match sums.iter().find(|(_, sum)| !(sum[0].abs() <= BALANCED * largest)) {
+        // The first of them by its points: a map has no order.
+        match sums.iter().filter(|(_, sum)| !(sum[0].abs() <= BALANCED * largest)).min_by_key(|(edge, _)| **edge) {
             None => Ok(()),
             Some((edge, _)) => {
                 let expected =

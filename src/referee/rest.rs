@@ -3,7 +3,7 @@
 use super::session::Session;
 use crate::error::Result;
 
-/// After the time T the slowest oscillation has fallen to `exp(−ω T)`: 6e-6.
+/// After the time T the slowest oscillation, which is damped critically, has fallen to `(1 + ω T) exp(−ω T)`: 8e-5.
 const DECAYS: f64 = 12.0;
 /// A body is still if nothing has moved by more than this, of the largest displacement, in the last fifth of the time.
 pub const STILL: f64 = 3e-4;

@@ -128,10 +128,22 @@ fn stability(measured: &MeasuredNetwork) -> String {
         (n, 0) => format!("unstable: {least}{} energy; {rigid}", releases(n)),
         (n, m) => format!("unstable: {least}{} energy, and {} no resistance; {rigid}", releases(n), nothing(m)),
     };
-    match measured.relaxed.as_ref().unwrap_or(&measured.affine).soft_strains {
-        0 => verdict,
-        n => {
-            format!("{verdict}\nnot stiff: {} no resistance", count(n, "uniform strain meets", "uniform strains meet"))
-        }
+    let material = measured.relaxed.as_ref().unwrap_or(&measured.affine);
+    let values = material.matrix().symmetric_eigenvalues();
+    // What is below the rounding of the largest is zero.
+    let releasing = values.iter().filter(|value| **value < -ROUNDING * values.amax()).count();
+    let nothing = material.soft_strains.saturating_sub(releasing);
+    let strains = |n: usize, one: &str, more: &str| {
+        count(n, &format!("uniform strain {one}"), &format!("uniform strains {more}"))
+    };
+    // A network whose cells give way together is not stable, whatever each of them does.
+    let verdict = if material.soft_strains > 0 { verdict.trim_start_matches("stable: ") } else { &verdict };
+    let mut lines = vec![verdict.to_string()];
+    if releasing > 0 {
+        lines.push(format!("unstable: {} energy", strains(releasing, "releases", "release")));
     }
+    if nothing > 0 {
+        lines.push(format!("not stiff: {} no resistance", strains(nothing, "meets", "meet")));
+    }
+    lines.join("\n")
 }

@@ -8,7 +8,7 @@ impl Random {
         Random(seed)
     }
 
-    /// Between 0 and 1, neither of them.
+    /// Above 0 and at most 1.
     fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

@@ -63,7 +63,22 @@ impl<'a> NetworkFile<'a> {
     /// What is known beside points and springs.
     pub fn facts(&self) -> NetworkFacts {
         let Some((outcome, fit)) = self.study else { return self.own_facts.cloned().unwrap_or_default() };
-        NetworkFacts { material: material(outcome), plane: plane(outcome), engine: fit.fit.engine }
+        let motion = outcome.motion.as_ref();
+        // The gravity of the motion goes first, then that of the first load that has one.
+        let of_motion = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
+        let of_loads = || outcome.loads.iter().find_map(|load| load.gravity.as_ref());
+        let d = self.mesh.dimension;
+        NetworkFacts {
+            material: material(outcome),
+            plane: plane(outcome),
+            engine: fit.fit.engine,
+            held: held(&self.support(), d),
+            loads: outcome.loads.iter().map(|load| nodal_load(load, d)).collect(),
+            gravity: of_motion.or_else(of_loads).cloned(),
+            damping: damping(motion),
+            motion: motion.map(drive),
+            dampers: self.dampers(),
+        }
     }
 
     /// The masses that were fitted, or those of the motion, or of the density, `[points]`, kg.
@@ -79,7 +94,12 @@ impl<'a> NetworkFile<'a> {
 
     pub(super) fn support(&self) -> Support {
         let given = self.study.and_then(|(outcome, _)| outcome.support.clone());
-        given.unwrap_or_else(|| Support::free(self.mesh))
+        let mut support = given.unwrap_or_else(|| Support::free(self.mesh));
+        let d = self.mesh.dimension;
+        for held in self.own_facts.iter().flat_map(|facts| &facts.held) {
+            support.prescribed[held.point * d..][..d].copy_from_slice(&held.displacement);
+        }
+        support
     }
 
     /// What a reader must know of the fit.
@@ -95,16 +115,10 @@ impl<'a> NetworkFile<'a> {
     /// The record whose cells and springs are made while they are written.
     pub(super) fn listed(&self) -> ListedRecord<'a> {
         let springs = self.study.map_or(&[][..], |(_, fit)| &fit.springs);
-        let lists = Lists::of(self.mesh, self.network, springs, self.dampers());
-        let (mesh, support) = (self.mesh, self.support());
-        let d = mesh.dimension;
-        let outcome = self.study.map(|(outcome, _)| outcome);
-        let motion = outcome.and_then(|outcome| outcome.motion.as_ref());
-        // The gravity of the motion goes first, then that of the first load that has one.
-        let of_motion = motion.map(|motion| &motion.recipe.gravity).filter(|gravity| !gravity.is_empty());
-        let of_loads = || outcome?.loads.iter().find_map(|load| load.gravity.as_ref());
-        let gravity = of_motion.or_else(of_loads);
         let facts = self.facts();
+        let lists = Lists::of(self.mesh, self.network, springs, facts.dampers);
+        let mesh = self.mesh;
+        let d = mesh.dimension;
         NetworkRecord {
             format: FORMAT.into(),
             version: NETWORK_VERSION,
@@ -117,12 +131,12 @@ impl<'a> NetworkFile<'a> {
             masses: self.masses().map(<[f64]>::to_vec),
             cells: lists.cells,
             surface: mesh.surface_triangles(),
-            held: held(&support, d),
-            loads: outcome.map_or(Vec::new(), |outcome| outcome.loads.iter().map(|load| nodal_load(load, d)).collect()),
-            gravity: gravity.cloned(),
-            damping: damping(motion),
-            motion: motion.map(drive),
-            largest_step: self.largest_step(&support),
+            held: facts.held,
+            loads: facts.loads,
+            gravity: facts.gravity,
+            damping: facts.damping,
+            motion: facts.motion,
+            largest_step: self.longest_step(),
             engine: facts.engine,
             plane: facts.plane,
             groups: lists.groups,

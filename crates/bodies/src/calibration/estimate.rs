@@ -179,7 +179,10 @@ fn search(
             let step = damped(&columns, &residuals, damping);
             let largest = step.iter().fold(0.0, |a: f64, s| a.max(s.abs()));
             if largest < settled {
-                fault = None;
+                // A step that damping alone has made small says nothing of the optimum.
+                if damping == 0.0 {
+                    fault = None;
+                }
                 break;
             }
             let length = (LARGEST / largest).min(1.0);

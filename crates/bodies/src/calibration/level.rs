@@ -124,7 +124,8 @@ impl<'a> Level<'a> {
                 continue;
             }
             let at = Point { unknowns, materials: &materials, theta, equations };
-            if theta.len() <= FORWARD {
+            // The forces of cells by which the other way goes are those of small deformation.
+            if theta.len() <= FORWARD || self.large.is_some() {
                 self.forward(&at, displacements, (observations, &own, &place), &mut columns)?;
             } else {
                 self.adjoint(&at, displacements, (observations, &own, &place), &mut columns)?;
@@ -227,7 +228,9 @@ impl<'a> Level<'a> {
                     theta[p] += step;
                     let materials = at.unknowns.materials(&self.mesh, &self.materials, &self.owners, &theta)?;
                     let laws = laws(&self.mesh, &materials)?;
-                    Body::new(&self.mesh, &laws).forces(&displaced(&self.mesh.points, &displacements[0]), force);
+                    if !Body::new(&self.mesh, &laws).forces(&displaced(&self.mesh.points, &displacements[0]), force) {
+                        return Err(Error::expected("load", "an equilibrium", "none"));
+                    }
                 }
                 let [more, less] = beside;
                 own[0] = more.iter().zip(&less).map(|(a, b)| (a - b) / (2.0 * STEP)).collect();

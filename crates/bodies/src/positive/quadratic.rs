@@ -64,11 +64,15 @@ impl Quadratic {
         self.places[range.clone()].iter().copied().zip(self.values[range].iter().copied())
     }
 
-    /// Divides the rows of A by their norms.
+    /// Divides the rows of A by their norms. Rows of zeros stay as they are: they are met by every z.
     pub fn normalise(&mut self) {
         let mut squares = vec![0.0; self.rows];
         self.places.iter().zip(&self.values).for_each(|(row, value)| squares[*row] += value * value);
-        self.values.iter_mut().zip(&self.places).for_each(|(value, row)| *value /= squares[*row].sqrt());
+        self.values.iter_mut().zip(&self.places).for_each(|(value, row)| {
+            if squares[*row] > 0.0 {
+                *value /= squares[*row].sqrt();
+            }
+        });
     }
 
     /// `A z`.

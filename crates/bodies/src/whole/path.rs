@@ -254,7 +254,11 @@ pub(super) fn leave_one_out(
                 return Ok(Vec::new());
             }
             // A stage at which one load loses its equilibrium is never the best.
-            *sum += judge.errors(&theta)?.and_then(|errors| mean(&errors)).unwrap_or(f64::INFINITY);
+            // A load without an equilibrium outweighs one that is met exactly, whose logarithm is −∞.
+            *sum = match judge.errors(&theta)?.and_then(|errors| mean(&errors)) {
+                Some(own) if *sum < f64::INFINITY => *sum + own,
+                _ => f64::INFINITY,
+            };
         }
     }
     // JSON has no infinity.

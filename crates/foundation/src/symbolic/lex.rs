@@ -19,7 +19,7 @@ const MOST_PARTS: usize = 2000;
 /// Letters of a unit, and one more: more than any has.
 const LONGEST_UNIT: usize = 16;
 /// The largest decimal exponent of a literal: a little above the range of `f64`.
-const LARGEST_DECIMAL_EXPONENT: i32 = 400;
+const LARGEST_DECIMAL_EXPONENT: u32 = 400;
 
 /// What a name before a parenthesis calls.
 pub(super) enum Called {
@@ -249,7 +249,8 @@ fn decimal(literal: &str) -> Option<BigRational> {
         None => (literal, 0),
     };
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    if whole.len() + fraction.len() == 0 || fraction.contains('.') || exponent.abs() > LARGEST_DECIMAL_EXPONENT {
+    if whole.len() + fraction.len() == 0 || fraction.contains('.') || exponent.unsigned_abs() > LARGEST_DECIMAL_EXPONENT
+    {
         return None;
     }
     let digits: BigInt = format!("{whole}{fraction}").parse().ok()?;

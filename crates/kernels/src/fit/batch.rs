@@ -183,7 +183,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         let Some(equations) = closed.equations(springs, &self.packing.x, &self.geometry, hooke) else {
             // Each constant has an equation of its own, whose optimum under the bound is zero.
-            constants.iter_mut().for_each(|k| *k = k.max(0.0));
+            // One that is not a number stays, so that its cell is refused.
+            constants.iter_mut().filter(|k| **k < 0.0).for_each(|k| *k = 0.0);
             return true;
         };
         let has_many = equations.size() >= MANY;

@@ -134,6 +134,12 @@ impl GivenStiffness {
         if !(size > 0.0) {
             return Err(Error::expected("matrix", "a stiffness", "zeros"));
         }
+        // The sum of the eigenvalues: constants of springs are scaled by it.
+        let trace = r.trace();
+        if !(trace > 0.0) {
+            let found = format!("{trace:e}, as of a matrix whose sign is turned round");
+            return Err(Error::expected("matrix", "a stiffness whose diagonal has a sum above zero", found));
+        }
         let skew = (r - r.transpose()) * 0.5;
         if !(skew.norm() <= PROVED * size) {
             let at = skew

@@ -14,7 +14,7 @@ pub struct Decay {
 /// From here on the closed forms below lose no digits.
 const LONG: f64 = 1.0;
 /// The number of terms of the series below it: the last is 1e-20.
-const TERMS: i32 = 22;
+const TERMS: i32 = 27;
 
 impl Decay {
     /// Over the step h, s, with the relaxation time τ, s.

@@ -140,23 +140,27 @@ fn fit_block<'a>(
     for (round, ((nodes, constants), parameters)) in rounds.enumerate() {
         let chunks = nodes.par_chunks(CHUNK * n).zip(constants.par_chunks_mut(CHUNK * m));
         let chunks = chunks.zip(parameters.par_chunks_mut(CHUNK * p)).enumerate();
-        chunks.try_for_each(|(i, ((connectivity, constants), parameters))| {
-            let first = round * ROUND + i * CHUNK;
-            let (springs, coefficients) = (&springs, coefficients.part(first, connectivity.len() / n));
-            let has_law = form.law.is_some();
-            let batch = ExactBatch {
-                element,
-                springs,
-                points,
-                connectivity,
-                coefficients,
-                has_law,
-                shares,
-                constants,
-                parameters,
-            };
-            batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
-        })?;
+        // All are waited for: the cell of an error is the first one, whichever thread was faster.
+        let found: Vec<Result<()>> = chunks
+            .map(|(i, ((connectivity, constants), parameters))| {
+                let first = round * ROUND + i * CHUNK;
+                let (springs, coefficients) = (&springs, coefficients.part(first, connectivity.len() / n));
+                let has_law = form.law.is_some();
+                let batch = ExactBatch {
+                    element,
+                    springs,
+                    points,
+                    connectivity,
+                    coefficients,
+                    has_law,
+                    shares,
+                    constants,
+                    parameters,
+                };
+                batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
+            })
+            .collect();
+        found.into_iter().collect::<Result<()>>()?;
         progress(((round + 1) * ROUND).min(cells));
     }
     Ok(CellFits { constants, parameters, force, ..CellFits::new(springs) })

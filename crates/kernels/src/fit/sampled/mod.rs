@@ -232,6 +232,12 @@ impl SampledCell<'_> {
         };
         let (constants, parameters) = self.written(&unknowns);
         let finite = constants.iter().chain(&parameters).all(|k| k.is_finite());
+        // The error is relative to the forces of the material.
+        if finite && found.trained.is_nan() {
+            let expected = "shapes that deform the element, so that the material has forces there";
+            let found = "the shape at rest, or rotations of it, alone";
+            return Err(Error::expected("shapes", expected, found).of_kind(ErrorKind::Infeasible));
+        }
         if !(finite && found.trained.is_finite()) {
             let expected = "a law with finite values at the sampled shapes and a finite slope at rest";
             return Err(Error::expected("force", expected, "one without").of_kind(ErrorKind::Infeasible));

@@ -329,7 +329,8 @@ fn balanced([a, b, c, d]: [&[f64]; 4]) -> bool {
 /// The step of a difference in the measure.
 fn measure_step(c: f64, rest: f64) -> f64 {
     // A measure at rest of zero has no size that a step could be relative to.
-    STEP * if rest == 0.0 { c.abs() } else { rest.abs() }
+    let size = if rest == 0.0 { c.abs() } else { rest.abs() };
+    STEP * if size == 0.0 { 1.0 } else { size }
 }
 
 /// The step of a difference in an inner parameter.

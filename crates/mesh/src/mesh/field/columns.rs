@@ -15,15 +15,19 @@ struct Columns {
     values: Vec<usize>,
 }
 
-/// Reads a table; `array` is the name of the column, or begins the names of several.
+/// Reads a table; `array` is the name of the column, or begins the names of several, and `unit` that of its values as it is told beside the file.
 ///
 /// # Errors
-/// Columns are missing or repeated; or a row has too few or too many cells, or a value that is not a number; or two
+/// Columns are missing or repeated; or the header names another unit; or a row has too few or too many cells, or a value that is not a number; or two
 /// rows at the same place have different values.
-pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result<Raw> {
+pub(super) fn read(text: &str, (array, unit): (Option<&str>, Option<&str>), components: usize) -> Result<Raw> {
     let mut raw =
         Raw { holder: Holder::Points, places: Vec::new(), components, values: Vec::new(), starts: Vec::new() };
-    let head = |header: &Header| Columns::new(header, array, components);
+    let head = |header: &Header| {
+        let columns = Columns::new(header, array, components)?;
+        columns.values.iter().try_for_each(|&column| check_unit(header.name(column), unit))?;
+        Ok(columns)
+    };
     // The coordinates of each row, its index, and where it begins in the text.
     let mut known: HashMap<[u64; 3], (usize, usize)> = HashMap::new();
     each_row(text, head, |header, columns, row, at| {
@@ -45,6 +49,17 @@ pub(super) fn read(text: &str, array: Option<&str>, components: usize) -> Result
         }
     })?;
     Ok(raw)
+}
+
+/// That a column `E (kPa)` or `E [kPa]` has the unit that is told beside the file. Names are in lower case.
+fn check_unit(name: &str, unit: Option<&str>) -> Result<()> {
+    let Some((_, own)) = name.trim_end_matches([')', ']']).split_once(['(', '[']) else { return Ok(()) };
+    let own = own.trim();
+    if own.is_empty() || unit.is_some_and(|unit| unit.trim().to_lowercase() == own) {
+        return Ok(());
+    }
+    let found = unit.map_or("none".into(), |unit| format!("\"{unit}\""));
+    Err(Error::expected("unit", format!("that of the column {}", quoted(name.as_bytes())), found))
 }
 
 impl Columns {

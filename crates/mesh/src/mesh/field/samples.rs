@@ -40,6 +40,8 @@ pub struct Samples {
 pub struct SampleReading<'a> {
     /// The name of the array, of the column, or the beginning of the names of several columns; `None` if there is one alone.
     pub array: Option<&'a str>,
+    /// The unit of the values, as it is told beside the file.
+    pub unit: Option<&'a str>,
     /// Metres per unit of the positions.
     pub scale: f64,
     /// How many numbers belong to each place.
@@ -88,13 +90,13 @@ impl Samples {
     /// The file is missing, of another kind, damaged or cut short; it lacks such columns or such an array; or it has a value that is
     /// not possible, with the line of its row.
     pub fn read(path: &Path, reading: &SampleReading) -> Result<Samples> {
-        let SampleReading { array, scale, components, .. } = *reading;
+        let SampleReading { array, unit, scale, components, .. } = *reading;
         range::positive("scale", scale, "metres per unit of the file")?;
         let mut text = String::new();
         let raw = match ending(path).as_str() {
             "csv" => {
                 text = read_text(path)?;
-                columns::read(&text, array, components)
+                columns::read(&text, (array, unit), components)
             }
             "vtu" => vtk::xml_pieces(&read(path)?).and_then(|all| pieces::read(&all, array, components)),
             "vtk" => vtk::legacy_piece(&read(path)?).and_then(|piece| pieces::read(&[piece], array, components)),

@@ -119,7 +119,7 @@ impl Observed {
             for (place, moved) in rows {
                 // A place that is seen under several loads is written with the same digits in each file, and has the
                 // same bits. Floats have no hash, and a tolerance would need a search for each place.
-                let bits: Vec<u64> = place.iter().map(|x| x.to_bits()).collect();
+                let bits = bits_of(place);
                 let next = all.places.len() / d;
                 let index = *known_places.entry(bits.clone()).or_insert(next);
                 if index == next {
@@ -229,12 +229,17 @@ impl Observed {
     }
 }
 
+/// A place as a key; both zeros are one place.
+fn bits_of(place: &[f64]) -> Vec<u64> {
+    place.iter().map(|x| (x + 0.0).to_bits()).collect()
+}
+
 /// Where points of a mesh are held, in the directions in which they are, by their coordinates.
 fn held_places(mesh: &Mesh, support: &Support) -> std::collections::HashMap<Vec<u64>, Vec<Option<f64>>> {
     let d = mesh.dimension;
     let held = (0..mesh.point_count()).filter_map(|p| {
         let own = support.prescribed[p * d..(p + 1) * d].to_vec();
-        own.iter().any(Option::is_some).then(|| (mesh.point(p).iter().map(|x| x.to_bits()).collect(), own))
+        own.iter().any(Option::is_some).then(|| (bits_of(mesh.point(p)), own))
     });
     held.collect()
 }

@@ -212,7 +212,8 @@ fn of_regions(
     let all = 0..unknowns.len();
     let mut weak: Vec<String> =
         found.weak.iter().map(|own| own.iter().map(|p| unknowns[*p].clone()).collect::<Vec<_>>().join(", ")).collect();
-    weak.dedup();
+    let mut seen = std::collections::HashSet::new();
+    weak.retain(|words| seen.insert(words.clone()));
     let mut outcome = empty(limit, &found.residuals, noise);
     outcome.regions = regions(base, (names, is_known), &limit.unknowns, &Spread { estimate: &found, excess });
     outcome.correlations = all.clone().map(|p| all.clone().map(|q| correlation(p, q)).collect()).collect();

@@ -65,7 +65,9 @@ fn plane(points: &[[f64; 3]]) -> Option<Hull> {
     let above = half(&mut order.iter().rev().copied());
     let ring: Vec<usize> = below.into_iter().chain(above).collect();
     let sides: Vec<[usize; 2]> = (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect();
-    let content: f64 = sides.iter().map(|[a, b]| cross(points[*a], points[*b])[2]).sum::<f64>() / 2.0;
+    // About a point of the ring: about a far origin the areas would cancel.
+    let from_first = |p: usize| minus(&points[p], &points[ring[0]]);
+    let content: f64 = sides.iter().map(|[a, b]| cross(from_first(*a), from_first(*b))[2]).sum::<f64>() / 2.0;
     if ring.len() < 3 || !(content > ON * size * size) {
         return None;
     }

@@ -81,8 +81,8 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
     if state.dimension() != d {
         return Err(Error::expected("plane", format!("a state of a network of {d} dimensions"), "another"));
     }
-    let specimen = &with_masses(specimen, options, state)?;
     let mut notes = Vec::new();
+    let specimen = &with_masses(specimen, options, state, &mut notes)?;
     let content = content_of(specimen, options)?;
     let volume = content.value * state.thickness();
     let whole = affine(specimen, volume);
@@ -90,6 +90,9 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
         return Err(
             Error::expected("springs", "a stiffness of numbers", "one that is not finite").of_kind(ErrorKind::Limit)
         );
+    }
+    if specimen.period.is_some() && specimen.masses.is_some() {
+        notes.push("the longest step is that of motions which repeat with the period: waves of a larger piece may need a shorter one".into());
     }
     if options.state.is_none() && d == 2 {
         notes.push("no thickness is known: figures are those of a network that is 1 m thick".into());
@@ -171,7 +174,8 @@ pub fn measure(specimen: &Specimen, options: &MeasureOptions) -> Result<Measured
         affine,
         relaxed,
         regions: regions(specimen, options, state)?,
-        longest_step: masses.and_then(|masses| motions.longest_step(masses)),
+        // Where a motion releases energy no step is stable.
+        longest_step: masses.filter(|_| stability.releasing == 0).and_then(|masses| motions.longest_step(masses)),
         stability,
         frequencies,
         engine,
@@ -199,9 +203,17 @@ fn tension_note(tension: Option<&Tension>) -> Option<String> {
 }
 
 /// The network with masses, by a density where it has none.
-fn with_masses(specimen: &Specimen, options: &MeasureOptions, state: State) -> Result<Specimen> {
+fn with_masses(
+    specimen: &Specimen,
+    options: &MeasureOptions,
+    state: State,
+    notes: &mut Vec<String>,
+) -> Result<Specimen> {
     let mut specimen = specimen.clone();
     let Some(density) = options.density else { return Ok(specimen) };
+    if specimen.masses.is_some() {
+        notes.push("the masses are those of the density that is given, in place of those of the network".into());
+    }
     if !(density > 0.0 && density.is_finite()) {
         return Err(Error::expected("density", "a density above zero, kg/m³", density));
     }
@@ -264,7 +276,8 @@ fn content_of(specimen: &Specimen, options: &MeasureOptions) -> Result<Content> 
         let Hull { content, is_outer } = Hull::of(&specimen.points, d).ok_or_else(flat)?;
         return Ok(Content { value: content, of: "hull", boundary: Some(is_outer) });
     }
-    let expected = "the volume of the network, which has no cells: a number in m³ (in the plane an area in m²), or that of the convex hull";
+    let expected = "the volume of the network, which has no cells that fill it: a number in m³ (in the plane an area in m²), or that of the convex \
+                    hull";
     Err(Error::expected("volume", expected, "none"))
 }
 

@@ -133,7 +133,14 @@ impl<'a> Motions<'a> {
         }
         let masses: Vec<f64> = masses.iter().flat_map(|m| std::iter::repeat_n(*m, d)).collect();
         let entries = self.entries.iter().map(|e| (e.row, e.col, e.val));
-        Some(2.0 / largest_square(entries, &masses, &held).sqrt()).filter(|step| step.is_finite())
+        let largest = largest_square(entries, &masses, &held);
+        // Where images of one point are all there is, what is left of the stiffness of the springs is rounding.
+        let springs = self.specimen.network.lengths.iter().map(|spring| spring.constant.abs()).fold(0.0, f64::max);
+        let heaviest = masses.iter().copied().fold(0.0, f64::max);
+        if largest <= NOTHING * springs / heaviest {
+            return None;
+        }
+        Some(2.0 / largest.sqrt()).filter(|step| step.is_finite())
     }
 
     fn dense(&self) -> DMatrix<f64> {

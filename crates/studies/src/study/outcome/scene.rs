@@ -15,7 +15,7 @@ use crate::study::timing::ModelTimes;
 use std::path::PathBuf;
 
 /// The results of a scene.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Outcome {
     /// The title of the scene.
     pub scene: String,

@@ -54,7 +54,7 @@ pub struct MeasuredDamping {
     pub decay_error: Option<f64>,
 }
 
-/// The largest decrement. What dies away faster is gone within a fiftieth of a period, and its damping ratio is one to rounding.
+/// The largest decrement. What dies away faster is gone within a fiftieth of a period, and its damping ratio is above 0.99.
 const LARGEST_DECREMENT: f64 = 50.0;
 /// The largest error of a series that stands for measured damping, relative to it.
 const LARGEST_ERROR: f64 = 0.2;

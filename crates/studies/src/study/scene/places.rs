@@ -218,6 +218,7 @@ impl<'a> Places<'a> {
         let path = self.folder.join(&data.file);
         let reading = SampleReading {
             array: data.array.as_deref(),
+            unit: data.unit.as_deref(),
             scale: self.scale(data),
             components,
             missing: data.missing,

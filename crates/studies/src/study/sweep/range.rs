@@ -160,7 +160,9 @@ fn stepped(table: &Table, step: &Value, [from, to]: [f64; 2]) -> Result<Values> 
         return Err(Error::expected("step", "a number that leads from \"from\" to \"to\"", format!("{size}")));
     }
     // The last one is reached in spite of rounding.
-    let count = ((to - from) / size * (1.0 + 4.0 * f64::EPSILON)).floor() + 1.0;
+    // Both ends may be far from zero beside the step: their rounding counts in steps.
+    let steps = (to - from) / size;
+    let count = (steps + 4.0 * f64::EPSILON * (steps + (from.abs() + to.abs()) / size.abs())).floor() + 1.0;
     if count > bound::STUDIES as f64 {
         return Err(Error::expected("step", format!("at most {} values", bound::STUDIES), count));
     }

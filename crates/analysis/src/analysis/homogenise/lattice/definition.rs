@@ -143,8 +143,19 @@ impl NamedLattice {
             let rest = (self.squares[bond.shell] as f64).sqrt() * spacing / UNIT as f64;
             network.lengths.push(LengthSpring { points: [bond.from.min(end), bond.from.max(end)], constant, rest });
         }
-        let cell = DMatrix::from_fn(d, d, |row, k| self.metres(self.cell[row][k], k, spacing));
+        let cell = self.vectors(spacing);
         Ok(Specimen { period: Some(Period { cell, owners }), ..Specimen::new(network, points) })
+    }
+
+    /// The vectors of the cell with which it repeats itself, one in each row, m.
+    fn vectors(&self, spacing: f64) -> DMatrix<f64> {
+        let d = self.dimension();
+        DMatrix::from_fn(d, d, |row, k| self.metres(self.cell[row][k], k, spacing))
+    }
+
+    /// The volume of that cell, m³; in the plane its area, m².
+    pub fn content(&self, spacing: f64) -> f64 {
+        self.vectors(spacing).determinant().abs()
     }
 
     /// A piece of the lattice: so many cells along each of its vectors, with all bonds whose ends it has.

@@ -102,8 +102,12 @@ impl FinerSteps<'_> {
                 }
                 length /= 2.0;
             }
+            let Some((theta, moved, residuals)) = found else {
+                // Halvings that do not help say nothing of the distance of the minimum: the whole step does.
+                at.step = size;
+                break;
+            };
             at.step = length * size;
-            let Some((theta, moved, residuals)) = found else { break };
             (at.theta, at.moved, at.residuals) = (theta, moved, residuals);
             if at.step > NEAR {
                 at.columns = self.columns(&at.theta, &at.residuals, progress)?;

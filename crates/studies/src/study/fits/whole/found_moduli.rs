@@ -40,7 +40,8 @@ pub(super) fn found_moduli(
     let all: Vec<FoundModulus> = names.iter().zip(factors).enumerate().map(modulus).collect();
     let together = |unknowns: &Vec<usize>| unknowns.iter().map(|p| names[*p].clone()).collect::<Vec<_>>().join(", ");
     let mut weak: Vec<String> = known.iter().flat_map(|known| known.weak.iter().map(together)).collect();
-    weak.dedup();
+    let mut seen = std::collections::HashSet::new();
+    weak.retain(|words| seen.insert(words.clone()));
     for (p, modulus) in all.iter().enumerate() {
         let is_listed = known.iter().any(|known| known.weak.iter().any(|together| together.contains(&p)));
         if !is_listed && reach(p).is_some_and(|reach| reach > WEAK.ln()) {
