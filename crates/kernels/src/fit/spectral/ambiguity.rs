@@ -6,7 +6,7 @@
 //! Theory: page *The 2-norm* of the book.
 
 use super::problem::{Optimum, Problem};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
 const ACTIVE: f64 = 1e-6;
@@ -85,7 +85,12 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
 /// `min ‖Λ − Σ w_i D_i‖²_F` with all eigenvalues inside ±t: Newton's method with a barrier, from w = 0.
 fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVector<f64> {
     let n = changes.len();
-    let identity = DMatrix::identity(start.nrows(), start.nrows());
+    let order = start.nrows();
+    let identity = DMatrix::identity(order, order);
+    // One column for each change, so that all their products are one product of matrices.
+    let flat = |all: &[DMatrix<f64>]| DMatrix::from_fn(order * order, n, |at, i| all[i].as_slice()[at]);
+    let products = |flat: &DMatrix<f64>| flat.transpose() * flat;
+    let distances = products(&flat(changes)) / (t * t);
     let at = |w: &DVector<f64>| {
         let mut e = start.clone();
         changes.iter().zip(w.iter()).for_each(|(d, w)| e -= d * *w);
@@ -108,15 +113,18 @@ fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVec
             let e = at(&w);
             // Rounding at the border may leave e outside, where the barrier has no value: the last point is kept.
             let Some((above, below)) = sides(&e) else { return w };
-            let (a, b) = (above.inverse(), below.inverse());
-            let images: Vec<_> = changes.iter().map(|d| (&a * d, &b * d)).collect();
-            let slope = DVector::from_fn(n, |i, _| {
-                -e.dot(&changes[i]) / (t * t) - weight * (images[i].0.trace() - images[i].1.trace())
-            });
-            let curvature = DMatrix::from_fn(n, n, |i, j| {
-                let barrier = images[i].0.dot(&images[j].0.transpose()) + images[i].1.dot(&images[j].1.transpose());
-                changes[i].dot(&changes[j]) / (t * t) + weight * barrier
-            });
+            // L⁻¹ D L⁻ᵀ, whose trace is that of A⁻¹ D and whose products are the traces of A⁻¹ D_i A⁻¹ D_j.
+            let images = |side: &Cholesky<f64, Dyn>| -> Vec<DMatrix<f64>> {
+                let l = side.l();
+                let half = |d: &DMatrix<f64>| l.solve_lower_triangular(d).map(|half| half.transpose());
+                changes.iter().filter_map(|d| half(&half(d)?)).collect()
+            };
+            let (a, b) = (images(&above), images(&below));
+            // The factor of a side has no zero on its diagonal.
+            debug_assert!(a.len() == n && b.len() == n);
+            let slope =
+                DVector::from_fn(n, |i, _| -e.dot(&changes[i]) / (t * t) - weight * (a[i].trace() - b[i].trace()));
+            let curvature = &distances + (products(&flat(&a)) + products(&flat(&b))) * weight;
             let Some(factor) = curvature.cholesky() else { return w };
             let step = -factor.solve(&slope);
             let decrease = -slope.dot(&step);

@@ -54,10 +54,12 @@ const DENSITY: f64 = 1000.0;
 ///
 /// # Errors
 /// The element has no springs, or no valid shape.
-pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
+pub fn sweep_element(element: &Element, progress: &mut dyn FnMut(usize, usize)) -> Result<Vec<StabilityRow>> {
     let springs = Springs::select(element, None)?;
+    let cases = shape_cases(element)?;
+    let (total, mut done, mut rows) = (cases.len(), 0, Vec::new());
     // Cases do not depend on each other, and rows keep their order.
-    let rows = shape_cases(element)?.into_par_iter().enumerate().flat_map_iter(|(i, case)| {
+    let of_case = |(i, case): (usize, ShapeCase)| {
         let subject = Subject { element, springs: &springs, case: &case };
         let objectives = Objective::all(element.has_higher_modes());
         let chosen = Choice::ALL.into_iter().filter(|choice| *choice == Choice::Free || i % THINNED == 0);
@@ -66,9 +68,19 @@ pub fn sweep_element(element: &Element) -> Result<Vec<StabilityRow>> {
         // What is condensed has no exact network.
         let exact = (element.modes() == 0).then(|| subject.exact_row());
         exact.into_iter().chain(fits).collect::<Vec<_>>()
-    });
-    Ok(rows.collect())
+    };
+    let mut cases = cases.into_iter().enumerate();
+    while done < total {
+        progress(done, total);
+        let some: Vec<(usize, ShapeCase)> = cases.by_ref().take(AT_ONCE).collect();
+        done += some.len();
+        rows.par_extend(some.into_par_iter().flat_map_iter(of_case));
+    }
+    Ok(rows)
 }
+
+/// So many shapes are fitted between two messages: enough that no thread waits long for the last of them.
+const AT_ONCE: usize = 32;
 
 /// The set from which constants are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

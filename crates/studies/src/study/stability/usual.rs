@@ -22,8 +22,12 @@ pub fn stability(element: Option<Element>, progress: &mut Progress) -> Result<St
     let elements = element.map_or_else(shipped, |own| Ok(vec![own]))?;
     let mut rows = Vec::new();
     for (done, element) in elements.iter().enumerate() {
-        progress(Event::stage(&element.name, done, elements.len()));
-        rows.extend(sweep_element(element)?);
+        // Of several elements each is a step; of one element each of its shapes is.
+        let steps = (elements.len() > 1).then_some((done, elements.len()));
+        rows.extend(sweep_element(element, &mut |shapes, of| {
+            let (done, total) = steps.unwrap_or((shapes, of));
+            progress(Event::stage(&element.name, done, total));
+        })?);
     }
     let mut title = elements.iter().map(|element| element.name.as_str()).collect::<Vec<_>>().join(", ");
     if everything {
