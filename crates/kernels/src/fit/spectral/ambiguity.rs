@@ -109,8 +109,13 @@ fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVec
             let slope = DVector::from_fn(n, |i, _| {
                 -e.dot(&changes[i]) / (t * t) - weight * (images[i].0.trace() - images[i].1.trace())
             });
+            let turned: Vec<_> = images.iter().map(|(a, b)| (a.transpose(), b.transpose())).collect();
             let curvature = DMatrix::from_fn(n, n, |i, j| {
-                let barrier = images[i].0.dot(&images[j].0.transpose()) + images[i].1.dot(&images[j].1.transpose());
+                // The factorisation reads the lower triangle alone.
+                if i < j {
+                    return 0.0;
+                }
+                let barrier = images[i].0.dot(&turned[j].0) + images[i].1.dot(&turned[j].1);
                 changes[i].dot(&changes[j]) / (t * t) + weight * barrier
             });
             let Some(factor) = curvature.cholesky() else { return w };
