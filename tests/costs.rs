@@ -54,7 +54,10 @@ fn a_run_that_is_timed_has_all_costs() {
         let steps = [model.explicit_step.as_ref(), model.implicit_step.as_ref()];
         assert!(all.into_iter().chain(steps).all(|times| is_sound(times.unwrap())), "{}", fit.fit.name);
         assert_eq!(times.errors.is_some(), fit.fit.recipe.whole().is_none(), "{}", fit.fit.name);
-        assert!(times.constants.seconds.iter().sum::<f64>() > 0.04 || times.constants.passes >= 400);
+        // Where little of a pass is the fit, there are many.
+        assert!(times.constants.seconds.iter().sum::<f64>() > 0.01 || times.constants.passes >= 100);
+        // A pass of steps is of many, and long enough for a look at the clock not to be seen: some dozens of passes take as long as is asked.
+        assert!(steps.iter().all(|times| (5..300).contains(&times.unwrap().passes)), "{}: {steps:?}", fit.fit.name);
         // Without a density the longest step is not known.
         assert!(model.longest_step.is_none() && model.simulated_second.is_none());
     }

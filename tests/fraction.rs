@@ -442,3 +442,29 @@ fn polynomials_are_written_from_high_to_low_degree() {
     assert_eq!(p.text(&["a", "b"]), "a*b^2 - 3*b^3 + 2*a*b + b - 1");
     assert_eq!(p.latex(&["x", r"\lambda"]), r"x \lambda^{2} - 3 \lambda^{3} + 2 x \lambda + \lambda - 1");
 }
+
+/// Numbers of one word are worked with apart from those of more, with the same results in lowest terms.
+#[test]
+fn numbers_of_one_word_are_those_of_many() {
+    let most = i128::from(i64::MAX);
+    let above = [0, 1, -1, 6, -(1 << 32), 3 << 40, 1 << 62, most, -most, -most - 1, most + 1, 5 * most];
+    let below = [1, 6, 15, 3 << 40, 1 << 62, most - 1, most, 7 * most];
+    let numbers: Vec<BigRational> =
+        above.iter().flat_map(|a| below.iter().map(|b| BigRational::new((*a).into(), (*b).into()))).collect();
+    let same = |found: &BigRational, expected: &BigRational| {
+        (found.numer(), found.denom()) == (expected.numer(), expected.denom())
+    };
+    for a in &numbers {
+        for b in &numbers {
+            let [p, q] = [a, b].map(|c| Fraction::number(c.clone(), 1));
+            assert!(same((&p + &q).content(), &(a + b)), "{a} + {b}: {:?}", &p + &q);
+            assert!(same((&p * &q).content(), &(a * b)), "{a} * {b}: {:?}", &p * &q);
+            let terms = Polynomial::monomial(vec![1], a * integer(6)).scaled(b);
+            assert_eq!(terms, Polynomial::monomial(vec![1], a * integer(6) * b), "{a} {b}");
+            let sum = &Polynomial::monomial(vec![2], a.clone()) + &Polynomial::monomial(vec![0], b.clone());
+            let content = sum.content();
+            assert!(sum.is_zero() || sum.primitive().content().is_one(), "{a} x² + {b}: {content}");
+            assert_eq!(sum.primitive().scaled(&content), sum, "{a} x² + {b}: {content}");
+        }
+    }
+}

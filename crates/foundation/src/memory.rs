@@ -6,12 +6,18 @@ use crate::error::{Error, ErrorKind, Result};
 use std::fs;
 use std::path::Path;
 
+/// Fewer bytes are not worth a look at the system's files, which takes longer than what a small body does with them.
+const SMALL: u64 = 1 << 16;
+
 /// Checks that `what`, which needs `bytes` bytes, fits into memory. `advice` is printed if it does not. If the system
 /// does not report its free memory, everything is accepted.
 ///
 /// # Errors
 /// It does not fit; the kind is `Limit`.
 pub fn require(what: &str, bytes: u64, advice: &str) -> Result<()> {
+    if bytes < SMALL {
+        return Ok(());
+    }
     let Some(left) = available().filter(|left| *left < bytes) else { return Ok(()) };
     let (needed, left) = (gigabytes(bytes), gigabytes(left));
     let problem = format!("{what} takes {needed} of memory, of which {left} is left: {advice}");

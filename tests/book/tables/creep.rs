@@ -25,11 +25,12 @@ pub fn bar() -> String {
 
 /// Errors of branches that yield, by the step.
 pub fn yielding() -> String {
-    let row = |steps: usize| {
-        let errors = yield_errors(steps).map(|error| format!("{error:.1e}"));
+    let steps = [5, 20, 80, 320];
+    let row = |(steps, errors): (usize, [f64; 2])| {
+        let errors = errors.map(|error| format!("{error:.1e}"));
         [vec![steps.to_string()], errors.to_vec()].concat()
     };
-    let rows: Vec<Vec<String>> = [5, 20, 80, 320].map(row).into();
+    let rows: Vec<Vec<String>> = steps.into_iter().zip(yield_errors(steps)).map(row).collect();
     markdown(&["steps in τ", "stretch", "shear"], &rows)
 }
 

@@ -2,7 +2,7 @@
 
 use super::Polynomial;
 use super::packed::{Layout, Packed};
-use super::polynomial::multiple;
+use super::small::multiple;
 use num_rational::BigRational;
 
 /// A basis, in echelon form, of the differences between the exponents of terms. The products of powers that it stands

@@ -9,12 +9,12 @@ mod packed;
 mod polynomial;
 mod print;
 mod scalar;
+mod small;
 mod value;
 
 pub use polynomial::Polynomial;
 
 use num_bigint::BigInt;
-use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -126,15 +126,18 @@ impl Fraction {
     fn plus(&self, c: &BigRational, other: &Fraction) -> Fraction {
         let [shared, below, other_below] = self.0.denominator.with_cofactors(&other.0.denominator);
         // In this unit both contents are whole numbers, and so are the coefficients of the sum.
-        let unit = BigRational::new_raw(BigInt::one(), self.0.content.denom().lcm(c.denom()));
-        let term = (&self.0.numerator * &other_below).scaled(&(&self.0.content / &unit));
-        let numerator = &term + &(&other.0.numerator * &below).scaled(&(c / &unit));
+        let below_both = small::common_multiple(self.0.content.denom(), c.denom());
+        let whole =
+            |content: &BigRational| BigRational::from_integer(content.numer() * (&below_both / content.denom()));
+        let term = (&self.0.numerator * &other_below).scaled(&whole(&self.0.content));
+        let numerator = &term + &(&other.0.numerator * &below).scaled(&whole(c));
+        let unit = BigRational::new_raw(BigInt::one(), below_both);
         if numerator.is_zero() {
             return Fraction::number(BigRational::zero(), self.variables());
         }
         let [_, numerator, shared] = numerator.with_cofactors(&shared);
         Fraction(Arc::new(Terms {
-            content: numerator.content() * unit,
+            content: small::product(&numerator.content(), &unit),
             numerator: numerator.primitive(),
             denominator: &(&below * &other_below) * &shared,
         }))
@@ -148,7 +151,7 @@ impl Fraction {
         let [_, above, other_below] = self.0.numerator.with_cofactors(&other.0.denominator);
         let [_, other_above, below] = other.0.numerator.with_cofactors(&self.0.denominator);
         Fraction(Arc::new(Terms {
-            content: &self.0.content * &other.0.content,
+            content: small::product(&self.0.content, &other.0.content),
             numerator: &above * &other_above,
             denominator: &below * &other_below,
         }))

@@ -2,8 +2,8 @@
 //! instead of being tested at sample points.
 
 use super::packed::{self, Layout, Packed};
+use super::small::{common_divisor, common_multiple, multiple, product, sum};
 use num_bigint::BigInt;
-use num_integer::Integer;
 use num_rational::BigRational;
 use num_traits::{One, Pow, Signed, Zero};
 use std::collections::BTreeMap;
@@ -138,10 +138,10 @@ impl Polynomial {
         let (mut above, mut below) = (BigInt::zero(), BigInt::one());
         for c in self.terms.values() {
             if !above.is_one() {
-                above = above.gcd(c.numer());
+                above = common_divisor(&above, c.numer());
             }
             if !c.denom().is_one() {
-                below = below.lcm(c.denom());
+                below = common_multiple(&below, c.denom());
             }
         }
         let leading = self.terms.iter().max_by_key(|(e, _)| (e.iter().sum::<u32>(), *e));
@@ -272,21 +272,6 @@ pub(super) fn difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// `a + b`, with a fast path for integers, which need no common divisor.
-fn sum(a: &BigRational, b: &BigRational) -> BigRational {
-    if a.is_integer() && b.is_integer() { BigRational::from_integer(a.numer() + b.numer()) } else { a + b }
-}
-
-/// `a b`, with a fast path for integers, which need no common divisor.
-fn product(a: &BigRational, b: &BigRational) -> BigRational {
-    if a.is_integer() && b.is_integer() { BigRational::from_integer(a.numer() * b.numer()) } else { a * b }
-}
-
-/// `integer · c`.
-pub(super) fn multiple(integer: &BigInt, c: &BigRational) -> BigRational {
-    if c.is_integer() { BigRational::from_integer(integer * c.numer()) } else { c * integer }
-}
-
 impl Add for &Polynomial {
     type Output = Polynomial;
 
@@ -323,6 +308,6 @@ impl Mul for &Polynomial {
         let degrees = (0..self.variables()).map(|v| [self, other].map(|p| p.degree_in(v)).iter().sum());
         let layout = Layout::new(degrees);
         let ((c, a), (d, b)) = (self.packed(&layout), other.packed(&layout));
-        Polynomial::unpacked(&packed::product(&a, &b), &(c * d), &layout)
+        Polynomial::unpacked(&packed::product(&a, &b), &product(&c, &d), &layout)
     }
 }

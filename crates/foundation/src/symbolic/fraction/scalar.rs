@@ -1,6 +1,7 @@
 //! [`Fraction`] as a number of the kernels.
 
 use super::Fraction;
+use super::small::product;
 use crate::scalar::Scalar;
 use num_rational::BigRational;
 
@@ -23,7 +24,7 @@ impl Scalar for Fraction {
         if num_traits::Zero::is_zero(c) {
             return self.constant(c);
         }
-        self.of_content(self.content() * c)
+        self.of_content(product(self.content(), c))
     }
 
     fn plus_product(self, a: &Fraction, b: &Fraction) -> Fraction {

@@ -1,12 +1,13 @@
 //! Repeated measurements of several works that take turns.
 
 use crate::analysis::statistics::median;
+use crate::clock::Clock;
 use crate::error::{Error, Result};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A work is repeated until its passes have taken this time together, s.
-const TOGETHER: f64 = 0.05;
+/// A work is repeated until its passes have taken this processor time together, s.
+const TOGETHER: f64 = 0.02;
 /// A work is repeated this often at least.
 const LEAST: usize = 5;
 /// A work is repeated this often at most.
@@ -44,12 +45,12 @@ impl Times {
     }
 }
 
-/// Whether passes of these times are enough.
-fn is_enough(seconds: &[f64]) -> bool {
+/// Whether passes of these times are enough, which have taken `spent` s together with what does not count in them.
+fn is_enough(seconds: &[f64], spent: f64) -> bool {
     let longest = seconds.iter().copied().fold(0.0, f64::max);
     let count = seconds.len();
-    // Passes shorter than 125 µs do not reach the time together: their number ends them.
-    longest > PATIENCE || count >= MOST || count >= LEAST && seconds.iter().sum::<f64>() >= TOGETHER
+    // Passes shorter than 50 µs do not reach the time together: their number ends them.
+    longest > PATIENCE || count >= MOST || count >= LEAST && spent >= TOGETHER
 }
 
 /// Times the works in turns, so that what the machine does meanwhile meets all of them alike. The first pass of each warms caches and
@@ -69,13 +70,17 @@ pub fn interleaved(works: &mut [TimedWork]) -> Result<Vec<Times>> {
 pub fn interleaved_after(first: &[f64], works: &mut [TimedWork]) -> Result<Vec<Times>> {
     let of_first = |first: &f64| if *first > PATIENCE { vec![*first] } else { Vec::new() };
     let mut all: Vec<Vec<f64>> = first.iter().map(of_first).collect();
+    // A pass may return the time of one of its many steps: how long it took, the clock says.
+    let mut spent = vec![0.0; works.len()];
     for round in 0.. {
         let mut is_done = true;
         for turn in 0..works.len() {
             // Another work begins each round, so that none always follows the same one.
             let place = (turn + round) % works.len();
-            if !is_enough(&all[place]) {
+            if !is_enough(&all[place], spent[place]) {
+                let clock = Clock::start();
                 all[place].push(works[place]()?);
+                spent[place] += clock.seconds();
                 is_done = false;
             }
         }
