@@ -74,14 +74,7 @@ impl CellConstants {
                     Springs::select(&element, named.springs.as_deref())?
                 }
             };
-            let plane = match plane.as_deref() {
-                None => None,
-                Some("stress") => Some(Plane::Stress),
-                Some("strain") => Some(Plane::Strain),
-                Some(other) => {
-                    return Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\"")));
-                }
-            };
+            let plane = plane.as_deref().map(Plane::named).transpose()?;
             let rule = CellRule { element, springs, recipe: named.recipe, plane };
             rule.gradient_fit()?;
             Ok(rule)

@@ -169,12 +169,7 @@ impl GivenOptions<'_> {
         if !(thickness > 0.0 && thickness.is_finite()) {
             return Err(invalid(py, "thickness", "a length above zero, m", thickness));
         }
-        let plane = match self.plane.as_deref() {
-            None => None,
-            Some("stress") => Some(Plane::Stress),
-            Some("strain") => Some(Plane::Strain),
-            Some(other) => return Err(invalid(py, "plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
-        };
+        let plane = self.plane.as_deref().map(Plane::named).transpose().map_err(|error| raised(py, error))?;
         if d != 2 && (plane.is_some() || self.thickness.is_some()) {
             return Err(invalid(py, "plane", "a plane network", format!("one of {d} dimensions")));
         }

@@ -31,12 +31,7 @@ fn written(document: serde_json::Result<String>) -> Result<String> {
 
 /// The plane state and the element of a study of one element.
 fn material(element: &Element, poisson: f64, plane: Option<&str>) -> Result<Material> {
-    let plane = match plane {
-        None => None,
-        Some("stress") => Some(Plane::Stress),
-        Some("strain") => Some(Plane::Strain),
-        Some(other) => return Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
-    };
+    let plane = plane.map(Plane::named).transpose()?;
     Material::for_body(element.0.dimension(), 10e3, poisson, plane, None)
 }
 

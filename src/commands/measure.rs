@@ -103,16 +103,24 @@ struct Record<'a> {
 impl Measure {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
         let mut written = Vec::new();
+        let mut volume = self.volume;
         let (title, formulas, file) = match (&self.lattice, &self.network) {
             (Some(name), _) => {
                 let lattice = NamedLattice::named(name).map_err(|e| e.at_key("--lattice"))?;
                 let constants = if self.constants.is_empty() { vec![1.0] } else { self.constants.clone() };
                 let spacing = self.length("--spacing", &self.spacing)?.unwrap_or(1.0);
                 let closed = lattice.closed(constants.len().min(lattice.shells.len())).map_err(Error::of_option)?;
-                let specimen = match &self.cells[..] {
-                    [] => lattice.specimen(spacing, &constants),
-                    [all] => lattice.piece(spacing, &constants, &vec![*all; lattice.dimension()]),
-                    cells => lattice.piece(spacing, &constants, cells),
+                let cells = match &self.cells[..] {
+                    [all] => &vec![*all; lattice.dimension()],
+                    cells => cells,
+                };
+                let specimen = if cells.is_empty() {
+                    lattice.specimen(spacing, &constants)
+                } else {
+                    // A piece has the volume of its cells, unless another one is asked for.
+                    let own = cells.iter().map(|n| *n as f64).product::<f64>() * lattice.content(spacing);
+                    volume = volume.or((!self.hull).then_some(own));
+                    lattice.piece(spacing, &constants, cells)
                 };
                 let specimen = specimen.map_err(Error::of_option)?;
                 if let Some(path) = &self.output {
@@ -128,7 +136,7 @@ impl Measure {
             }
             (None, None) => unreachable!("the parser asks for one of both"),
         };
-        let options = self.options(&file)?;
+        let options = MeasureOptions { volume, ..self.options(&file)? };
         let of_file = |e: Error| match (&self.network, e.key()) {
             (_, Some("volume")) => e.followed_by(format!("; --volume or --hull says it{}", self.ranges())).of_option(),
             (Some(path), Some("springs")) if e.kind() == ErrorKind::Limit => {
@@ -167,16 +175,6 @@ impl Measure {
         read_specimen(path, &options)
     }
 
-    /// The volume of a piece of a lattice, that of its cells, m³ or m².
-    fn piece_volume(&self) -> Result<Option<f64>> {
-        let (Some(name), false) = (&self.lattice, self.cells.is_empty()) else { return Ok(None) };
-        let lattice = NamedLattice::named(name).map_err(|e| e.at_key("--lattice"))?;
-        let spacing = self.length("--spacing", &self.spacing)?.unwrap_or(1.0);
-        let d = lattice.dimension();
-        let count: usize = if let [all] = self.cells[..] { all.pow(d as u32) } else { self.cells.iter().product() };
-        Ok(Some(count as f64 * lattice.content(spacing)))
-    }
-
     fn length(&self, key: &str, text: &Option<String>) -> Result<Option<f64>> {
         text.as_deref().map(|text| Quantity::Length.parse(text).map_err(|e| e.under(key))).transpose()
     }
@@ -211,7 +209,7 @@ impl Measure {
             None => file.engine,
         };
         Ok(MeasureOptions {
-            volume: self.volume.or(self.piece_volume()?.filter(|_| !self.hull)),
+            volume: self.volume,
             hull: self.hull,
             point_volumes: None,
             state: state.filter(|_| d == 2),

@@ -129,9 +129,7 @@ fn stability(measured: &MeasuredNetwork) -> String {
         (n, m) => format!("unstable: {least}{} energy, and {} no resistance; {rigid}", releases(n), nothing(m)),
     };
     let material = measured.relaxed.as_ref().unwrap_or(&measured.affine);
-    let values = material.matrix().symmetric_eigenvalues();
-    // What is below the rounding of the largest is zero.
-    let releasing = values.iter().filter(|value| **value < -ROUNDING * values.amax()).count();
+    let releasing = material.releasing_strains();
     let nothing = material.soft_strains.saturating_sub(releasing);
     let strains = |n: usize, one: &str, more: &str| {
         count(n, &format!("uniform strain {one}"), &format!("uniform strains {more}"))

@@ -203,20 +203,19 @@ fn of_fit(outcome: &Outcome, fit: &FitOutcome) -> Vec<Note> {
     notes
 }
 
-/// The forces at rest of a network that is in equilibrium are below this share of the largest pull of a spring, to the digits of files.
-const BALANCED: f64 = 1e-5;
 /// Forces at rest below this share of the largest pull are no fault of the network.
 const SMALL: f64 = 0.02;
 
-/// That a network moves without a load. Only sampled laws of force and rest measures that are fitted can have it so.
+/// A note on a network that moves without a load. Only sampled laws of force and fitted rest measures can make such a network.
 fn unrest(outcome: &Outcome, fit: &FitOutcome) -> Option<Note> {
-    let left = RestTension::of(&fit.network, &outcome.mesh.points).unbalanced;
+    let tension = RestTension::of(&fit.network, &outcome.mesh.points);
+    let left = tension.unbalanced;
     let words = "the network is not at rest in the mesh: its springs pull there, and their forces do not balance, so that it moves without a load. \
                  Displacements and errors of loads at small deformation are those of its stiffness alone";
     let figures = format!(": {:.1} % of the largest pull is left at some point", 100.0 * left);
     // A small rest of forces moves a body by less than most errors are.
     let weight = if left <= SMALL { Weight::Model } else { Weight::Broken };
-    (!(left <= BALANCED)).then(|| Note::of_model(weight, &fit.fit.name, words).figures(figures))
+    (!tension.is_balanced()).then(|| Note::of_model(weight, &fit.fit.name, words).figures(figures))
 }
 
 /// Why a network does not stand, or is not known to.

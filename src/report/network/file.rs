@@ -55,7 +55,7 @@ impl<'a> NetworkFile<'a> {
         NetworkFile { mesh, network, study: None, own_masses: masses, own_facts: None }
     }
 
-    /// The same network, of which this is known.
+    /// Returns the same network with these facts.
     pub fn knowing(self, facts: &'a NetworkFacts) -> NetworkFile<'a> {
         NetworkFile { own_facts: Some(facts), ..self }
     }

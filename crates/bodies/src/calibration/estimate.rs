@@ -88,7 +88,8 @@ pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bo
     if start != guess && found.as_ref().is_none_or(|found| found.fault.is_some()) {
         before += found.as_ref().map_or(0, |found| found.steps);
         let other = search(limit, meshes, guess, SETTLED, &mut |steps| goes_on(before + steps))?;
-        let square = |found: &Option<Reached>| found.as_ref().map_or(f64::INFINITY, |found| found.square(limit));
+        let square =
+            |found: &Option<Reached>| found.as_ref().map_or(f64::INFINITY, |found| sum_of_squares(limit, &found.now));
         if square(&other) < square(&found) {
             found = other;
         }
@@ -141,13 +142,6 @@ struct Reached {
     /// Where it has ended before the optimum, why.
     fault: Option<Fault>,
     steps: usize,
-}
-
-impl Reached {
-    /// The sum of the squares of the residuals.
-    fn square(&self, limit: &Limit) -> f64 {
-        sum_of_squares(limit, &self.now)
-    }
 }
 
 fn sum_of_squares(limit: &Limit, at: &Limiting) -> f64 {

@@ -131,7 +131,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
     let normal = search.normal(&columns, &theta, weight);
     let deviations = match Cholesky::new(normal) {
         Some(factor) => factor.inverse().diagonal().iter().map(|v| v.max(0.0).sqrt()).collect(),
-        // A matrix that rounding has made indefinite says nothing of deviations; NaN is told as unknown.
+        // Rounding can make the matrix indefinite. The deviations are not known then, and reports show NaN as unknown.
         None => vec![f64::NAN; m],
     };
     let misfit = misfit(&at);

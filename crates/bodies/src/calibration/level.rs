@@ -197,10 +197,8 @@ impl<'a> Level<'a> {
         let guesses = self.guesses.lock().expect("nothing panics while it holds the guesses").clone();
         let mut all = Vec::new();
         for (index, load) in self.loads.iter().enumerate() {
-            let make =
-                || Ok(Newton::pattern(&rest.tangent, &load.support)?.placed(&self.mesh.points, self.mesh.dimension));
-            let pattern = self.patterns.under(&load.support, make)?;
             let (points, guess) = (&self.mesh.points, guesses[index].as_deref());
+            let pattern = self.patterns.of_steps(&rest.tangent, &load.support, points, self.mesh.dimension)?;
             let found = newton.reach_stable(&model, points, &load.support, &load.forces, guess, &pattern)?;
             let Some((u, equations)) = found else { return Ok(None) };
             let mut force = vec![0.0; u.len()];

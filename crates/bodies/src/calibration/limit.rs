@@ -172,7 +172,7 @@ impl Limiting {
 }
 
 impl Limit<'_> {
-    /// The answers at θ of so many meshes, with the derivatives on the mesh with this number.
+    /// The answers at θ of the first `meshes` meshes, with the derivatives on the mesh with the number `derived`.
     pub(super) fn at(&self, theta: &[f64], meshes: usize, derived: usize) -> Result<Option<Limiting>> {
         let (mut answers, mut columns) = (Vec::new(), Vec::new());
         for (index, level) in self.levels[..meshes].iter().enumerate() {

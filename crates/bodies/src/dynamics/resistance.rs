@@ -189,7 +189,7 @@ impl<'a> Resistance<'a> {
             return Some(self.rest.refill(u, &mut force) + remembered);
         }
         self.place(u);
-        // Springs of rest length zero store energy at rest, which is none of the motion.
+        // A spring with the rest length zero stores energy at rest. The energy of the motion does not include it.
         Some(self.model.energy(&self.x)? + remembered - self.rest.energy)
     }
 

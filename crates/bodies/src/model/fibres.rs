@@ -45,7 +45,7 @@ fn of_cells<'l>(
     let (thicknesses, mut springs) = (material.thicknesses(), Vec::new());
     let (mut known, mut all) = (BTreeMap::new(), Ok(()));
     each_cell(mesh, |cell, nodes, geometry| {
-        // The visit of a mesh cannot be ended, and the first fault is the one that is told.
+        // The loop over the cells cannot be ended early. The error is that of the first cell with a fault.
         if all.is_err() {
             return;
         }

@@ -83,7 +83,7 @@ impl Bulk {
     fn at(&self, nodes: &[usize]) -> f64 {
         match self {
             Bulk::Uniform(bulk) => *bulk,
-            // A cell that the mesh has not has no pressure; NaN is told as unknown.
+            // The mesh has no such cell, so that its pressure is not known: NaN.
             Bulk::Each(all) => all.get(nodes).copied().unwrap_or(f64::NAN),
         }
     }

@@ -24,10 +24,17 @@ pub struct RestTension {
     pub unbalanced: f64,
 }
 
+/// Forces at rest balance each other where what is left of them is below this share: files of networks have six digits and more.
+pub const BALANCED: f64 = 1e-5;
 /// A pull below this share of the constant times the length is that of rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl RestTension {
+    /// Whether the forces balance each other, to the digits of files. A share that is not a number is none of a balance.
+    pub fn is_balanced(&self) -> bool {
+        self.unbalanced <= BALANCED
+    }
+
     /// The tension of a network with its points at `points`, `[points × dimension]`, m.
     pub fn of(network: &Network, points: &[f64]) -> RestTension {
         let d = network.dimension;

@@ -1,6 +1,7 @@
 //! The patterns of the equations of one model while its entries change.
 
 use super::linear::System;
+use super::newton::Newton;
 use crate::error::Result;
 use crate::model::{Entries, Support};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -34,16 +35,23 @@ impl KnownPatterns {
         Ok(system)
     }
 
-    /// The equations that are kept under a support, which `make` finds where there are none.
+    /// The equations whose [pattern](Newton::pattern) all steps of a model share that has this tangent at rest, where its points are at `points`,
+    /// `[points × dimension]`, m.
     ///
     /// # Errors
-    /// `make` fails; its error is passed on.
-    pub fn under(&self, support: &Support, make: impl FnOnce() -> Result<System>) -> Result<Arc<System>> {
+    /// The tangent does not fit into memory.
+    pub fn of_steps(
+        &self,
+        tangent: &Entries,
+        support: &Support,
+        points: &[f64],
+        dimension: usize,
+    ) -> Result<Arc<System>> {
         if let Some((_, known)) = self.kept().iter().find(|(own, _)| own == support) {
             return Ok(known.clone());
         }
         // Not under the lock: at worst two threads find the same pattern.
-        let system = Arc::new(make()?);
+        let system = Arc::new(Newton::pattern(tangent, support)?.placed(points, dimension));
         self.kept().push((support.clone(), system.clone()));
         Ok(system)
     }

@@ -12,14 +12,14 @@ pub(crate) fn positions(
     size: usize,
     list: impl Fn(&mut dyn FnMut(usize, usize)),
 ) -> Result<(SymbolicSparseColMat<usize>, Vec<usize>), FaerError> {
-    let mut starts = filled(size + 1, 0)?;
+    let mut starts = zeros(size + 1)?;
     list(&mut |_, column| starts[column + 1] += 1);
     for column in 0..size {
         starts[column + 1] += starts[column];
     }
     let count = starts[size];
     // The row and the number of each entry, column after column.
-    let (mut rows, mut numbers, mut next) = (filled(count, 0)?, filled(count, 0)?, starts.clone());
+    let (mut rows, mut numbers, mut next) = (zeros(count)?, zeros(count)?, starts.clone());
     let mut number = 0;
     list(&mut |row, column| {
         let at = next[column];
@@ -27,7 +27,7 @@ pub(crate) fn positions(
         (rows[at], numbers[at]) = (row, number);
         number += 1;
     });
-    let (mut slots, mut ends, mut distinct) = (filled(count, 0)?, filled(size + 1, 0)?, Vec::new());
+    let (mut slots, mut ends, mut distinct) = (zeros(count)?, zeros(size + 1)?, Vec::new());
     // One more than the index at which each row is stored in the last column that has it, so that zero is that of none.
     let mut stored = next;
     stored.fill(0);
@@ -48,10 +48,10 @@ pub(crate) fn positions(
     Ok((SymbolicSparseColMat::new_checked(size, size, ends, None, distinct), slots))
 }
 
-/// A list of a large length, for which there may be no memory.
-fn filled(length: usize, value: usize) -> Result<Vec<usize>, FaerError> {
+/// A list of zeros, for which there may be no memory.
+fn zeros(length: usize) -> Result<Vec<usize>, FaerError> {
     let mut list = Vec::new();
     list.try_reserve_exact(length).map_err(|_| FaerError::OutOfMemory)?;
-    list.resize(length, value);
+    list.resize(length, 0);
     Ok(list)
 }

@@ -7,7 +7,7 @@ use super::target::{Frequencies, Target};
 use crate::engine::{Truncated, TruncatedModel};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{BlockStiffness, Elastic, Network, Support, displaced};
-use crate::solve::{Equations, KnownPatterns, Newton, System};
+use crate::solve::{Equations, KnownPatterns, System};
 use rayon::prelude::*;
 use std::sync::{Arc, Mutex};
 
@@ -257,7 +257,7 @@ impl<'a> Displacements<'a> {
         let one = |group: &Vec<usize>| {
             let support = &self.targets[group[0]].support;
             let (points, dimension) = (self.object.points, self.object.dimension());
-            self.tangents.under(support, || Ok(Newton::pattern(&rest.tangent, support)?.placed(points, dimension)))
+            self.tangents.of_steps(&rest.tangent, support, points, dimension)
         };
         self.groups.iter().map(one).collect::<Result<_>>().map(Some)
     }

@@ -104,7 +104,7 @@ impl Stretched<'_> {
                 }
             }
             let Some(found) = best.filter(|found| found.stretch >= LEAST * self.stretch) else {
-                // The last draw has failed as well: the load is told once, as one that is left out.
+                // The last draw has failed as well. The report names the load once, among those that are left out.
                 all.anew.retain(|name| *name != load.name);
                 all.out.push(load.name);
                 continue;

@@ -164,7 +164,7 @@ impl<T: Differentiable> Value for Jet<T> {
                 let first = number(1.0) / &(number(1.0) + &(x.clone() * &x));
                 (first.clone(), number(-2.0) * &x * &first * &first)
             }
-            // At zero the slope of the right side is taken; there is none in both.
+            // At zero the absolute value has no derivative. The slope to the right of zero is taken.
             Function::Abs => (number(x.rounded().signum()), number(0.0)),
             Function::Step => (number(0.0), number(0.0)),
         };

@@ -135,7 +135,7 @@ impl Scope {
             Operator::Mul => Expr::product([real(0)?, real(1)?]),
             Operator::Div => {
                 let divisor = real(1)?;
-                // A division by the number zero is a mistake of the text, and is told while its place is known.
+                // A division by the number zero is a mistake in the text. The parser reports it, because it knows the place.
                 if divisor.as_number().is_some_and(Zero::is_zero) {
                     return Err(Error::new("division by zero"));
                 }

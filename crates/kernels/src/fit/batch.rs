@@ -170,7 +170,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
         }
         let m = springs.len();
         write(closed, springs, constants);
-        // The optimum without bounds that violates none is the optimum with them, because the objective is convex.
+        // The objective is convex: an optimum without bounds that is within the bounds is the optimum with them.
         if !fit.nonnegative || constants.iter().all(|k| *k >= 0.0) {
             return true;
         }

@@ -192,7 +192,7 @@ impl CellFits {
             let moduli = moduli.part(first, connectivity.len() / n);
             if let Solver::General { method, iterations, topology } = fit.solver {
                 let weight = fit.objective.of_motions()?;
-                // The first cell is told, as below, although the loop over the cells goes on.
+                // The loop over the cells cannot be ended early. The error names the first cell with a fault, as below.
                 let (mut unmeasured, mut failed) = (None, None);
                 each_cell(element, points, connectivity, first, |cell, x, geometry| {
                     if !springs.function_gradients(x, &mut vec![0.0; springs.functions.len() * x.len()]) {

@@ -30,7 +30,7 @@ pub fn solve_precisely<T: Real>(normal: &Normal<T>, nonnegative: bool, rounding:
         };
     }
     let (k, pivot) = (free.rounded().rhs, free.least_pivot());
-    // The optimum without bounds that violates none is the one with them, because the objective is convex.
+    // The objective is convex: an optimum without bounds that is within the bounds is the optimum with them.
     if !nonnegative || k.iter().all(|k| *k >= 0.0) {
         return (k, Rank::Full, pivot);
     }

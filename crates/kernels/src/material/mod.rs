@@ -98,6 +98,26 @@ pub enum Plane {
     Strain,
 }
 
+impl Plane {
+    /// The name, as files and arguments have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Plane::Stress => "stress",
+            Plane::Strain => "strain",
+        }
+    }
+
+    /// The state of this name.
+    ///
+    /// # Errors
+    /// There is none; the error has the key `plane`.
+    pub fn named(name: &str) -> Result<Plane> {
+        let all = [Plane::Stress, Plane::Strain];
+        let unknown = || Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{name}\""));
+        all.into_iter().find(|plane| plane.name() == name).ok_or_else(unknown)
+    }
+}
+
 /// An isotropic material whose constants have been checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {

@@ -226,7 +226,7 @@ impl Mesh {
             return Err(Error::expected("cells", "cells that lie on both sides of what they share", found));
         }
         let is_turned: HashSet<CellIndex> = turned.into_iter().collect();
-        // Those that are left out are no longer cells that were reversed.
+        // The count of reversed cells does not include the cells that are removed.
         self.reversed = is_turned.len() - folded.iter().filter(|cell| is_turned.contains(cell)).count();
         self.quality.folded = folded.len();
         self.remove(&folded).map(drop)

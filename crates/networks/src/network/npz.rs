@@ -6,7 +6,6 @@ use super::record::QUADRILATERAL;
 use super::record::{HeldRecord, NetworkRecord, RelaxationRecord};
 use crate::error::Result;
 use crate::file::write_seekable;
-use crate::material::Plane;
 use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::springs::HINGE_POINTS;
@@ -140,11 +139,7 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
         file.real("relaxation_yield", &count, relaxation.iter().map(|term| term.yield_stress.unwrap_or(0.0)))?;
     }
     if let Some(plane) = &network.plane {
-        let state = match plane.state {
-            Plane::Stress => "stress",
-            Plane::Strain => "strain",
-        };
-        file.texts("plane", &[state])?;
+        file.texts("plane", &[plane.state.name()])?;
         file.real("thickness", &[], [plane.thickness])?;
     }
     if let Some(engine) = &network.engine {

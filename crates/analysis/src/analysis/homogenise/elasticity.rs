@@ -34,10 +34,17 @@ pub struct Elasticity {
 }
 
 impl Elasticity {
+    /// The number of the soft strains that release energy.
+    pub fn releasing_strains(&self) -> usize {
+        let eigenvalues = self.matrix().symmetric_eigenvalues();
+        let floor = NOTHING * eigenvalues.amax();
+        eigenvalues.iter().filter(|value| **value < -floor).count()
+    }
+
     /// What a tensor in Kelvin's notation says of a body in this state; its unit is Pa.
     pub fn of(c: &DMatrix<f64>, state: State) -> Elasticity {
         let d = state.dimension();
-        // Tensors of solutions are symmetric but for rounding, which eigenvalues of symmetric matrices take for granted.
+        // Solutions have rounding errors, so that the tensor is symmetric to rounding alone. The eigenvalues need a symmetric matrix.
         let symmetric = (c + c.transpose()) * 0.5;
         let eigenvalues = symmetric.clone().symmetric_eigenvalues();
         let floor = NOTHING * eigenvalues.amax();

@@ -2,7 +2,7 @@
 
 use super::body::forces;
 use crate::analysis::tensor::basis;
-use crate::model::{Network, Specimen};
+use crate::model::{BALANCED, Network, Specimen};
 use crate::springs::distance;
 use crate::stiffness::gather;
 use nalgebra::DMatrix;
@@ -70,9 +70,6 @@ impl Tension {
         self.unbalanced <= BALANCED
     }
 }
-
-/// The forces at rest of networks in files of six digits and more.
-const BALANCED: f64 = 1e-5;
 
 /// Calls `visit(points, pull, constant, measure, gradient)` for each spring.
 fn each_pull(network: &Network, points: &[f64], mut visit: impl FnMut(&[usize], f64, f64, f64, &[f64])) {

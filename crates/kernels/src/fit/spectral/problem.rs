@@ -79,7 +79,7 @@ impl<'a> Problem<'a> {
             nonnegative: solver.nonnegative,
             gram: all(&solver.gram[..c * c]),
             pivots: all(&solver.gram_pivots),
-            // Of the two causes the worse one decides.
+            // The worse of the two causes decides.
             rounding: ROUNDINGS * f64::EPSILON / quality.min(lane(&reduced.softest)),
         }
     }

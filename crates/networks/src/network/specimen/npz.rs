@@ -60,11 +60,8 @@ fn state(arrays: &Arrays) -> Result<Option<(Plane, f64)>> {
     if !(thickness[0] > 0.0 && thickness[0].is_finite()) {
         return Err(Error::expected("thickness", "a length above zero, m", thickness[0]));
     }
-    match arrays.text("plane") {
-        None | Some("stress") => Ok(Some((Plane::Stress, thickness[0]))),
-        Some("strain") => Ok(Some((Plane::Strain, thickness[0]))),
-        Some(other) => Err(Error::expected("plane", "\"stress\" or \"strain\"", format!("\"{other}\""))),
-    }
+    let plane = arrays.text("plane").map_or(Ok(Plane::Stress), Plane::named)?;
+    Ok(Some((plane, thickness[0])))
 }
 
 /// The settings of the engine to which the constants belong.

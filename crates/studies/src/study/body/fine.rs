@@ -246,7 +246,7 @@ impl Finer for FineBody {
     ) -> Result<Arc<StretchedLoads>> {
         let Some(large) = &self.large else { return Ok(Arc::default()) };
         let known = || self.stretched.lock().expect("nothing panics while it holds the loads");
-        // The same loads are others at another stretch.
+        // Loads that are made depend on the stretch, so that the key has both.
         let name = format!("{name} {stretch}");
         if let Some(loads) = known().get(&name) {
             return Ok(loads.clone());
