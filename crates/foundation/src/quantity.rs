@@ -107,9 +107,11 @@ const DENSITIES: [Unit; 13] = [
     ("kg/dm^3", 1.0, 3),
     ("mg/mm^3", 1.0, 3),
     ("t/m^3", 1.0, 3),
+    // Programs of finite elements that compute in tonnes, millimetres, seconds and newtons have densities in this unit.
     ("t/mm^3", 1.0, 12),
 ];
 /// Units of time.
+// A minute is 6.0 · 10¹ s and an hour 36 · 10² s, so that the factor is a whole power of ten, as for the other units.
 const TIMES: [Unit; 6] =
     [("s", 1.0, 0), ("ms", 1.0, -3), ("us", 1.0, -6), ("ns", 1.0, -9), ("min", 6.0, 1), ("h", 36.0, 2)];
 /// Units of force.
@@ -240,6 +242,8 @@ impl Quantity {
             return Ok(value);
         }
         let read = |(unit, size, power): &Unit| {
+            // A unit that is the end of a longer one, such as m of mm, leaves a letter with the number, which then is
+            // none.
             let value = spellings(unit).iter().find_map(|spelling| {
                 let number = trimmed.strip_suffix(spelling.as_str())?.trim_end();
                 match (self, number) {

@@ -83,6 +83,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
         }
         let first = along;
         let smoother = &self.first.smoother;
+        // The factor `√(2/π)` bounds the chance that a normal variable is small: the density of `|u·v|` is nowhere
+        // above that of zero, which is `√(2/π)` over the deviation.
         let weight = (2.0 / PI * first * smoother.upper / (1.0 - smoother.damping())).sqrt();
         let mut t = Lanczos::default();
         let (mut least, mut chance) = (1.0, 1.0);
@@ -106,6 +108,8 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
             if watch(Event::Iteration { number: k, residual: (next / first).max(0.0).sqrt() }).is_break() {
                 return Err(Fault::Interrupted);
             }
+            // The eigenvalues of all k steps are bisected anew at each look. Steps beyond the one that suffices cost a
+            // product and a V-cycle each, so that a look every four steps wastes at most three.
             if k % LOOK == 0 || k == steps || !(next > 0.0) {
                 let [low, high] = t.matrix.extremes().unwrap_or([1.0; 2]);
                 let bound = (MARGIN * high).max(1.0);

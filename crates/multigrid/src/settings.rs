@@ -19,6 +19,12 @@ impl Default for Settings {
     fn default() -> Settings {
         // With Vaněk's threshold of 0.08 the weak springs of a network are left out,
         // and its next level has two to three times as many points as that of a body.
+        // Aggregates are whole neighbourhoods, so that the next level is about three times coarser along each axis. The
+        // smoothest error that it cannot represent then turns by π/3 per node along one axis. For the Laplacian of
+        // seven points the eigenvalue of `D⁻¹ A` is `(1 − cos π/3)/3 = 1/6` there, a twelfth of the largest, 2. The
+        // polynomial of degree 2 leaves at most `1/T₂(13/11) = 0.56` of the errors on that interval, before and again
+        // after the correction. A degree more would cost two more products with the matrix in each cycle. The factor of
+        // 900 unknowns takes `900³/3 = 2.4e8` operations once, and each solution with it reads 6.5 MB.
         Settings { threshold: 0.05, degree: 2, ratio: 12.0, dense: 900 }
     }
 }

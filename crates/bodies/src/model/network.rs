@@ -35,12 +35,16 @@ impl LengthSpring {
         let length = distance(xi, xj);
         let mut n = [0.0; 3];
         n.iter_mut().zip(xi.iter().zip(xj)).for_each(|(n, (a, b))| *n = (b - a) / length);
+        // A spring of no rest length may have no length either, where the quotient is 0/0. Its tangent is the identity
+        // at every length.
         Along { share: if self.rest == 0.0 { 0.0 } else { self.rest / length }, direction: n }
     }
 
     /// The force divided by the length, N/m. It is the constant if the rest length is zero.
     #[inline(always)]
     pub(super) fn stress(&self, length: f64) -> f64 {
+        // Without a rest length the force is `k ℓ n`, whose quotient by ℓ is k even at ℓ = 0, where the general form
+        // divides by zero.
         if self.rest == 0.0 { self.constant } else { self.constant * (length - self.rest) / length }
     }
 

@@ -7,6 +7,8 @@ use crate::springs::dot;
 use nalgebra::DMatrix;
 
 /// A value is found once the residual of its vector is below this share of it, all in the norm of the body: an eigenvalue is as near.
+// The Ritz value is usually far nearer: it errs by the square of the residual over the distance to the next eigenvalue,
+// which is 4e-6 of the value where the next one is twice as large.
 const FOUND: f64 = 2e-3;
 /// Steps that are made at least: by then a value a hundredth beyond the next is seen.
 const LEAST_STEPS: usize = 32;

@@ -186,6 +186,8 @@ fn varied(
         Pressure::Varying => {
             // A generator of its own: the one of the other loads is not moved on.
             let mut random = StdRng::seed_from_u64(seed ^ SLOPES);
+            // Positions are relative to the middle in units of the longest side, at most 1/2 in size: the pressure
+            // changes by up to half of its mean towards each end of an axis.
             let slopes: Vec<f64> = (0..d).map(|_| random.random_range(-1.0..1.0)).collect();
             let push = |x: &[f64], n: &[f64]| n.iter().map(|n| -n * (1.0 + dot(&slopes, &frame.away(x)))).collect();
             NodalLoad { name: "varying pressure".into(), forces: boundary_forces(mesh, &push, thickness) }
@@ -195,6 +197,8 @@ fn varied(
         let direction = unit(&(0..d).map(|_| random.random_range(-1.0..1.0)).collect::<Vec<f64>>());
         // Tractions alone leave the inside of a body without a load of its own.
         if index % 3 == 0 || on_boundary.is_empty() {
+            // With positions of up to 1/2 the linear part is as large as the uniform one, of length one, at the ends of
+            // the longest side.
             let slopes: Vec<f64> = (0..d * d).map(|_| random.random_range(-2.0..2.0)).collect();
             let at = |(dof, weight): (usize, &f64)| {
                 let (r, k) = (frame.away(mesh.point(dof / d)), dof % d);
@@ -242,6 +246,8 @@ impl Frame {
         let middle = mean(&all);
         let mut axis: Vec<f64> = middle.iter().zip(mean(&held)).map(|(a, b)| a - b).collect();
         // An object that is held all around has no direction: its longest side is used.
+        // A twentieth of the size is what unequal cells leave of a direction where supports surround the object: the
+        // mean of points is not that of the volume.
         if held.is_empty() || !(norm(&axis) > 0.05 * size) {
             axis = (0..d).map(|k| sides[k]).collect();
             let longest = (0..d).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });

@@ -11,10 +11,14 @@ use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
 /// A determinant below zero by this share of the largest coefficient is negative; less is rounding.
+// The inverse of Bernstein's matrix amplifies rounding by its norm in each direction: with degree 8 in space, `230³ ·
+// 1.1e-16` is 1.3e-9 at worst.
 const ROUNDING: f64 = 1e-9;
 /// Boxes of a cell that are looked at, at most. A determinant that touches zero along a surface is never decided.
 const MOST_BOXES: usize = 4000;
 /// Degrees per direction beyond which bounds are lost in rounding.
+// The norm of the inverse is 3 700 at degree 12 and 28 500 at degree 15. Its cube times 1.1e-16 is 5e-6 and 3e-3 then,
+// beside which no sign near zero is certain.
 const MOST_DEGREE: usize = 16;
 /// A node counts as where the straight cell has it, up to this share of the size of the cell.
 const STRAIGHT: f64 = 1e-9;
@@ -81,6 +85,8 @@ impl JacobianBounds {
             (0..d).any(|k| {
                 let own: f64 =
                     self.corners.iter().enumerate().map(|(c, node)| self.straight[(a, c)] * x[node * d + k]).sum();
+                // The comparison is negated so that a coordinate that is NaN counts as curved, and is not passed over
+                // as straight.
                 !((own - x[a * d + k]).abs() <= STRAIGHT * size)
             })
         })
@@ -135,6 +141,8 @@ impl JacobianBounds {
         let largest = coefficients.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
         // Places without a pattern, so that a function that is no polynomial of the degree cannot agree at all of them
         // by symmetry.
+        // The three starts leave 0.13 to 0.97 between them, and the step 0.31 is no multiple of their differences, so
+        // that no place has two equal coordinates.
         [0.13, 0.48, 0.91].iter().all(|start| {
             let t: Vec<f64> = (0..d).map(|k| (start + 0.31 * k as f64) % 0.97).collect();
             let value: f64 = coefficients
@@ -142,6 +150,8 @@ impl JacobianBounds {
                 .enumerate()
                 .map(|(i, c)| c * (0..d).map(|k| basis(n - 1, i / n.pow(k as u32) % n, t[k])).product::<f64>())
                 .sum();
+            // A cell without a map from the box has no determinant there. NaN fails every comparison, so that the
+            // bounds are refused.
             let own = on_cell(element.cell, &t).map_or(f64::NAN, |at| determinants(&table(element, at), &bent)[0]);
             (value - own).abs() <= 1e-8 * largest
         })
@@ -205,6 +215,8 @@ fn each_line(n: usize, d: usize, k: usize, mut visit: impl FnMut(&dyn Fn(usize) 
 fn halves(coefficients: Vec<f64>, n: usize, d: usize, k: usize) -> [Vec<f64>; 2] {
     let (mut low, mut high) = (coefficients.clone(), coefficients);
     each_line(n, d, k, |place| {
+        // Means never exceed what they are means of, so that a division amplifies no rounding, however often a box is
+        // divided.
         for round in 1..n {
             for i in 0..n - round {
                 high[place(i)] = 0.5 * (high[place(i)] + high[place(i + 1)]);

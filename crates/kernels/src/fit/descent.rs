@@ -48,6 +48,7 @@ impl Raw<'_> {
         let p = self.reduced.order;
         let mut e = vec![0.0; p * p];
         self.reduced.residual(kappa, &mut e);
+        // The residual has its lower triangle alone, whereas nalgebra's eigenvalues and norm read the whole matrix.
         let e = DMatrix::from_fn(p, p, |i, j| e[i.max(j) * p + i.min(j)]);
         match self.objective {
             Objective::Frobenius(_) => e.norm(),
@@ -93,12 +94,15 @@ impl Anneal for &Raw<'_> {
     type Float = f64;
 
     fn anneal(&self, at: &Vec<f64>, extent: f64) -> std::result::Result<Vec<f64>, argmin::core::Error> {
+        // The optimiser calls from one thread, so that the lock is never waited for, and the sequence of numbers is the
+        // same in each run.
         let mut random = self.random.lock().expect("nothing panics while it holds the generator");
         let (kappa, switches) = at.split_at(self.reduced.scales.len());
         let extent = extent.min(1.0);
         // When a spring is removed the others have to adapt: steps that shrink with the temperature would be too short
         // for that.
         let size = self.stride * if switches.is_empty() { extent } else { extent.sqrt() };
+        // The random walk is symmetric about the present point, as the rule of Metropolis asks for.
         let mut next: Vec<f64> = kappa.iter().map(|k| k + size * random.random_range(-1.0..=1.0)).collect();
         next.extend(switches);
         // A switch is on or off: small steps would not change it.
@@ -175,6 +179,8 @@ pub fn search(
             let each = topology.map_or(iterations, |_| iterations.min(AGREED)).max(1);
             let swarms = iterations.div_ceil(each).max(1);
             // Each swarm has a seed of its own; the last one has the iterations that are left.
+            // The first swarms have `each` iterations, of which none is left over: `i each < iterations` for every `i <
+            // swarms`, so that the difference cannot be negative.
             let found = (0..swarms).map(|i| swarm(1 + i, each.min(iterations - i * each)));
             let found = found.collect::<std::result::Result<Vec<_>, String>>()?;
             found.into_iter().flatten().min_by(|a, b| raw.cost_of(a).total_cmp(&raw.cost_of(b)))

@@ -66,6 +66,7 @@ impl ModulusTest<'_> {
     /// time or fall with frequency by more than noise, or compliances fall; or nothing of a compliance is there at once.
     pub fn fit(&self) -> Result<FittedSeries> {
         let (places, [first, last]) = self.checked()?;
+        // A measurement shorter than half a decade has its first and its last time all the same.
         let count = ((last / first).log10() * PER_DECADE).ceil().max(1.0);
         // Times are even in their logarithm, because each term acts within about a decade of its own.
         let times: Vec<f64> = (0..=count as usize).map(|i| first * (last / first).powf(i as f64 / count)).collect();
@@ -87,6 +88,7 @@ impl ModulusTest<'_> {
         let left =
             |(row, value): &(Vec<f64>, f64)| row.iter().zip(&parts).map(|(a, part)| a * part).sum::<f64>() - value;
         let squares: f64 = rows.iter().map(|row| left(row).powi(2)).sum();
+        // Frequencies have two rows, whose squares sum up to that of the complex modulus: the mean is over places.
         let error = (squares / places.len() as f64).sqrt();
         let own = times.iter().zip(&parts[1..]).map(|(time, part)| [part / largest, *time]);
         let own: Vec<[f64; 2]> = own.filter(|[share, _]| *share > NONE).collect();
@@ -145,6 +147,8 @@ impl ModulusTest<'_> {
         };
         let rises = !matches!(self, ModulusTest::Relaxation { .. });
         let unit = if matches!(self, ModulusTest::Creep { .. }) { "1/Pa" } else { "Pa" };
+        // There are at least two relaxation times and the modulus that stays: three unknowns, which fewer rows leave
+        // open.
         if places.len() < 3 {
             return Err(Error::expected(name, "three or more", places.len()));
         }
@@ -194,6 +198,8 @@ fn relaxing(at_once: f64, shares: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let slope = |rate: f64| shares.iter().map(|[share, time]| share * time / (1.0 - rate * time).powi(2)).sum::<f64>();
     let delayed: f64 = shares.iter().map(|[share, _]| share).sum();
     let rates: Vec<f64> = shares.iter().map(|[_, time]| 1.0 / time).collect();
+    // With `r = r₁ (1 + D/J₀)`, r₁ the largest rate and D the sum of all delayed parts, every `r λ_i − 1` is at least
+    // `D/J₀`, so that the sum is at least `J₀ − D/(D/J₀) = 0`: the last zero is not beyond this rate.
     let beyond = rates.first().map(|largest| largest * (1.0 + delayed / at_once));
     // Times rise, so rates fall: each zero is between a rate and the one before it.
     let above = beyond.into_iter().chain(rates.iter().copied());

@@ -77,6 +77,8 @@ pub(super) struct Formula {
 /// The values of [`MODULI`].
 fn moduli_of(material: Material) -> [f64; 5] {
     let (young, poisson) = (material.young(), material.poisson());
+    // An energy is that of the solid in every state, because the stretches across planes and rods are searched for with
+    // it. Its λ is therefore not that of plane stress.
     let lambda = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
     let mu = young / (2.0 * (1.0 + poisson));
     [young, poisson, lambda, mu, lambda + 2.0 / 3.0 * mu]

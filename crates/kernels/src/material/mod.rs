@@ -153,6 +153,8 @@ impl Material {
     pub fn new(young: f64, poisson: f64, state: State) -> Result<Material> {
         positive("young", young, "Pa")?;
         let in_range = match state {
+            // At 1/2 the λ of plane stress is `E ν/(1 − ν²) = 2 E/3`, and a rod has no λ, whereas that of a solid and
+            // of plane strain is infinite.
             State::PlaneStress { .. } | State::Rod { .. } => poisson > -1.0 && poisson <= 0.5,
             _ => poisson > -1.0 && poisson < 0.5,
         };
@@ -251,6 +253,7 @@ impl Material {
 
     /// `∂/∂E` of the moduli.
     pub fn moduli_by_young(&self) -> Moduli {
+        // Both moduli are proportional to E.
         let Moduli { lambda, mu } = self.moduli();
         Moduli { lambda: lambda / self.young, mu: mu / self.young }
     }
@@ -259,6 +262,7 @@ impl Material {
     pub fn moduli_by_poisson(&self) -> Moduli {
         let (nu, stretch) = (self.poisson, self.young * self.thickness());
         let lambda = match self.state {
+            // The stiffness E A of a rod has no Poisson's ratio.
             State::Rod { .. } => return Moduli { lambda: 0.0, mu: 0.0 },
             State::PlaneStress { .. } => (1.0 + nu * nu) / ((1.0 + nu) * (1.0 - nu)).powi(2),
             State::Solid | State::PlaneStrain { .. } => (1.0 + 2.0 * nu * nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)).powi(2),

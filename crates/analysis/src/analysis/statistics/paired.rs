@@ -74,6 +74,8 @@ impl Paired {
             return Verdict::Tie;
         }
         // All differences have one sign with this probability.
+        // The exponent ends at 1000: the power is 9e-302 there, still a number and below any level, and the cast to 32
+        // bits holds.
         if made as f64 * 2.0 * 0.5f64.powi(self.count.min(1000) as i32) > LEVEL {
             return Verdict::TooFew;
         }
@@ -100,6 +102,7 @@ pub fn signed_rank(differences: &[f64]) -> f64 {
     let positive: f64 = known.iter().zip(&ranks).filter(|(d, _)| **d > 0.0).map(|(_, rank)| rank).sum();
     let all = (n * (n + 1)) as f64 / 2.0;
     let smaller = positive.min(all - positive);
+    // With ties the sum of ranks takes halves, which the exact distribution of whole ranks does not have.
     if n <= EXACT && ties == 0.0 {
         return (2.0 * share_below(n, smaller as usize)).min(1.0);
     }
@@ -113,6 +116,8 @@ pub fn signed_rank(differences: &[f64]) -> f64 {
 fn ranks(sorted: &[f64]) -> (Vec<f64>, f64) {
     let (mut ranks, mut ties, mut start) = (Vec::new(), 0.0, 0);
     while start < sorted.len() {
+        // Values are compared with the first of their group, not with the one before, so that a chain of small
+        // differences joins no far ones.
         let is_equal = |x: &&f64| **x - sorted[start] <= SAME * sorted[start];
         let count = sorted[start..].iter().take_while(is_equal).count();
         ranks.extend(std::iter::repeat_n(start as f64 + (count as f64 + 1.0) / 2.0, count));

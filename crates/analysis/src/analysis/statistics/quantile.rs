@@ -5,9 +5,11 @@ use serde::Serialize;
 /// The quantile at the share `p` of ascending values, by linear interpolation between order statistics: definition 7 of Hyndman and Fan
 /// (1996), The American Statistician 50. It is not a number for no values.
 pub fn quantile(sorted: &[f64], p: f64) -> f64 {
+    // The length less one would underflow for no values.
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = p * last as f64;
     let below = (place.floor() as usize).min(last);
+    // The last value has none after it; its weight is zero there.
     let above = (below + 1).min(last);
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }

@@ -65,6 +65,7 @@ impl ExactEnergy {
 
     /// The energy W at the invariants `I1`, `I2`, `J`, with λ and μ.
     fn value(&self, [i1, i2, j]: [f64; 3], [lambda, mu]: [f64; 2]) -> f64 {
+        // The invariants are 3 at rest also in the plane, where they contain the stretch through the thickness.
         let square = (j - 1.0) * (j - 1.0);
         match self {
             ExactEnergy::StableNeoHookean => mu / 2.0 * (i1 - 3.0) - mu * (j - 1.0) + (lambda + mu) / 2.0 * square,
@@ -233,6 +234,7 @@ impl Coefficients {
                 ) => plain,
             });
         }
+        // Only 1/2 itself, which plane stress and rods may have, leaves the λ of the solid without a finite value.
         if nu == 0.5 {
             let expected = "a ratio below 0.5 for exact networks at large deformation";
             return Err(Error::expected("poisson", expected, nu));

@@ -65,6 +65,8 @@ const SIZES: [f64; 3] = [0.7, 1.9, 1e4];
 const ROUNDING: f64 = 1e-12;
 /// The weights of the values at −2h, −h, h and 2h in `12 h` times the slope, and in `12 h²` times the bend without its middle, −30.
 const SLOPE: [f64; 4] = [1.0, -8.0, 8.0, -1.0];
+// The weights of a second derivative sum up to 64/12, so that rounding leaves `64/12 · 1.1e-16/h² = 6e-10` of the
+// values. Second derivatives in inner parameters steer the search alone, which needs no more.
 const BEND: [f64; 4] = [-1.0, 16.0, 16.0, -1.0];
 const AROUND: [f64; AROUND_COUNT] = [-2.0, -1.0, 1.0, 2.0];
 /// How many values a difference has.
@@ -97,6 +99,7 @@ impl Function {
         let inner: Vec<f64> = outer.iter().map(|outer| if *outer { 0.0 } else { 1.0 }).collect();
         // A force that is left without the outer parameters would be lost in a sum over them.
         if own.tried(&inner).iter().any(|t| *t != 0.0) {
+            // The search then takes all parameters as inner ones, which is slower and right for every function.
             outer.fill(false);
         }
         own.outer = outer;
@@ -182,6 +185,7 @@ impl Function {
 
     /// `∂T/∂p_i`.
     pub fn first(&self, c: &[f64], rest: f64, parameters: &[f64], i: usize) -> Vec<f64> {
+        // A linear parameter has the force at its unit as an exact derivative, without a difference.
         if self.outer[i] {
             return self.forces(c, rest, &self.unit(parameters, i));
         }
@@ -223,6 +227,8 @@ impl Function {
     fn is_straight(&self, i: usize, parameters: usize) -> bool {
         SIZES.iter().all(|size| {
             let at = |p: f64| {
+                // The other parameters differ from each other, from zero and from one, where terms of a function may
+                // vanish or cancel.
                 let mut values: Vec<f64> = (0..parameters).map(|j| 0.9 + 0.3 * j as f64).collect();
                 values[i] = p;
                 self.tried(&values)
@@ -238,6 +244,8 @@ impl Function {
             (values[i], values[j]) = (p, q);
             self.tried(&values)
         };
+        // Three corners of a rectangle give the fourth of effects that add up. The sides differ, so that a product of
+        // both parameters shows.
         balanced([&at(1.3, 0.6), &at(0.0, 0.0), &at(1.3, 0.0), &at(0.0, 0.6)])
     }
 }
@@ -330,6 +338,7 @@ fn balanced([a, b, c, d]: [&[f64]; 4]) -> bool {
 fn measure_step(c: f64, rest: f64) -> f64 {
     // A measure at rest of zero has no size that a step could be relative to.
     let size = if rest == 0.0 { c.abs() } else { rest.abs() };
+    // Rest and measure are both zero for springs without a length: any step serves, since no other size is known.
     STEP * if size == 0.0 { 1.0 } else { size }
 }
 
