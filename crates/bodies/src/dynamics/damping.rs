@@ -125,6 +125,8 @@ impl Dampers {
             }
             // A spring that pushes over has no frequency to be damped, and one between held points does not move.
             let damps = slope > 0.0 && inverse > 0.0;
+            // Between its points a spring is an oscillator of the stiffness k and the mass `m = 1/Σ g²/m_i`, whose
+            // critical damping is `2 √(k m)`.
             Ok(if damps { 2.0 * ratio * (slope / inverse).sqrt() } else { 0.0 })
         };
         let lengths = network.lengths.iter().map(|s| of(&s.points, &Measure::Length, &place(&s.points), s.constant));

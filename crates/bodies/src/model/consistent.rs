@@ -57,6 +57,8 @@ impl ConsistentMasses {
                         negative.get_or_insert((cell.index, mass));
                     }
                     all.points.extend_from_slice(cell.nodes);
+                    // M is stored by factors, `M = Σ v vᵀ` with `v = √m N`: no product with it can have a negative
+                    // energy by rounding.
                     all.values.extend(values.iter().map(|n| mass.max(0.0).sqrt() * n));
                     all.starts.push(all.points.len());
                 }
@@ -123,6 +125,7 @@ impl ConsistentMasses {
         all.values.iter_mut().for_each(|value| *value *= (1.0 - share).sqrt());
         for (p, mass) in lumped.iter().enumerate() {
             all.points.push(p);
+            // Roots are stored, so that the squares add up to the shares of both matrices.
             all.values.push((share * mass).sqrt());
             all.starts.push(all.points.len());
         }

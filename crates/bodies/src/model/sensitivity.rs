@@ -78,6 +78,7 @@ impl Network {
                 return refuse("springs whose force is k (c - rest)", "a law of force");
             }
             if of_points && degree(spring, self.dimension).is_none() {
+                // The third derivatives of other measures are not known in closed form.
                 return refuse("springs on lengths and on contents of cells that fill their space", spring.kind.name());
             }
         }
@@ -246,6 +247,9 @@ fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
 /// at a are their changes along a; in less dimensions they do not change.
 fn third(spring: &MeasureSpring, a: &[f64], u: &[f64], d: usize) -> Vec<f64> {
     match degree(spring, d) {
+        // The content at a point is a determinant of sums of positions, a polynomial of degree 3 in space. Its second
+        // derivatives are linear in the positions, so that their change along a is their value at a. In the plane they
+        // are constant.
         Some(3) => product(&spring.measure.jet(a, d).hessian, u),
         _ => vec![0.0; a.len()],
     }

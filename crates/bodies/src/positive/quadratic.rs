@@ -69,6 +69,7 @@ impl Quadratic {
         let mut squares = vec![0.0; self.rows];
         self.places.iter().zip(&self.values).for_each(|(row, value)| squares[*row] += value * value);
         self.values.iter_mut().zip(&self.places).for_each(|(value, row)| {
+            // A row whose entries are all zero has no size to be divided by.
             if squares[*row] > 0.0 {
                 *value /= squares[*row].sqrt();
             }

@@ -186,8 +186,8 @@ fn varied(
         Pressure::Varying => {
             // A generator of its own: the one of the other loads is not moved on.
             let mut random = StdRng::seed_from_u64(seed ^ SLOPES);
-            // Positions are relative to the middle in units of the longest side, at most 1/2 in size: the pressure
-            // changes by up to half of its mean towards each end of an axis.
+            // Positions are relative to the middle in units of the longest side, about 1/2 in size at most: the
+            // pressure changes by up to half of its mean towards each end of an axis.
             let slopes: Vec<f64> = (0..d).map(|_| random.random_range(-1.0..1.0)).collect();
             let push = |x: &[f64], n: &[f64]| n.iter().map(|n| -n * (1.0 + dot(&slopes, &frame.away(x)))).collect();
             NodalLoad { name: "varying pressure".into(), forces: boundary_forces(mesh, &push, thickness) }

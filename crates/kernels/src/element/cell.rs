@@ -156,6 +156,7 @@ impl Cell {
                 }
             }
         }
+        // An interval has no sides with two corners: it is its own edge.
         if edges.is_empty() { vec![[0, 1]] } else { edges }
     }
 
@@ -175,6 +176,8 @@ impl Cell {
         self.sides().iter().all(|side| {
             let (origin, tangents) = side.embedding(self);
             let above = |x: &[f64]| height(x, &origin, &tangents);
+            // The order of corners decides the sign of heights, which that of the centre makes positive inside. A
+            // rounding of the places may be outside.
             above(at) * above(&centre).signum() >= -1e-12
         })
     }
@@ -249,6 +252,7 @@ impl Side {
 pub fn height(x: &[f64], origin: &[f64], tangents: &[Vec<f64>]) -> f64 {
     let r: Vec<f64> = x.iter().zip(origin).map(|(a, b)| a - b).collect();
     match tangents {
+        // Heights are determinants, not distances: their sign counts, and no root is needed.
         [t] => r[0] * t[1] - r[1] * t[0],
         [s, t] => {
             let normal = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];

@@ -60,6 +60,8 @@ impl<'de> Deserialize<'de> for Constant {
                 if !v.is_finite() {
                     return Err(E::custom(format!("expected a finite number, found {}", v.to_string().to_lowercase())));
                 }
+                // The text of a double is the shortest decimal that is read as the same double. Parsed as an expression
+                // it is that decimal: 0.1 is the rational number 1/10 then, and proofs with it are exact.
                 if v < 0.0 { self.visit_str(&format!("-({})", -v)) } else { self.visit_str(&v.to_string()) }
             }
             fn visit_str<E: de::Error>(self, v: &str) -> Result<Constant, E> {

@@ -42,6 +42,7 @@ impl Tabulation {
             modes: None,
         };
         if let Some(other) = volumetric {
+            // Each rule has the weight zero at the points of the other, so that one loop over all points serves both.
             table.volumetric = vec![0.0; rule.weights.len()];
             table.volumetric.extend(&other.weights);
             table.weights.extend(vec![0.0; other.weights.len()]);

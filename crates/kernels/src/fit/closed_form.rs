@@ -205,6 +205,8 @@ impl ClosedForm {
         }
         let solve = |normal: &Normal<Fraction>| {
             let mut tied = Normal::default();
+            // The mean of an optimum over all symmetries is an optimum too, as the norm is convex and none of them
+            // changes it: equal constants in a class lose nothing.
             normal.tied(&group, self.classes.len(), &mut tied);
             let none = || Error::new("this weight does not determine the springs").of_kind(ErrorKind::Infeasible);
             tied.solve_regular().then_some(tied.rhs).ok_or_else(none)

@@ -221,6 +221,8 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
                 (lambda * &trace.squared()).plus_product(&mu, &squares)
             }
             Hooke::Anisotropic(stiffness) => {
+                // There are six strains in space and three in the plane, whose places after the third stay empty and
+                // are passed over.
                 let mut strain = [const { None }; 6];
                 for k in 0..D {
                     strain[k] = Some(h[k][k].clone());
@@ -289,6 +291,8 @@ impl<T: Scalar> Acoustic<T> {
                 for k in 0..D {
                     parts[voigt(D, j, l)][k] = entry(k, j, k, l).clone();
                     for m in 0..k {
+                        // The part is multiplied by d_k d_m, which is equal to d_m d_k: both are summed once for all
+                        // edges.
                         parts[voigt(D, j, l)][voigt(D, k, m)] = entry(k, j, m, l).clone() + entry(m, j, k, l);
                     }
                 }

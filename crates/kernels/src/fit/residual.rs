@@ -74,12 +74,15 @@ impl SpreadSum {
     /// Adds further values, none below zero.
     pub fn add(&mut self, values: &[f64]) {
         self.sum = values.iter().fold(self.sum, |sum, value| sum + value);
+        // Errors are not negative, so that zero is the start of their maximum. A maximum passes NaN over; the mean
+        // shows it.
         self.max = values.iter().copied().fold(self.max, f64::max);
         self.count += values.len();
     }
 
     /// Mean and maximum of all values; zero if there are none.
     pub fn spread(&self) -> Spread {
+        // The mean of no values is zero, not 0/0.
         Spread { mean: self.sum / self.count.max(1) as f64, max: self.max }
     }
 }
@@ -141,6 +144,8 @@ fn visit_errors(
             widest(batch).map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
         };
         let chunks: Vec<Result<ElementErrors>> = nodes.par_chunks(CHUNK * n).enumerate().map(chunk).collect();
+        // The results of the threads are visited in the order of the cells, so that sums over them are the same on any
+        // number of threads.
         chunks.into_iter().try_for_each(|errors| errors.map(&mut *visit))?;
     }
     Ok(())
@@ -195,6 +200,7 @@ fn frobenius_square<T: Packed>(a: &[T], size: usize) -> T {
                     below = below.plus_product(entry, entry);
                 }
             }
+            // Each entry below the diagonal has its mirror image above it.
             diagonal + &below.scaled(&2.0)
         },
     )

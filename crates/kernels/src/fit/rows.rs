@@ -94,6 +94,7 @@ impl<T: Scalar> Rows<T> {
     fn gram(&self, images: &[T]) -> Vec<T> {
         self.pairwise(|s, t| {
             let product = inner(&self.rows[s * self.size..][..self.size], &images[t * self.size..][..self.size]);
+            // The product of `g_s g_sᵀ` with `g_t g_tᵀ` is the square of `g_s · g_t`.
             product.clone() * &product
         })
     }

@@ -84,6 +84,8 @@ impl Springs {
     /// The element has no group of this name, or a group requires a cell that fills its space.
     pub fn select(element: &Element, names: Option<&[String]>) -> Result<Springs> {
         let mut chosen = element.select_groups(names)?;
+        // Constants are listed by kind of measure everywhere: lengths first, the content last. The sort is stable, so
+        // that groups of one kind stay in the order of the file.
         chosen.sort_by_key(|g| (g.kind != SpringKind::Length, g.is_content()));
         let mut springs = Springs {
             dimension: element.dimension(),
@@ -202,6 +204,7 @@ impl Springs {
         let (table, dimension, nodes) = (&element.tabulation, element.dimension(), element.nodes());
         let kind = [None, Some(SpringKind::Area), Some(SpringKind::Volume)][dimension - 1];
         let pairs: Vec<[usize; 2]> = (0..nodes).flat_map(|a| (a + 1..nodes).map(move |b| [a, b])).collect();
+        // The content at the only point of a rule is that of the whole cell, which is one spring.
         let is_single = table.points() == 1 && kind.is_some();
         let points = (0..table.points()).filter(|&q| !is_single && table.point_weight(q) != 0.0).collect::<Vec<_>>();
         let content = kind.filter(|_| is_single || whole);

@@ -178,6 +178,8 @@ impl Cells {
         count: usize,
     ) {
         for lane in 0..T::COUNT {
+            // Lanes beyond the last cell repeat the first one of the batch, whose numbers are finite. Nothing is taken
+            // from them.
             let cell = first + if lane < count { lane } else { 0 };
             let rows = &self.rows[cell * self.nodes..(cell + 1) * self.nodes];
             for (node, row) in nodes.iter_mut().zip(rows) {
@@ -215,6 +217,8 @@ impl Cells {
         }
         if D == S {
             for l in D..3 {
+                // With unit vectors in place of the missing tangents the determinant in space is that of the plane or
+                // the line.
                 t[l][l] = zero.one();
             }
         }

@@ -83,6 +83,8 @@ impl<N: Coordinate> Simplices<N> {
                         all.lawful.push(Lawful { cell, scale, spring: s });
                     } else {
                         let simplex = &mut all.cells[cell];
+                        // The measure is `scale · det`, so that k times its square is the slope in the determinant:
+                        // linear springs on one cell add up to one.
                         simplex.slope += spring.constant * scale * scale;
                         simplex.pull += spring.constant * scale * spring.rest;
                     }
@@ -112,6 +114,7 @@ impl<N: Coordinate> Simplices<N> {
         let determinant = |cell: usize| self.cells[cell].determinant::<C, D>(zero, x).wide();
         sound &= self.laws.pull(determinant, &mut tensions.laws, &mut tensions.cells);
         let cells = &tensions.cells[..self.cells.len()];
+        // Both sides are evaluated, whether the tensions are sound or not: all forces are written in any case.
         sound & pull::<N, C, D>(zero, &self.cells, |cell| N::of(cells[cell]), x, force)
     }
 
@@ -127,6 +130,8 @@ impl<N: Coordinate> Simplices<N> {
     ) -> bool {
         let Tensions { cells, patches, .. } = tensions;
         patches.clear();
+        // The place after the last patch takes what the unused entries of memberships add, so that the loop has no
+        // branch.
         patches.resize(self.patches.len() + 1, 0.0);
         for (cell, membership) in self.cells.iter().zip(&self.memberships) {
             let part = membership.share * cell.determinant::<C, D>(zero, x).wide();
@@ -269,6 +274,8 @@ impl Builder {
     fn share(&mut self, nodes: [u32; 4], patch: u32, share: f64) {
         let mut cell = self.cell(nodes);
         let (patches, own) = &self.shares[cell];
+        // A cell has room for one patch around each of its nodes and one share for all. What does not fit is a cell of
+        // the same nodes beside it.
         if patches.len() == self.nodes || (!patches.is_empty() && *own != share) {
             cell = self.add(nodes);
         }

@@ -37,6 +37,8 @@ impl<N: Coordinate> Strains<N> {
         for &s in springs {
             let spring = &network.others[s];
             let Measure::Squares(squares) = &spring.measure else { continue };
+            // Pairs that a domain does not use are of the first row with itself: their distance is zero and adds
+            // nothing.
             let mut pairs = [[0; 2]; SQUARES];
             let mut own = [0.0; SQUARES];
             for (i, (places, weight)) in squares.iter().enumerate() {
@@ -51,6 +53,7 @@ impl<N: Coordinate> Strains<N> {
             }
             if let Some(last) = domains.last_mut() {
                 last.weights.iter_mut().zip(own).for_each(|(weights, own)| weights[count] = N::of(own));
+                // The gradient of a squared distance is 2 r, whose factor is taken into the constants here.
                 last.slopes[count] = N::of(2.0 * spring.constant);
                 last.pulls[count] = N::of(2.0 * spring.constant * spring.rest);
                 count += 1;

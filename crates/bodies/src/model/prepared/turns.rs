@@ -62,6 +62,8 @@ impl Folds {
                 .turns
                 .map(|rows| rows.map(|row| -> [f64; 3] { std::array::from_fn(|k| x[row as usize][k].wide()) }));
             let turns: [f64; TOGETHER] = std::array::from_fn(|i| match i < fold.turn_count {
+                // Turns are evaluated in double precision also where positions are single: an angle is a quotient of
+                // small differences.
                 true => self.turn.value(places[i].as_flattened(), 3),
                 false => 0.0,
             });

@@ -45,6 +45,7 @@ impl<T: Packed, P: Product<T>> Equations<T> for Gradients<T, P> {
         let mut square = zero.clone();
         for s in 0..m {
             rest[s] = rhs[s].clone() - &image[s];
+            // Constants at their bound are zeroed in each direction: the iteration stays in the space of the free ones.
             direction[s] = rest[s].clone() * &free[s];
             square = square.plus_product(&direction[s], &direction[s]);
         }
@@ -59,6 +60,7 @@ impl<T: Packed, P: Product<T>> Equations<T> for Gradients<T, P> {
             for s in 0..m {
                 work = work.plus_product(&direction[s], &image[s]);
             }
+            // A lane that is done may divide zero by zero. The choice passes over the NaN.
             let step = above.choose(&(square.clone() / &work), &zero);
             let mut next = zero.clone();
             for s in 0..m {

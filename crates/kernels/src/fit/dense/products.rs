@@ -16,10 +16,13 @@ pub fn row_products<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut 
 fn row_products_order<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut [T]) {
     let (rows, columns) = (a.len() / n, b.len() / n);
     let mut s = 0;
+    // Of four rows and four columns each number that is read serves four of the sixteen sums, which stay in registers.
+    // Up to three entries of a row above the diagonal come along: they cost less than shorter blocks.
     while s + 4 <= rows {
         row_block::<T, 4>(a, b, n, s, if lower { s + 4 } else { columns }, columns, out);
         s += 4;
     }
+    // The last rows reach to the last column, whether the upper triangle is wanted or not.
     match rows - s {
         1 => row_block::<T, 1>(a, b, n, s, columns, columns, out),
         2 => row_block::<T, 2>(a, b, n, s, columns, columns, out),
@@ -107,6 +110,7 @@ fn add_outers_order<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: 
     let a = &mut a[..n * n];
     let rows = g.len() / n;
     let mut s = 0;
+    // Four rows at a time read and write the sum once for four products.
     while s + 4 <= rows {
         let mut factors: [T; 4] = c[0].repeated();
         for i in 0..4 {
@@ -132,6 +136,7 @@ fn outers<T: Scalar, const A: usize>(a: &mut [T], g: &[T], n: usize, s: usize, c
         for r in 0..A {
             factors[r] = factors[r].clone() * &rows[r][i];
         }
+        // The matrix is symmetric, and its lower triangle alone is read.
         for j in 0..=i {
             let mut sum = a[i * n + j].clone();
             for r in 0..A {
@@ -184,6 +189,8 @@ pub fn tie<T: Scalar>(
         for (t, &j) in unknowns[..=s].iter().enumerate() {
             let term = term(&a[s * m + t], &b[s * m + t]);
             let sum = &mut out[i.max(j) * width + i.min(j)];
+            // The pairs (s, t) and (t, s) both belong to the entry of an unknown with itself, whereas of different
+            // unknowns only one of the two is in the lower triangle.
             *sum = if i == j && s != t { sum.clone() + &term + &term } else { sum.clone() + &term };
         }
     }

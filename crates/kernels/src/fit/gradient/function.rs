@@ -101,6 +101,8 @@ impl<'a> CellFunction<'a> {
         let (mut nodes, mut moduli) = (vec![0.0; cells * n * d], vec![0.0; cells * 2]);
         self.each_chunk(Product::Gradient(weights, change), &mut nodes, n * d, &mut moduli, 2)?;
         let mut points = vec![0.0; self.points.len()];
+        // The shares of cells are added after the threads have ended, in the order of the cells: the sums are the same
+        // on any number of threads.
         for (node, own) in self.connectivity.iter().zip(nodes.chunks_exact(d)) {
             points[node * d..][..d].iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
         }
@@ -139,6 +141,8 @@ impl<'a> CellFunction<'a> {
 
 /// Divides numbers, `[cells × width]`, into those of each chunk of cells. A chunk has none where the width is zero.
 fn chunks(all: &mut [f64], width: usize, cells: usize) -> Vec<&mut [f64]> {
+    // A list of no numbers for each cell has no pieces that could be cut, because a piece of the length zero is a
+    // panic; each chunk of cells has an empty one all the same.
     if width > 0 {
         all.chunks_mut(CHUNK * width).collect()
     } else {

@@ -186,6 +186,8 @@ impl Sampling {
             if let [e, f] = direction.chunks_exact(d).collect::<Vec<_>>()[..] {
                 let (e_norm, f_norm) = (norm(e), norm(f));
                 let cosine = e.iter().zip(f).map(|(e, f)| e / e_norm * (f / f_norm)).sum::<f64>();
+                // The square of the sine is a difference that rounding changes by some 1e-16, a ten thousandth of the
+                // bound.
                 if 1.0 - cosine * cosine < PARALLEL * PARALLEL {
                     return Err(Error::expected(key(), "two directions that differ", "one"));
                 }
@@ -234,6 +236,7 @@ fn check_gradients(list: &[f64], d: usize) -> Result<()> {
             return Err(Error::expected(format!("gradients[{i}]"), format!("entries up to {LARGEST:e}"), entry));
         }
         let content = within(d, |k, l| gradient[k * d + l]).determinant();
+        // The comparison is negated so that a determinant that is not a number is refused.
         if !(content >= FLATTEST) {
             let expected = format!("a shape that is neither flat nor inverted, with det F of at least {FLATTEST}");
             return Err(Error::expected(format!("gradients[{i}]"), expected, format!("det F = {content:.4}")));
