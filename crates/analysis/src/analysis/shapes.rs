@@ -109,6 +109,7 @@ pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f6
 
 /// The identity plus random entries of up to `size`, `[dimension × dimension]`.
 fn affine(dimension: usize, size: f64, random: &mut Random) -> Vec<f64> {
+    // Row by row the diagonal of a matrix is at the multiples of its order plus one.
     let identity = |i: usize| f64::from(u8::from(i.is_multiple_of(dimension + 1)));
     (0..dimension * dimension).map(|i| identity(i) + size * random.symmetric()).collect()
 }

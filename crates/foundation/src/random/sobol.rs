@@ -79,6 +79,7 @@ impl Sobol {
             x ^= self.directions[coordinate][left.trailing_zeros() as usize];
             left &= left - 1;
         }
+        // A number of 32 bits over a power of two is exact in a double, and below one.
         f64::from(x) / 2f64.powi(BITS as i32)
     }
 }
@@ -96,6 +97,8 @@ fn directions((polynomial, initial): (u32, &[u32])) -> [u32; BITS] {
         v[i] = match initial.get(i) {
             Some(m) => m << (BITS - 1 - i),
             None => {
+                // The recurrence of Bratley and Fox (ACM Transactions on Mathematical Software 14, 1988): the terms of
+                // the polynomial between its first and last choose earlier directions.
                 let chosen = (1..s).filter(|k| polynomial >> (s - k) & 1 == 1);
                 chosen.fold(v[i - s] ^ (v[i - s] >> s), |sum, k| sum ^ v[i - k])
             }

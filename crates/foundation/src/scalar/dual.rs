@@ -145,6 +145,7 @@ impl<const N: usize, T: Real> Scalar for Dual<N, T> {
 
     #[inline(always)]
     fn exceeds(&self, other: &Dual<N, T>) -> bool {
+        // Branches follow the values alone, so that slopes take the same way as the numbers whose slopes they are.
         self.value.exceeds(&other.value)
     }
 }
@@ -154,6 +155,7 @@ impl<const N: usize, T: Real> Real for Dual<N, T> {
     fn sqrt(self) -> Dual<N, T> {
         let root = self.value.clone().sqrt();
         let half = root.constant(&0.5) / &root;
+        // The rule for two arguments serves a function of one, whose second slope is zero.
         let zero = root.zero();
         Dual::with(root, &self, &half, &self, &zero)
     }

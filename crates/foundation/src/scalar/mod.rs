@@ -180,6 +180,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn choose(&self, yes: &f64, no: &f64) -> f64 {
+        // NaN is not above zero and takes the second choice, as the comparison of registers does.
         if *self > 0.0 { *yes } else { *no }
     }
 }

@@ -115,11 +115,14 @@ macro_rules! registers {
             #[inline(always)]
             fn turned(self) -> Self {
                 let values: $machine = cast(self.values);
+                // Two bits name the source of each place, the lowest first: 1, 2, 0, and 3 stays where it is.
                 self.of(cast(self.simd.$set.$turn::<0b11_00_10_01>(values)))
             }
 
             #[inline(always)]
             fn difference_of_products(self, b: Self, c: Self, d: Self) -> Self {
+                // One of the two products is not rounded. The difference of equal products is then their rounding
+                // error, not zero.
                 self.of(self.simd.$mul_sub(self.values, b.values, self.simd.$mul(c.values, d.values)))
             }
 

@@ -48,6 +48,7 @@ impl Program {
             Expr::Variable(v) => self.steps.push(Step::Variable(*v)),
             Expr::Sum(inner) | Expr::Product(inner) => {
                 for (i, part) in inner.iter().enumerate() {
+                    // The parts before this one have become one number on the stack.
                     self.push(part, below + i.min(1));
                     if i > 0 {
                         self.steps.push(if matches!(expr, Expr::Sum(_)) { Step::Add } else { Step::Multiply });
@@ -93,6 +94,7 @@ impl Program {
                     }
                 }
                 Step::PowerOf(n) => values[next - 1].iter_mut().for_each(|x| *x = x.powi(*n)),
+                // A root is rounded correctly on every machine, which a power need not be.
                 Step::Power(p) if *p == 0.5 => values[next - 1].iter_mut().for_each(|x| *x = x.sqrt()),
                 Step::Power(p) => values[next - 1].iter_mut().for_each(|x| *x = x.powf(*p)),
                 Step::Call(f) => values[next - 1].iter_mut().for_each(|x| *x = x.apply(*f).unwrap_or(f64::NAN)),

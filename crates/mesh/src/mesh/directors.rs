@@ -61,6 +61,7 @@ impl Mesh {
                 first + place
             }));
         }
+        // A plate of the thickness t has the square t²/12 of the radius of gyration.
         let thicknesses = || gyration.iter().map(|own| (12.0 * own).sqrt());
         let (thinnest, thickest) = (thicknesses().fold(f64::INFINITY, f64::min), thicknesses().fold(0.0, f64::max));
         for ([a, b], normal, count) in &normals {

@@ -43,6 +43,7 @@ impl Mesh {
         if gate.below == Below::Skip && !poor.is_empty() {
             self.quality.skipped += poor.len();
             self.remove(&poor)?;
+            // The cells that are left have the quality that they had, so that the second pass removes none and ends.
             return self.pass(gate);
         }
         self.quality.worst = named;
@@ -133,6 +134,7 @@ impl Mesh {
         let points = |side: SideIndex| sorted(&self.side_nodes(&side));
         let mut lost: HashSet<Vec<usize>> = self.side_indices().filter(|side| !is_kept(side)).map(points).collect();
         self.side_indices().filter(is_kept).for_each(|side| {
+            // A side between a removed cell and a kept one is still a side of the body.
             lost.remove(&points(side));
         });
         self.groups.values_mut().for_each(|group| group.sides.retain(|side| !lost.contains(side)));

@@ -165,6 +165,8 @@ impl Resolved {
     }
 
     pub fn add_cell(&mut self, group: u32, cell: usize) -> Result<()> {
+        // Cells beyond 2³² would take more than a hundred gigabytes before they come here: 32 bits number them, in half
+        // of the memory.
         self.groups.cells.push((cell as u32, group));
         self.charge(1)
     }
@@ -197,6 +199,8 @@ impl Resolved {
             for (index, corners) in self.list.cell_type(cell).sides().iter().enumerate() {
                 let mut key: Vec<usize> = corners.iter().map(|&a| nodes[a]).collect();
                 key.sort_unstable();
+                // A side that a second cell has is inside. The map is ordered, so that sides come in the same order in
+                // each run.
                 met.entry(key).and_modify(|first| *first = None).or_insert(Some((cell, index)));
             }
         }

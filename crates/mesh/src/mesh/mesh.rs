@@ -56,6 +56,7 @@ pub struct Directors {
 impl Directors {
     /// The points that are the directors of a cell.
     pub fn of_cell(&self, cell: usize) -> &[usize] {
+        // There is one radius of gyration for each cell, and as many directors of each.
         let each = self.of_cells.len() / self.gyration.len();
         &self.of_cells[cell * each..(cell + 1) * each]
     }
@@ -253,6 +254,7 @@ impl Mesh {
     /// The least and the largest coordinate of the nodes along each axis, m.
     pub fn ranges(&self) -> Vec<[f64; 2]> {
         let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.dimension];
+        // Directors come after the nodes. They stand beside the body and are no part of it.
         for x in self.points.chunks_exact(self.dimension).take(self.node_count()) {
             for ([least, largest], x) in ranges.iter_mut().zip(x) {
                 (*least, *largest) = (least.min(*x), largest.max(*x));
@@ -334,6 +336,7 @@ impl Mesh {
         for (old, new) in new.iter_mut().enumerate() {
             if *new == 0 {
                 *new = used;
+                // No point moves back: its new place holds one that has been moved already, or itself.
                 self.points.copy_within(old * self.dimension..(old + 1) * self.dimension, used * self.dimension);
                 if let Some(numbering) = &mut self.numbering {
                     numbering.nodes[used] = numbering.nodes[old];

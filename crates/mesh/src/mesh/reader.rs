@@ -134,6 +134,7 @@ impl<'a> Reader<'a> {
 
     /// Passes over so many bytes.
     pub fn pass(&mut self, count: usize) {
+        // Counts come from the file and may be any number; the place stays within the bytes.
         self.at = self.at.saturating_add(count).min(self.bytes.len());
     }
 
@@ -227,6 +228,7 @@ impl<'a> Reader<'a> {
 
 /// At most the first 40 characters, in quotes, on one line.
 pub(super) fn quoted(bytes: &[u8]) -> String {
+    // Forty characters have at most 160 bytes in UTF-8: the rest of a long line is not looked at.
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(160)]);
     let shown: String = text.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     let dots = if shown.len() < bytes.len() && text.chars().count() > 40 { "…" } else { "" };

@@ -98,6 +98,8 @@ fn patch(element: &Element) -> Property {
 
 fn patch_defect(element: &Element, x: &[f64]) -> f64 {
     let d = element.dimension();
+    // By the divergence theorem the gradient of the content in a node is `∫ N_a n dA` over the boundary: a uniform
+    // stress needs no other forces.
     let volume = geometry(element, x).content_gradient();
     let mut boundary = vec![0.0; x.len()];
     if d == 1 {
@@ -114,6 +116,7 @@ fn patch_defect(element: &Element, x: &[f64]) -> f64 {
                 side.nodes.iter().enumerate().map(|(i, a)| x[a * d + k] * gradients[i * (d - 1) + l]).sum()
             };
             let normal = if d == 2 {
+                // Sides run counterclockwise, so that their tangent turned clockwise is outwards.
                 vec![tangent(0, 1), -tangent(0, 0)]
             } else {
                 let cross = |k: usize, l: usize| tangent(0, k) * tangent(1, l) - tangent(0, l) * tangent(1, k);
@@ -135,6 +138,8 @@ fn modes(element: &Element) -> Option<Property> {
     let bubbles = element.tabulation.modes.as_ref()?.bubbles.iter().filter(|is_bubble| **is_bubble).count();
     let defect = |x: &Vec<f64>| {
         let geometry = geometry(element, x);
+        // Functions whose gradients have the mean zero do no work against a uniform stress: the patch test holds as
+        // without them (Taylor, Beresford, Wilson, Int. J. Numer. Methods Eng. 10, 1976).
         let (mut sum, mut size) = (vec![0.0; count * d], 0.0f64);
         for (gradients, volume) in geometry.modes.chunks_exact(count * d).zip(&geometry.volumes) {
             sum.iter_mut().zip(gradients).for_each(|(sum, g)| *sum += volume * g);

@@ -87,11 +87,13 @@ fn gradients(element: &Element) -> Property {
                 };
                 let exact = dn.evaluate(at);
                 let difference = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
+                // Slopes of about zero are compared absolutely, and large ones relative to their size.
                 worst = worst.max((exact - difference).abs() / (1.0 + exact.abs()));
             }
         }
     }
     let finding = format!("largest difference from central differences {worst:.1e}");
+    // Differences err by some 1e-10, and a wrong gradient in its first digits: any bound between tells them apart.
     Property::new("gradients", worst < 1e-5, finding).with(worst)
 }
 
@@ -120,6 +122,7 @@ fn degree(element: &Element) -> Property {
     };
     // What is condensed has gradients that no rule of more points would have.
     let own = Tabulation { modes: None, ..element.tabulation.clone() };
+    // The reference is of a higher degree than any that is tried against it.
     let (Some(own), Some(exact)) = (stiffness(&own), with(24)) else {
         return Property::noted(name, "the reference cell has no stiffness");
     };

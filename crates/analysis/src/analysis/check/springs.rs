@@ -92,12 +92,15 @@ fn rank_and_condition(element: &Element, springs: &Springs) -> (Property, Proper
         let singular = (rows.transpose() * &rows).symmetric_eigenvalues();
         // A square of singular values: what is below the limit is rounding.
         least = least.min(singular.iter().filter(|s| **s > 1e-12 * singular.amax()).count());
+        // The product of `g_s g_sᵀ` and `g_t g_tᵀ` is the square of `g_s · g_t`, which is the square of a cosine of
+        // unit rows.
         let gram = (&rows * rows.transpose()).map(|c| c * c).symmetric_eigenvalues();
         worst = worst.max(if gram.min() > 0.0 { gram.max() / gram.min() } else { f64::INFINITY });
     }
     let mechanisms = expected - least;
     let finding = format!("{least} of {expected}, {mechanisms} mechanisms");
     let rank = Property::new("rank of the springs", mechanisms == 0, finding).with(mechanisms as f64);
+    // Beyond it less than two of sixteen digits are left, and the least eigenvalue itself is rounding.
     let finding = if worst < 1e14 {
         format!("{worst:.1} at worst, scaled to a unit diagonal")
     } else {

@@ -28,6 +28,8 @@ impl Plane {
         let along = cells.map(|nodes| {
             let x: Vec<f64> = nodes.iter().flat_map(|&p| sample.mesh.point(p)).copied().collect();
             let (of_cell, _) = fitted(&x, space, d);
+            // The least singular value of the product of two orthonormal bases is the cosine of the largest angle
+            // between their planes.
             directions.tr_mul(&of_cell).singular_values().min()
         });
         let along = along.fold(1.0, f64::min);

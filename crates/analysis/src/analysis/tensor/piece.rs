@@ -93,6 +93,7 @@ impl Piece {
         let mut network = Network { dimension: whole.dimension, ..Network::default() };
         let mut shares = Vec::new();
         for &point in &sample.points {
+            // Springs on lengths are sorted by their points, so that those of a point follow each other.
             let first = whole.lengths.partition_point(|spring| spring.points[0] < point);
             for spring in whole.lengths[first..].iter().take_while(|spring| spring.points[0] == point) {
                 if let (Some(a), Some(b)) = (place(&spring.points[0]), place(&spring.points[1])) {

@@ -91,6 +91,8 @@ impl<'a> Stars<'a> {
         let (mut places, mut points) = (HashMap::from([(seed, 0)]), vec![seed]);
         let mut cells: Vec<usize> = Vec::new();
         let mut closed = 0;
+        // The cells around the seed are taken in any case, however many points they have: without them there is no
+        // sample.
         while let Some(point) = queue.pop_front().filter(|_| closed < count && (closed == 0 || points.len() < ENOUGH)) {
             closed += 1;
             for cell in self.around(point) {
@@ -152,6 +154,7 @@ fn ends(mesh: &Mesh) -> HashMap<usize, bool> {
     let mut ends = HashMap::new();
     for block in mesh.blocks.iter().filter(|block| block.element.dimension() == 1) {
         for (nodes, corner) in block.cells().flat_map(|nodes| [(nodes, 0), (nodes, 1)]) {
+            // A line has no sides. Its boundary is the points that a single cell has as an end.
             if let Some(node) = block.element.corner_node(corner) {
                 ends.entry(nodes[node]).and_modify(|is_single| *is_single = false).or_insert(true);
             }

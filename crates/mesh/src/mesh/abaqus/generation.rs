@@ -35,6 +35,8 @@ impl Arc {
         let radii = [norm(&u), norm(&v)];
         let is_round = (radii[0] - radii[1]).abs() <= ROUND * radii[0];
         let (cosine, across) = (dot(&u, &v), norm(&cross(u, v)));
+        // The sine of the angle between both radii tells whether they span a plane. Below 1.5e-8, the square root of a
+        // rounding, the radii are in line to rounding.
         if !is_round || !(across > f64::EPSILON.sqrt() * radii[0] * radii[1]) {
             return None;
         }
@@ -42,12 +44,15 @@ impl Arc {
         let along = dot(&first, &v);
         let second: [f64; 3] = std::array::from_fn(|k| v[k] - along * first[k]);
         let length = norm(&second);
+        // The arc tangent of sine and cosine has all digits at every angle, where an arc cosine loses half of them near
+        // 0° and 180°.
         Some(Arc { center, radii, axes: [first, second.map(|x| x / length)], angle: across.atan2(cosine) })
     }
 
     /// The point at the share t of the angle.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let (sine, cosine) = (t * self.angle).sin_cos();
+        // Radii that differ in the digits of a deck go over into each other, so that both ends are met.
         let radius = (1.0 - t) * self.radii[0] + t * self.radii[1];
         std::array::from_fn(|k| self.center[k] + radius * (cosine * self.axes[0][k] + sine * self.axes[1][k]))
     }
@@ -90,6 +95,7 @@ impl Image {
             }
             (Image::Shift, _) => Err("a translation, or zeros and two points of an axis with an angle"),
             (Image::InLine, 6) => {
+                // A reflection in a line of space is half a turn about it.
                 let turn = Turn::of(&[numbers, &[180.0]].concat()).ok_or("two points of a line")?;
                 Ok(Box::new(move |p| turn.apply(p)))
             }

@@ -9,6 +9,7 @@ use crate::mesh::lines::Lines;
 use crate::mesh::reader::quoted;
 
 /// How many nodes and elements the keywords of a deck may make: a line of a few characters can ask for as many as it likes.
+// About as many as a generated mesh may have.
 const MOST: usize = 1 << 21;
 
 impl Deck {
@@ -102,6 +103,7 @@ impl Deck {
     pub(super) fn close_generation(&mut self, lines: &Lines, of: Generation) -> Result<()> {
         let Generation::NodesCopied { of, add, times, image, set, numbers } = of else { return Ok(()) };
         let map = image.map(&numbers).map_err(|expected| refused(lines, expected, &format!("{numbers:?}")))?;
+        // A second reflection would bring the nodes back to where they were.
         if times > 1 && !matches!(image, Image::Shift) {
             return Err(refused(lines, "one reflection", &format!("MULTIPLE={times}")));
         }
@@ -126,6 +128,7 @@ impl Deck {
         let [first, last] = ends;
         let (first, last) = (first?, last?);
         let step = field(2).map_or(Ok(1), |field| signed(lines, field))?;
+        // The difference of two numbers of 64 bits has a sign as well, and needs one bit more.
         let span = i128::from(last) - i128::from(first);
         let step = i128::from(step);
         if step == 0 || span % step != 0 || span / step < 1 {
@@ -318,6 +321,7 @@ impl Deck {
 
     /// Counts what is made.
     fn charge(&mut self, lines: &Lines, count: u64, times: u64) -> Result<()> {
+        // The count is checked before anything is made, and a product beyond 64 bits counts as the largest number.
         let made = count.saturating_mul(times).saturating_add(self.made as u64);
         if made > MOST as u64 {
             let expected = format!("at most {MOST} nodes and elements that keywords make");
@@ -330,6 +334,7 @@ impl Deck {
 
 /// `(1 − t) a + t b`.
 fn straight(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
+    // This form meets both ends to the last digit, as `a + t (b − a)` need not.
     std::array::from_fn(|k| (1.0 - t) * a[k] + t * b[k])
 }
 

@@ -93,6 +93,8 @@ impl Triangles {
     /// The volume between a triangle and a place, `x·(y × z)/6` of its corners from there, m³: positive if it sees the outside of the place.
     pub fn volume(&self, triangle: [usize; 3], from: [f64; 3]) -> f64 {
         let [x, y, z] = triangle.map(|p| self.along(from, p));
+        // Volumes have a sign: those of tetrahedra from any one place to the triangles of a closed surface add up to
+        // what it encloses.
         dot(&x, &cross(y, z)) / 6.0
     }
 
@@ -105,6 +107,7 @@ impl Triangles {
     /// The height of a triangle over its longest edge, m.
     pub fn height(&self, triangle: [usize; 3]) -> f64 {
         let edge = |i: usize| distance(&self.points[triangle[i]], &self.points[triangle[(i + 1) % 3]]);
+        // The least of the three heights stands on the longest edge.
         2.0 * self.area(triangle) / (0..3).map(edge).fold(0.0, f64::max)
     }
 

@@ -100,6 +100,7 @@ impl Systems {
         if open.contains(&number) {
             return Err(fault(stated.line, "is defined by itself".into()));
         }
+        // The systems on the way down are kept, because a chain of systems that closes would be followed without end.
         open.push(number);
         let places = match stated.by {
             By::Places(around, places) => {

@@ -34,6 +34,7 @@ pub fn children(cell: Cell, diagonal: usize) -> Vec<Child> {
             let tetrahedra = pyramid_tetrahedra().map(|map| Child { cell: Cell::Tetrahedron, map });
             pyramids().into_iter().map(own).chain(tetrahedra).collect()
         }
+        // No pentagons of half the size fill a pentagon.
         Cell::Pentagon => Vec::new(),
     }
 }
@@ -65,6 +66,7 @@ fn middle(cell: Cell, [a, b]: [usize; 2]) -> Vec<f64> {
 
 fn triangles() -> impl Iterator<Item = Affine> {
     let parts =
+        // The triangle in the middle is turned by half a turn, which keeps the order of its corners.
         [[[0, 0], [0, 1], [0, 2]], [[0, 1], [1, 1], [1, 2]], [[0, 2], [1, 2], [2, 2]], [[1, 2], [0, 2], [0, 1]]];
     parts.into_iter().map(|part| Affine::onto_simplex(&part.map(|pair| middle(Cell::Triangle, pair))))
 }
@@ -87,6 +89,8 @@ fn tetrahedra(diagonal: usize) -> impl Iterator<Item = Affine> {
 
 fn pyramids() -> Vec<Affine> {
     let corner = |x: f64, y: f64| halved(vec![x, y, 0.0]);
+    // This pyramid stands on its head. Its first two edges are exchanged, so that the determinant of the map stays
+    // above zero.
     let hanging = vec![vec![0.0, 0.5, 0.0], vec![0.5, 0.0, 0.0], vec![0.0, 0.0, -0.5]];
     let top = vec![0.0, 0.0, 0.5];
     vec![
@@ -113,6 +117,7 @@ fn oriented(mut corners: [Vec<f64>; 4]) -> Affine {
     let map = Affine::onto_simplex(&corners);
     let [u, v, w] = [&map.edges[0], &map.edges[1], &map.edges[2]];
     let across = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    // A map of a negative determinant would make a cell that is inside out.
     if across.iter().zip(w).map(|(n, w)| n * w).sum::<f64>() > 0.0 {
         return map;
     }

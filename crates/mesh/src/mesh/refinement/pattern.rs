@@ -67,6 +67,7 @@ fn support(element: &Element, point: usize, at: &[f64]) -> Option<Vec<(usize, f6
         return Some(vec![(point, 1.0)]);
     }
     let values = element.functions.values.iter().map(|n| n.evaluate(at)).enumerate();
+    // The comparison is negated so that a value that is not a number is kept, and refused below.
     let kept: Vec<(usize, f64)> = values.filter(|(_, n)| !(n.abs() < ZERO)).collect();
     kept.iter().all(|(_, n)| n.is_finite()).then_some(kept)
 }
@@ -94,7 +95,9 @@ fn sides(
         }
     }
     let mut parts = vec![Vec::new(); element.sides().len()];
+    // A side of two parts is inside the cell; one that was met once is part of a side of the cell.
     for side in order.into_iter().filter(|side| met[side] == 1) {
+        // A point is on the side where the nodes of the side alone have a share in it.
         let holds = |nodes: &[usize]| side.iter().all(|&p| points[p].iter().all(|(a, _)| nodes.contains(a)));
         let place = element.sides().iter().position(|own| holds(&own.nodes)).ok_or_else(|| apart(element))?;
         parts[place].push(side);

@@ -9,6 +9,8 @@ use crate::mesh::source::MeshSource;
 
 /// Bytes before the facets of a binary file, and of each facet.
 const HEADER: usize = 84;
+// The header has 80 bytes of any text and a count of four bytes. A facet has twelve numbers of four bytes and two bytes
+// of attributes.
 const FACET: usize = 50;
 
 /// Reads an STL file. Corners at exactly the same coordinates are one point; each named solid is a group.
@@ -17,6 +19,7 @@ const FACET: usize = 50;
 /// The file is damaged or cut short.
 pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
     let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    // The length is worked out with checks: a count of text that is read as a number may be anything.
     let is_of =
         |count: u32| (count as usize).checked_mul(FACET).and_then(|n| n.checked_add(HEADER)) == Some(bytes.len());
     // Binary files may begin with the word "solid" as well; their length tells.

@@ -68,6 +68,7 @@ impl Image {
         let mut places: Vec<f64> = vec![0.0; 3];
         if around_points {
             self.lattice = self.lattice.around_points();
+            // Voxels are centred on their points. Along an axis with one layer of points the image has no thickness.
             for k in (0..3).filter(|&k| self.lattice.0[k] > 1) {
                 places[k] = -0.5;
             }

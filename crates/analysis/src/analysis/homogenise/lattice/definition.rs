@@ -104,6 +104,7 @@ impl NamedLattice {
                 let bond = Bond { from, to, shift, shell: 0 };
                 let [x, y, z] = self.along(&bond);
                 let square = x * x + self.root.square() * y * y + z * z;
+                // Squares of distances are whole numbers, also with √3 along y, so that they are compared exactly.
                 let shell = self.squares.iter().position(|own| *own == square);
                 bonds.extend(shell.map(|shell| Bond { shell, ..bond }));
             }
@@ -173,6 +174,7 @@ impl NamedLattice {
         };
         let number = |shift: [i64; 3]| {
             let inside = (0..d).all(|k| shift[k] >= 0 && (shift[k] as usize) < cells[k]);
+            // The first direction runs fastest, as it does in the list of shifts below.
             inside.then(|| (0..d).rev().fold(0, |sum, k| sum * cells[k] + shift[k] as usize))
         };
         let shifts: Vec<[i64; 3]> = (0..cells.iter().product::<usize>())

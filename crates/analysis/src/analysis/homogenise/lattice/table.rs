@@ -34,6 +34,7 @@ const LATTICES: [NamedLattice; 8] = [
         root: Root::OfThree,
         cell: &[[12, 0, 0], [6, 6, 0]],
         points: &[[0, 0, 0], [6, 2, 0]],
+        // With the unit √3/12 along y a side has the square `6² + 3 · 2² = 48`, of the length a/√3.
         squares: &[48, 144],
     },
     NamedLattice {
@@ -43,6 +44,7 @@ const LATTICES: [NamedLattice; 8] = [
         root: Root::OfThree,
         cell: &[[12, 0, 0], [6, 6, 0]],
         points: &[[0, 0, 0], [6, 0, 0], [3, 3, 0]],
+        // A side has `3² + 3 · 3² = 36`, of the length a/2; second neighbours are `√108/12 = √3/2` apart.
         squares: &[36, 108],
     },
     NamedLattice {
@@ -61,6 +63,7 @@ const LATTICES: [NamedLattice; 8] = [
         root: Root::One,
         cell: &[[-6, 6, 6], [6, -6, 6], [6, 6, -6]],
         points: &[[0, 0, 0]],
+        // Half a space diagonal has the square `3 · 6² = 108`.
         squares: &[108, 144],
     },
     NamedLattice {
@@ -70,6 +73,7 @@ const LATTICES: [NamedLattice; 8] = [
         root: Root::One,
         cell: &FACES,
         points: &[[0, 0, 0]],
+        // Half the diagonal of a face has the square `2 · 6² = 72`.
         squares: &[72, 144],
     },
     NamedLattice {
@@ -79,6 +83,8 @@ const LATTICES: [NamedLattice; 8] = [
         root: Root::One,
         cell: &FACES,
         points: &[[0, 0, 0], [3, 3, 3]],
+        // A quarter of the space diagonal has the square `3 · 3² = 27`; second neighbours are the nearest ones of one
+        // sublattice.
         squares: &[27, 72],
     },
 ];
