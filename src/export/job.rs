@@ -308,6 +308,8 @@ fn area_by_edges(x: [[f64; 3]; 3]) -> (f64, Vec<([usize; 2], f64)>) {
     let edges = [[0, 1], [1, 2], [0, 2]];
     let squares = edges.map(|[a, b]| distance(x[a], x[b]).powi(2));
     let sum: f64 = squares.iter().sum();
+    // The cross product has all digits of the area of a thin triangle, of which Heron's formula with the squares loses
+    // half.
     let area = norm(&area_vector(x));
     (area, edges.into_iter().zip(squares).map(|(edge, square)| (edge, (sum - 2.0 * square) / (16.0 * area))).collect())
 }

@@ -116,6 +116,7 @@ fn standard_body(
             forces: load.forces.clone(),
             elements: load.fem.clone(),
             networks: networks.ok_or_else(|| missing("network that is stable"))?,
+            // Compliances are works `f·u` of whole loads; the energy of a linear body is half of the work.
             truth: [0.5 * limit.value, 0.5 * limit.uncertainty],
         });
     }

@@ -111,6 +111,8 @@ impl Trial<'_> {
         let Some(second) = rows.first().and_then(|row| row.found) else {
             return Ok(Factor::NotAtRest);
         };
+        // With `c(f) = a/f + b`, relative to the right compliance, two factors give a and b, and `c = 1` gives `f =
+        // a/(1 − b)`.
         let (at_one, at_first) = (1.0 + error, 1.0 + second.of_model_percent / 100.0);
         let a = (at_one - at_first) / (1.0 - 1.0 / first);
         let factor = a / (1.0 - (at_one - a));

@@ -34,6 +34,7 @@ impl Camera {
             return Camera::straight();
         }
         let size = mesh.extent();
+        // A body that is long along y is turned until y, not x, lies across the view.
         let turn = if size[1] > 1.5 * size[0] { 90.0 - TURN } else { TURN };
         Camera::turned(turn, ELEVATION)
     }
@@ -81,6 +82,8 @@ pub fn silhouette(faces: &[Vec<usize>], points: &[Seen], is_solid: bool) -> Vec<
             if is_front || !is_solid { count.0 += 1 } else { count.1 += 1 }
         }
     }
+    // The contour of a solid is between a face in front and one behind. A side with a single face is a border, on
+    // sheets as well.
     let is_edge = |(front, back): (usize, usize)| front == 1 && (back == 1 || !is_solid) || front + back == 1;
     let mut edges: Vec<[usize; 2]> = sides.into_iter().filter(|(_, count)| is_edge(*count)).map(|(e, _)| e).collect();
     // The order of a hash map differs from run to run, and the picture must not.

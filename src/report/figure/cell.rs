@@ -49,6 +49,7 @@ pub(in crate::report) fn cell_picture(element: &Element) -> String {
     };
     let ((left, wide), (bottom, tall)) = (range(0), range(1));
     let room = panel - 2.0 * MARGIN;
+    // A line is seen without a height.
     let size = (room / wide).min(room / tall.max(1e-300));
     let high = CAPTION + 2.0 * MARGIN + size * tall;
     let large = ((2.0 * panel - 2.0 * WIDE) / wide).min((2.0 * high - 2.0 * WIDE) / tall.max(1e-300));
@@ -151,6 +152,8 @@ fn numbers(drawn: &Drawn) -> Group {
             let points: f64 = taken.iter().filter(|other| *other != node).map(|other| near(apart(*at, *other))).sum();
             let edges: f64 = drawn.seen.iter().chain(&drawn.hidden).map(|edge| near(from_edge(*at, *edge))).sum();
             // Where all is free, away from the middle.
+            // A number over another one is worse than one over an edge. The last term is smaller than any of both: it
+            // decides among free places alone.
             4.0 * points + edges - 1e-3 * apart(*at, middle) / AWAY
         };
         let tried = (0..DIRECTIONS).map(|i| {
@@ -217,6 +220,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 fn from_edge(at: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let square = along[0] * along[0] + along[1] * along[1];
+    // An edge that is seen from its end has no length on the page, by which nothing may be divided.
     let share = ((at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1]) / square.max(1e-300);
     let share = share.clamp(0.0, 1.0);
     apart(at, [a[0] + share * along[0], a[1] + share * along[1]])

@@ -126,6 +126,7 @@ fn factor(mesh: &Mesh, displacement: &[f64]) -> f64 {
     };
     let size = (0..d).map(extent).fold(0.0, f64::max);
     let largest = displacement.chunks_exact(d).map(crate::springs::norm).fold(0.0, f64::max);
+    // Two digits of the factor are told in the key; the drawing takes the factor with the same digits.
     if largest == 0.0 { 1.0 } else { format!("{:.1e}", SHOWN * size / largest).parse().unwrap_or(1.0) }
 }
 

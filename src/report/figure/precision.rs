@@ -86,6 +86,8 @@ pub fn precision_chart(
     let (unit, per_second) = cost.unit();
     let largest = points.iter().map(|(.., error)| *error).fold(0.0, f64::max);
     let least = largest * 10f64.powf(-DECADES);
+    // Marks of smaller errors stand below the least error that is shown, not at the end of the decades, so that no room
+    // is left empty.
     let shown = points.iter().map(|(.., error)| *error).filter(|error| *error >= least).fold(largest, f64::min);
     let percent = if error.ends_with('%') { " %" } else { "" };
     let series = |(place, name, seconds, error): &(usize, String, f64, f64)| {

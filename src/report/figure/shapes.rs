@@ -109,6 +109,7 @@ impl Deformation {
 
     /// The faces that are turned to the viewer, each with this colour and this line around it.
     fn surface(&self, scale: &Scale, points: &[Seen], color: impl Fn(&[usize]) -> String) -> Vec<Part> {
+        // Faces of a solid that are turned away are behind others. A sheet shows both of its sides.
         let seen = self.faces.iter().filter(|face| !self.is_solid() || turning(face, points) > 0.0);
         let part = |face: &Vec<usize>| {
             let at: Vec<[f64; 2]> = face.iter().map(|&p| scale.place(points[p].at)).collect();
@@ -138,9 +139,11 @@ impl Deformation {
             let (tail, tip) = (scale.place(*tail), scale.place(*tip));
             let [dx, dy] = [tip[0] - tail[0], tip[1] - tail[1]];
             let long = dx.hypot(dy);
+            // An arrow of less than a pixel has no direction that could be seen.
             if long < 1.0 {
                 continue;
             }
+            // A short arrow has a short head, so that more than half of its length is left for the shaft.
             let head = (0.45 * long).min(5.0) / long;
             let back = [tip[0] - head * dx, tip[1] - head * dy];
             let side = [-0.45 * head * dy, 0.45 * head * dx];
@@ -216,6 +219,7 @@ impl Deformation {
         let normal = cross(a, b);
         let light = [-0.3, 0.75, 0.6];
         let cosine = dot(&normal, &light) / (norm(&normal) * norm(&light)).max(1e-300);
+        // The greys are from 160 to 250: a face is never as dark as the lines and dots on it, nor as light as the page.
         (190.0 + 60.0 * cosine.clamp(-0.5, 1.0)) as u8
     }
 
@@ -298,6 +302,7 @@ impl Scale {
 
 /// What is farther first.
 fn drawn(document: Document, mut parts: Vec<Part>) -> Document {
+    // What is far is drawn first, and what is nearer covers it.
     parts.sort_by(|a, b| a.0.total_cmp(&b.0));
     parts.into_iter().fold(document, |document, (_, path)| document.add(path))
 }

@@ -70,6 +70,7 @@ fn bar(document: Document, row: &RefereeRow, i: usize, y: f64, place: &dyn Fn(f6
         return document.add(beside(zero, if row.moving_percent.is_some() { "not at rest" } else { "diverged" }));
     };
     let shown = place(percent.clamp(LEAST, MOST));
+    // A bar of no length would not be seen.
     let (from, to) = (zero.min(shown), zero.max(shown).max(zero + 0.8));
     let document = document.add(block([from, y], [to - from, BAR - 1.0], i));
     if (LEAST..=MOST).contains(&percent) { document } else { document.add(beside(to, &format!("{percent:+.0} %"))) }

@@ -90,5 +90,7 @@ pub fn limit_of(values: &[f64]) -> Option<Limit> {
 fn aitken(differences: &[f64]) -> Option<(f64, f64)> {
     let [.., first, second] = differences else { return None };
     let q = second / first;
+    // Differences that fall by q from level to level go on as a geometric series, `d₂ (q + q² + …)`. With q of one or
+    // more the series has no sum, and a negative q is that of values that swing.
     (q > 0.0 && q < 1.0).then_some((q, second * q / (1.0 - q)))
 }

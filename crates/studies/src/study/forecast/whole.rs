@@ -11,6 +11,8 @@ use std::collections::HashMap;
 
 /// Loads that are made for a support: of each kind, in the plane and in space; varied ones; those that choose ρ where loads are not varied;
 /// and those that no fit has seen.
+// In the plane three stresses, one bending and two directions of gravity are made; in space six stresses, torsion, two
+// bendings and three directions.
 const MADE: [f64; 2] = [6.0, 12.0];
 const VARIED: f64 = 17.0;
 const RANDOM: f64 = 4.0;
@@ -104,6 +106,7 @@ fn network_cost(recipe: &WholeRecipe, mesh: &Mesh) -> Result<(FactorCost, f64)> 
 fn seconds(factor: FactorCost) -> [f64; 2] {
     let rate = SPARSE * dense_rate();
     let factorisation = if factor.operations < SLOWEST_RATE { 0.0 } else { factor.operations / rate };
+    // A solution reads the factor forward and backward.
     [factorisation, 2.0 * factor.entries / SOLUTIONS]
 }
 
@@ -134,6 +137,8 @@ pub(super) fn of_fit(recipe: &WholeRecipe, mesh: &Mesh, is_finer: bool) -> Resul
     let search = stages * (solutions * product + STEPS * fitted * (factorisation + ASSEMBLY * parts));
     let judged = stages * validating * solution;
     let compared = NETWORKS * (all * factorisation + held_out * solution);
+    // A factor is kept for each support of the fit, in numbers of eight bytes. The lower triangle alone of the parts is
+    // assembled.
     let bytes = 8.0 * (fitted * cost.entries + parts) + BYTES * parts / 2.0;
     Ok(WholeCost { seconds: search + judged + compared, bytes, entries: parts / 2.0 })
 }

@@ -56,6 +56,8 @@ fn ends(specimen: &Specimen, own: Option<&Support>) -> (Support, Vec<Vec<f64>>, 
     let along = |k: usize| specimen.points.iter().skip(k).step_by(d).copied();
     let range = |k: usize| [along(k).fold(f64::INFINITY, f64::min), along(k).fold(f64::NEG_INFINITY, f64::max)];
     let length = |k: usize| range(k)[1] - range(k)[0];
+    // Of equal lengths the first axis is taken: the maximum is the last of equal ones, so that the order of axes is
+    // turned.
     let axis = (0..d).max_by(|&a, &b| length(a).total_cmp(&length(b)).then(b.cmp(&a))).unwrap_or(0);
     let ([low, high], near) = (range(axis), END * length(axis));
     let mut support = Support { prescribed: vec![None; specimen.points.len()] };
@@ -81,6 +83,7 @@ fn ends(specimen: &Specimen, own: Option<&Support>) -> (Support, Vec<Vec<f64>>, 
     };
     let load = |k: usize| {
         let mut forces = vec![0.0; specimen.points.len()];
+        // The sum of the forces is 1 N, whatever the number of points.
         pulled.iter().for_each(|p| forces[p * d + k] = 1.0 / pulled.len() as f64);
         forces
     };

@@ -24,6 +24,7 @@ pub fn surface(
     let element = load_element(row.element.as_deref().unwrap_or_default(), folder)?;
     let size = row.size.clone().unwrap_or_default();
     let part = |i: usize| i as f64 / STEPS as f64;
+    // Moduli differ by orders of magnitude, so that they are even in their logarithm; ratios are even in themselves.
     let youngs: Vec<f64> = (0..=STEPS).map(|i| young[0] * (young[1] / young[0]).powf(part(i))).collect();
     let poissons: Vec<f64> = (0..=STEPS).map(|i| poisson[0] + (poisson[1] - poisson[0]) * part(i)).collect();
     let mut surfaces = Vec::new();

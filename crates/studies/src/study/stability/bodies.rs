@@ -55,6 +55,7 @@ fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
         let mut part = whole.clone();
         let cells = whole.blocks[0].cells().zip(&first).filter(|(_, is_first)| **is_first == side);
         part.blocks[0].connectivity = cells.flat_map(|(nodes, _)| nodes.to_vec()).collect();
+        // With ν = 0 the moduli are λ = 0 and μ = E/2.
         entries.extend(finite_elements(&part, Moduli { lambda: 0.0, mu: young / 2.0 }));
     }
     let mut support = Support::free(&whole);
@@ -80,6 +81,7 @@ fn springs_in_a_row(case: &str, ratio: f64) -> Result<StabilityRow> {
     support.fix(&[0], &[0], 2);
     let mut f = vec![0.0; points.len()];
     f[2 * ROW] = 1.0;
+    // Springs in a row add up their compliances, half of which are 1 and half 1/ratio.
     let exact = (ROW / 2) as f64 * (1.0 + 1.0 / ratio);
     solved(("springs in a row", case, false), &network.stiffness(&points), &support, &f, &[2 * ROW], exact)
 }
@@ -114,6 +116,7 @@ fn solved(
         .map(|e| faer::sparse::Triplet::new(e.row, e.col, e.val / (diagonal[e.row] * diagonal[e.col]).sqrt()))
         .collect();
     let held: Vec<bool> = support.prescribed.iter().map(Option::is_some).collect();
+    // Scaled to a unit diagonal, the condition number is that of the network, not that of its units of stiffness.
     let ones = vec![1.0; f.len()];
     let largest = largest_square(scaled.iter().map(|e| (e.row, e.col, e.val)), &ones, &held);
     let scaled = System::new(&scaled, support)?;

@@ -248,6 +248,7 @@ impl Subject<'_> {
             // Shapes that become invalid when they are perturbed are skipped.
             largest = largest.max(if small.1.is_finite() { small.1 / small.0 } else { 0.0 });
         }
+        // The rounding of a number is at most half of the distance to the next one.
         ROUNDINGS * f64::EPSILON / 2.0 * largest
     }
 
@@ -271,10 +272,12 @@ impl Subject<'_> {
         eigenvalues.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
         let largest = eigenvalues[0].abs();
         // Without the rigid motions, whose eigenvalues are nearest to zero.
+        // A body of d dimensions has d translations and d (d − 1)/2 rotations.
         eigenvalues.truncate(n - d * (d + 1) / 2);
         let least = eigenvalues.iter().copied().fold(f64::INFINITY, f64::min);
         row.softest = (largest > 0.0).then_some(least / largest);
         let mass = DENSITY * case.material.thickness() * geometry.content() / element.nodes() as f64;
+        // Central differences are stable up to `2/ω` of the largest frequency.
         row.step = Some(2.0 * (mass / largest).sqrt()).filter(|step| step.is_finite());
     }
 }

@@ -241,6 +241,7 @@ impl Run<'_> {
         let extent = self.mesh.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
         let stage = format!("motion of {name}{}", if growth.is_some() { ", indefinite" } else { "" });
         let mut states = Vec::new();
+        // A motion without states to write has no distance between looks, by which nothing may be divided.
         let apart = planned.written.len().div_ceil(LOOKS).max(1);
         for (place, &until) in planned.written.iter().enumerate() {
             progress(Event::stage(&stage, made.steps, planned.recipe.steps));

@@ -109,6 +109,8 @@ impl WholeBody<'_> {
             }
         }
         // The error of the finer mesh, if errors fall like the square of the size of the cells.
+        // Both meshes differ by the error of the coarse one less that of the fine one, which is `c² − 1` times the
+        // latter. Meshes of about one size tell nothing of it: their whole difference counts.
         let rest = (fine.coarseness(self.mesh).powi(2) - 1.0).max(1.0);
         let deviations = |theta: &[f64], step: f64| {
             first.iter().zip(theta).map(|(first, last)| ((last - first) / rest).hypot(step)).collect()

@@ -202,6 +202,7 @@ fn model_error(model: &str, answers: &ModelAnswers, targets: &[Target]) -> Model
     let mut errors: Vec<(f64, &str)> = known.filter(|(error, _)| !error.is_nan()).collect();
     errors.sort_by(|a, b| a.0.total_cmp(&b.0));
     let lost = errors.iter().filter(|(error, _)| error.is_infinite()).count();
+    // Of an even number the median is the mean of both errors in the middle, which are the same one of an odd number.
     let median = (!errors.is_empty()).then(|| (errors[(errors.len() - 1) / 2].0 + errors[errors.len() / 2].0) / 2.0);
     let worst = errors.last().copied();
     ModelError {

@@ -181,6 +181,7 @@ impl RelaxingBody {
 
     /// A stiffness that is linear in the moduli of each part of the body, `K(s) = K(1) − (1 − s) K_part` for the share s of a modulus.
     pub fn split(&self, own: &Entries, made: &Made) -> Result<Vec<RelaxingStiffness>> {
+        // From `K(s) = K(1) − (1 − s) K_part` follows `K_part = (K(1) − K(s))/(1 − s)`.
         let slope = 1.0 / (1.0 - OTHER);
         let mut parts = Vec::new();
         for part in self.parts_of_body() {
