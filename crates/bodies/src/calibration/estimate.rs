@@ -52,6 +52,8 @@ const STEPS: usize = 60;
 /// A step that counts as none: far below any interval.
 const SETTLED: f64 = 1e-7;
 /// The largest change of an unknown in a step, a logarithm.
+// A modulus changes by the factor `e^1.5 = 4.5` in a step at most, beyond which a linearisation in the logarithm says
+// nothing of displacements that go with its inverse.
 const LARGEST: f64 = 1.5;
 /// The step at which a search on some of the meshes ends: the next mesh moves the optimum by more.
 const NEAR: f64 = 0.01;
@@ -63,6 +65,7 @@ const NEAR: f64 = 0.01;
 /// There are as many unknowns as measurements, or no equilibrium at the first guess.
 pub fn estimate(limit: &Limit, noise: bool, goes_on: &mut dyn FnMut(usize) -> bool) -> Result<Estimate> {
     let m = limit.unknowns.count();
+    // As many numbers as unknowns are met exactly, and leave no residual by which noise or model could be judged.
     if limit.observations.len() <= m {
         return Err(Error::expected(
             "measured",
@@ -199,6 +202,7 @@ fn search(
             break;
         };
         (theta, now) = (tried, next);
+        // Steps that succeed become those of Gauss and Newton again, which converge fastest near the optimum.
         damping = if damping < 1e-4 { 0.0 } else { damping / 10.0 };
     }
     Ok(Some(Reached { theta, now, fault, steps }))

@@ -98,6 +98,7 @@ impl Unknowns {
     /// The moduli by whose stiffnesses the forces of a cell change with its unknowns, and where these are in θ.
     pub(super) fn changes(&self, now: &Material, region: usize, owner: usize) -> Vec<(usize, Hooke)> {
         let own = now.moduli();
+        // Moduli are proportional to `E = E₀ e^θ`, so that their derivative in θ is what they are.
         let young = self.young_at(region, owner).map(|place| (place, own.into()));
         let poisson = self.poisson[region].and_then(|place| {
             let beside = |t: f64| Material::new(now.young(), poisson_of(ratio_of(now.poisson()) + t), now.state());
@@ -144,5 +145,7 @@ pub fn poisson_of(t: f64) -> f64 {
 
 /// t of Poisson's ratio, `ln((1 + ν)/(1 − 2ν))`.
 pub fn ratio_of(poisson: f64) -> f64 {
+    // The quotient is 3 K/(2 μ): t is a logarithm of a ratio of moduli, which takes every real number while Poisson's
+    // ratio stays between −1 and 1/2.
     ((1.0 + poisson) / (1.0 - 2.0 * poisson)).ln()
 }

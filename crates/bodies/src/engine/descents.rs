@@ -84,6 +84,7 @@ impl Descents {
         for p in point_order(setting.order, &sets, of_point.len()) {
             let own = std::mem::take(&mut of_point[p]);
             let first = p * d;
+            // A point that is held in all directions has no block, and no step.
             if inverse[first..first + d].iter().all(|w| *w == 0.0) {
                 continue;
             }
@@ -157,6 +158,7 @@ impl Descents {
         let n = self.dimension;
         let (mut residual, mut whole) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for at in 0..self.points.len() {
+            // The transpose of a sweep goes over the points in the opposite order.
             let point = &self.points[if is_reversed { self.points.len() - 1 - at } else { at }];
             for a in 0..n {
                 let dof = point.first + a;

@@ -190,6 +190,8 @@ impl<const D: usize> Body<D> {
                 false => self.project(),
             }
             for dof in 0..self.points.len() {
+                // Engines of positions have no other velocity than that of the corrected positions: what a correction
+                // takes away is lost to the motion as well.
                 self.velocities[dof] = (self.points[dof] - self.before[dof]) / h;
             }
         }

@@ -69,6 +69,7 @@ impl<'a> RestForces<'a> {
 
     /// The largest force on a point in one direction, relative to the largest force of a spring.
     fn share(&self, forces: &[f64], constants: &[f64]) -> f64 {
+        // Springs of no rest length pull with k ℓ.
         let largest = constants.iter().zip(&self.edges.lengths).map(|(k, l)| k.abs() * l).fold(0.0, f64::max);
         forces.iter().fold(0.0f64, |a, f| a.max(f.abs())) / largest
     }

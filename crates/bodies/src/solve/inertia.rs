@@ -82,6 +82,7 @@ impl<'a> Inertia<'a> {
         }
         let of_points = masses.diagonal();
         let least = free.iter().max().map_or(0, |dof| dof / dimension + 1);
+        // A list of masses may be of more points than those that are free, but not of fewer.
         if of_points.len() < least {
             return Err(Error::expected("masses", format!("one for each of at least {least} points"), of_points.len()));
         }

@@ -120,6 +120,7 @@ pub fn fit_masses(
             false => (0..curve.len()).fold(0, |best, k| if error(&curve[k]) < error(&curve[best]) { k } else { best }),
         };
         if best.as_ref().is_none_or(|(least_error, _)| error(&curve[least]) < *least_error) {
+            // A mass that is halved counts as one that is doubled.
             let change = path[least].iter().map(|theta| theta.abs().exp()).fold(1.0, f64::max);
             let (masses, regularization) = (problem.masses(&path[least]), REGULARIZATIONS[least]);
             best = Some((error(&curve[least]), MassFit { masses, regularization, change, curve }));
@@ -141,6 +142,7 @@ fn residuals(of: &[Vibrations], masses: &[f64], dimension: usize) -> Result<Vec<
     let mut all = Vec::new();
     for vibrations in of {
         let modes = vibrations.equations.lowest_modes(masses, dimension, vibrations.squares.len())?;
+        // Half of the logarithm of ω² is that of ω: a residual is the relative error of a frequency.
         all.extend(modes.squares.iter().zip(&vibrations.squares).map(|(a, b)| 0.5 * (a / b).ln()));
     }
     Ok(all)
@@ -226,6 +228,8 @@ impl<'a> Problem<'a> {
             for (_, i) in of.iter().filter(|(own, _)| *own == v) {
                 residuals.push(0.5 * (modes.squares[*i] / wanted.squares[*i]).ln());
                 let own = modes.shapes[*i].chunks_exact(d).map(|phi| phi.iter().map(|x| x * x).sum::<f64>());
+                // With `φᵀ M φ = 1` the derivative of ω² is `−ω² φ_p·φ_p` in a mass, so that of `½ ln ω²` in the
+                // logarithm of the mass is `−½ m_p φ_p·φ_p`.
                 rows.extend(own.zip(&masses).map(|(square, m)| -0.5 * m * square));
             }
         }

@@ -87,6 +87,8 @@ pub fn tabulate(
     let mut gram = DMatrix::<f64>::zeros(count, count);
     for (q, g) in own.gradients.chunks_exact(count * d).enumerate() {
         let rows = DMatrix::from_row_slice(count, d, g);
+        // Points of the volumetric rule alone count with their weight there, so that a mode that only they see is not
+        // taken for none.
         gram += table.point_weight(q) * &rows * rows.transpose();
     }
     let eigenvalues = gram.symmetric_eigenvalues();

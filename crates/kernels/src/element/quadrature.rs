@@ -76,6 +76,7 @@ impl Quadrature {
     /// degree along ζ.
     fn pyramid(degree: usize) -> Quadrature {
         let square = Quadrature::gauss_legendre(2, degree / 2 + 1);
+        // The area of the section falls with the square of the height, which adds two to the degree along it.
         let line = Quadrature::gauss_legendre(1, (degree + 2) / 2 + 1);
         let mut rule = Quadrature { dimension: 3, points: Vec::new(), weights: Vec::new() };
         for (s, ws) in line.points.iter().zip(&line.weights) {

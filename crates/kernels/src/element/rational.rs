@@ -98,6 +98,8 @@ fn collapse(s: Vec<BigRational>, mut weight: BigRational) -> (Vec<BigRational>, 
 
 /// Equally spaced inner points of [−1, 1], or of [0, 1], with weights that integrate powers up to `degree` exactly.
 fn line(degree: usize, unit: bool) -> Line {
+    // Gauss's points are irrational. As many equidistant points as the degree has coefficients have rational weights,
+    // whose growth and signs do no harm without rounding.
     let n = degree as i64 + 1;
     let points: Vec<BigRational> =
         (0..n).map(|i| ratio(if unit { 2 * i + 1 } else { 2 * i + 1 - n }, if unit { 2 * n } else { n })).collect();

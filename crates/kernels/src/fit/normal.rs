@@ -203,6 +203,7 @@ impl<T: Real> Normal<T> {
     /// about its inverse times a rounding error.
     pub fn least_pivot(&self) -> f64 {
         let m = self.size();
+        // The list of pivots has their inverses, by which rows are multiplied.
         (0..m).map(|s| 1.0 / (self.pivots[s].rounded() * self.gram[s * m + s].rounded())).fold(1.0, f64::min)
     }
 }
@@ -255,6 +256,7 @@ impl Normal {
         let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
         let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));
         for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {
+            // Directions of rounding get no part of the solution, which makes it the shortest of all that are as good.
             *c = if value > least { *c / value } else { 0.0 };
         }
         let k = &eigen.eigenvectors * coefficients;

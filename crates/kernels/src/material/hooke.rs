@@ -74,6 +74,8 @@ impl Stiffness {
                 return Err(Error::expected("stiffness", "a symmetric matrix", found));
             }
         }
+        // Both halves differ by the rounding of the file; their mean is symmetric to the last bit, as the assembly of
+        // one half supposes.
         let mean: Vec<f64> = (0..s * s).map(|e| (entries[e] + entries[e % s * s + e / s]) / 2.0).collect();
         let stiffness = Stiffness { dimension, lambda: nearest_lambda(dimension, &mean), entries: mean.into() };
         // Voigt's shears are twice those of the tensor: its eigenvalues would depend on the axes.
@@ -140,6 +142,7 @@ fn nearest_lambda(dimension: usize, entries: &[f64]) -> f64 {
     // Voigt's shear entries are those of the tensor, which has each of them twice in the trace.
     let weight = |i: usize| if i < dimension { 1.0 } else { 2.0 };
     let trace: f64 = (0..s).map(|i| weight(i) * entries[i * s + i]).sum();
+    // This is the λ of the nearest isotropic tensor in the norm of tensors, which does not depend on the axes.
     (normal * (d + 1.0) / 2.0 - trace) / (d * d * (d + 1.0) / 2.0 - d)
 }
 

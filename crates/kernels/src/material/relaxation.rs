@@ -62,6 +62,7 @@ impl Relaxation {
         }
         let relaxation = Relaxation { terms };
         for (key, sum) in ["shear", "bulk"].into_iter().zip(relaxation.sums()) {
+            // Shares of more than one would leave a modulus below zero in the end.
             if sum > 1.0 + SLACK {
                 return Err(Error::expected("terms", format!("shares of {key} that add up to at most 1"), sum));
             }

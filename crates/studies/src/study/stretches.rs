@@ -265,7 +265,6 @@ impl Pulled {
             support.fix(&pulled, &all, d);
             pulled.iter().for_each(|p| support.prescribed[p * d + d - 1] = Some(*stretch));
             // From rest for each stretch: an equilibrium that is lost does not end the list.
-            // The number of steps grows with the stretch, so that no step is longer than the first of a short one.
             let newton = Newton { steps: (stretch / STEP).ceil() as usize, ..Newton::default() };
             let found = newton.solve(model, &self.mesh.points, &support, &vec![0.0; self.mesh.points.len()])?;
             if found.ending == Ending::Stalled {

@@ -20,6 +20,7 @@ impl Decay {
     /// Over the step h, s, with the relaxation time τ, s.
     pub fn new(step: f64, time: f64) -> Decay {
         let x = step / time;
+        // `exp_m1` keeps the digits of `1 − e^(−x)` where x is small.
         let mean = if x == 0.0 { 1.0 } else { -(-x).exp_m1() / x };
         Decay { steps: x, left: (-x).exp(), mean }
     }

@@ -111,6 +111,7 @@ impl FlowMemory {
         let Some(shape) = self.form.shape(&x) else { return false };
         let d = self.form.points().dimension;
         for (branch, term) in self.branches.iter_mut().zip(&self.terms) {
+            // A branch has not relaxed at the start: its state is the shape at rest, whatever the displacements are.
             branch.state.copy_from_slice(&rest.target);
             for (i, point) in self.form.points().each().enumerate() {
                 let Some(present) = Present::of(&point, &x, d) else { return false };
@@ -233,11 +234,13 @@ fn deviator(present: &Present, g: &Matrix3<f64>) -> Matrix3<f64> {
 
 /// `√(3/2) |dev σ|`, Pa, of the modulus g μ.
 fn stress(present: &Present, g: &Matrix3<f64>, modulus: f64) -> f64 {
+    // Von Mises' stress is `√(3/2)` of the norm of the deviator, so that in a tension test it is the tension.
     1.5f64.sqrt() * modulus * deviator(present, g).norm() / present.f.determinant()
 }
 
 /// `w (½ tr(F G Fᵀ) − (3/2) J^(2/3))`; what is below zero is rounding.
 fn energy(present: &Present, g: &Matrix3<f64>, weight: f64) -> f64 {
     let straight = (present.f * g * present.f.transpose()).trace();
+    // At rest `F G Fᵀ` is `J^(2/3) I` with the trace `3 J^(2/3)`, so that the energy is zero.
     (weight * (straight / 2.0 - 1.5 * present.size)).max(0.0)
 }

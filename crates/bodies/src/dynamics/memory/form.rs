@@ -88,6 +88,8 @@ impl Form {
             for point in points.each() {
                 edges.extend(pairs(point.nodes.len()).map(|(a, b)| sorted(point.nodes[a], point.nodes[b])));
             }
+            // Sorted and without repetitions, so that each edge is found by halving and has one spring for all points
+            // around it.
             edges.sort_unstable();
             edges.dedup();
             for point in points.each() {
