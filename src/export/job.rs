@@ -288,6 +288,7 @@ pub fn used_gravity(network: &NetworkRecord, asked: Option<&[f64]>) -> Vec<f64> 
 
 /// The gravity that is asked for, that of the network, or 9.81 m/s² against the last axis; with z = 0 in the plane.
 pub(super) fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> [f64; 3] {
+    // Down is along −y in the plane and along −z in space.
     let usual = if network.dimension == 2 { [0.0, -9.81, 0.0] } else { [0.0, 0.0, -9.81] };
     let given = asked.or(network.gravity.as_deref());
     given.map_or(usual, |given| [0, 1, 2].map(|k| given.get(k).copied().unwrap_or(0.0)))

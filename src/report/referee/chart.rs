@@ -38,6 +38,7 @@ pub fn referee_svg(record: &RefereeRecord) -> String {
         let left = 8.0 + 90.0 * i as f64;
         document = document.add(block([left, 8.0], [10.0, 10.0], i)).add(words(load, [left + 14.0, 17.0], "start"));
     }
+    // The ends of the axis are whole multiples of the distance of its lines.
     for percent in (LEAST as i32..=MOST as i32).step_by(EVERY as usize) {
         let x = place(f64::from(percent));
         let shade = if percent == 0 { "#444444" } else { "#dddddd" };

@@ -257,6 +257,7 @@ impl<'a> Level<'a> {
     fn forward(&self, at: &Point, displacements: &[Vec<f64>], seen: Seen, columns: &mut [Vec<f64>]) -> Result<()> {
         let (observations, own, place) = seen;
         let changes = self.changes(at, displacements)?;
+        // From `K u = f` with a load that stays follows `K du = −dK u`.
         let pushes: Vec<Vec<f64>> = changes.concat().into_iter().map(|f| f.into_iter().map(|f| -f).collect()).collect();
         let moves = at.equations.respond_all(&pushes, PRODUCT)?;
         let count = displacements.len();

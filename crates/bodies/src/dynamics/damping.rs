@@ -82,6 +82,7 @@ impl Dampers {
         };
         let lengths = network.lengths.iter().map(|s| (&s.points[..], Measure::Length));
         let others = network.others.iter().map(|s| (&s.points[..], s.measure.clone()));
+        // A damper of zero would take time in every step.
         for ((nodes, measure), c) in lengths.chain(others).zip(coefficients).filter(|(_, c)| *c > 0.0) {
             dampers.dofs.extend(nodes.iter().flat_map(|p| p * d..(p + 1) * d));
             dampers.starts.push(dampers.dofs.len());

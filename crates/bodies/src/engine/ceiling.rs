@@ -41,6 +41,7 @@ impl Ceiling {
                 let along: f64 = load.2.iter().zip(&u).map(|(a, b)| a * b).sum();
                 let square: f64 = load.2.iter().map(|a| a * a).sum();
                 if along > 0.0 && square > 0.0 {
+                    // The mean of logarithms counts a factor and its inverse alike.
                     logarithms.push((square / along).ln());
                 }
             }

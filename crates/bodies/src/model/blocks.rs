@@ -127,6 +127,7 @@ impl BlockStiffness {
     pub fn absolute_sums(&self, w: &[f64]) -> Vec<f64> {
         fn sums<const D: usize>(matrix: &BlockMatrix<D, D>, w: &[f64]) -> Vec<f64> {
             let (pattern, w) = (matrix.pattern(), w.as_chunks::<D>().0);
+            // Blocks are stored in the order of the rows, each of which goes on where the last one ended.
             let mut blocks = matrix.values().iter();
             let row = |row: usize| {
                 let mut sum = [0.0; D];
@@ -233,6 +234,7 @@ impl Connectivity {
     fn of<'a>(groups: impl Iterator<Item = &'a [usize]>) -> Connectivity {
         let (mut nodes, mut starts) = (Vec::new(), vec![0]);
         for group in groups {
+            // There are fewer than 2³² points, which callers ask before they take blocks.
             nodes.extend(group.iter().map(|&point| point as u32));
             starts.push(nodes.len());
         }
@@ -289,6 +291,7 @@ fn body<const D: usize>(
             .expect("a mesh holds only cells with a volume");
             Ok::<(), Infallible>(())
         };
+        // The error has no value, so that the pattern always matches.
         let Ok(()) = matrix.add(&groups, fill);
     }
     Ok(matrix)

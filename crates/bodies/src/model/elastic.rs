@@ -140,6 +140,7 @@ impl Elastic for Body<'_> {
             total.energy += cell.energy;
             for (i, row) in dofs(nodes, d).enumerate() {
                 total.force[row] += cell.force[i];
+                // The tangent of an energy is symmetric: the lower triangle is all of it.
                 for (j, column) in dofs(nodes, d).enumerate().filter(|(_, column)| row >= *column) {
                     total.tangent.push(Triplet::new(row, column, cell.tangent[(i, j)]));
                 }

@@ -101,6 +101,7 @@ impl Network {
     ) -> Option<f64> {
         force.fill(0.0);
         let d = self.dimension;
+        // The lower triangle of the 2 d rows of two points has `2 d (2 d + 1)/2` entries.
         let (lengths, others) = tangent.split_at_mut(self.lengths.len() * d * (2 * d + 1));
         let mut total = match d {
             1 => pull_and_stiffen::<1>(&self.lengths, x, force, lengths, definite),
@@ -201,6 +202,8 @@ fn pull_and_stiffen<const D: usize>(
         let b: [[f64; D]; D] = from_fn(|k| from_fn(|l| along * r[k] * r[l] + if k == l { across } else { 0.0 }));
         let mut at = 0;
         for k in 0..D {
+            // Entries come in the order in which they are listed: the rows of the first point, then those of the second
+            // with both blocks.
             tangent[at..=at + k].copy_from_slice(&b[k][..=k]);
             at += k + 1;
         }

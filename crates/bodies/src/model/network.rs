@@ -306,6 +306,7 @@ impl Network {
     /// The ratio of the largest to the least constant of the length springs.
     pub fn range(&self) -> f64 {
         let constants = || self.lengths.iter().map(|s| s.constant);
+        // Without springs on lengths the quotient is zero over infinity, zero.
         constants().fold(0.0, f64::max) / constants().fold(f64::INFINITY, f64::min)
     }
 

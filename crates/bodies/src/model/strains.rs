@@ -91,6 +91,8 @@ pub(super) fn strain_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit
 /// Whether a surface goes on from one triangle to another without a crease.
 fn is_smooth(mesh: &Mesh, block: &CellBlock, cells: [usize; 2]) -> bool {
     let corners = cells.map(|cell| block.cell(cell));
+    // Two triangles at an edge have one corner each that the other lacks. Triangles on the same three points lie on
+    // each other.
     if corners[1].iter().filter(|p| !corners[0].contains(p)).count() != 1 {
         return false;
     }

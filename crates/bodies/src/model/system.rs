@@ -55,6 +55,7 @@ fn assembled(mesh: &Mesh, moduli: CellMap<Hooke>) -> Entries {
         let r = cell_stiffness(mesh, (cell, nodes, geometry), moduli.at(cell.block, cell.cell));
         for (i, row) in dofs(nodes, d).enumerate() {
             for (j, column) in dofs(nodes, d).enumerate() {
+                // The stiffness is symmetric: the lower triangle is all of it.
                 if row >= column {
                     entries.push(Triplet::new(row, column, r[(i, j)]));
                 }

@@ -63,6 +63,7 @@ pub(super) fn minimum(programme: &Quadratic, watch: &mut SearchProgress) -> Resu
         point.step(&direction, length);
         let left = point.residual();
         // Residuals may rise between two steps; what a user sees of the progress does not fall back.
+        // A residual of zero gives infinity, which the cast takes to the largest number and the clamp to the end.
         nearest = ((largest / left).log10().max(0.0) as usize).clamp(nearest, NEAR);
         watch(nearest, NEAR);
         if left <= FOUND * largest {

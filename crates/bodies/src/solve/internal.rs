@@ -75,6 +75,7 @@ impl Rest<'_> {
         }
         let (mut force, mut bound) = (vec![0.0; u.len()], vec![0.0; u.len()]);
         let hidden = rounding(&rest.tangent, self.points);
+        // Forces at rest that are within their rounding count as none, and add no bound of theirs.
         if !rest.force.iter().zip(&hidden).all(|(f, r)| f.abs() <= *r) {
             (force, bound) = (rest.force, hidden);
         }

@@ -51,6 +51,7 @@ pub(super) fn ends(
     for start in starts {
         let size = dot(start, &metric(start)).sqrt();
         if size > 0.0 && size.is_finite() {
+            // Starts of the same energy count alike, whatever their units are.
             add(&mut v, 1.0 / size, start);
         }
     }

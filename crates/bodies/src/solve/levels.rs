@@ -20,6 +20,8 @@ use std::ops::ControlFlow;
 /// machine.
 const DOUBT: f64 = 1e-12;
 /// Steps of the proof at most.
+// Each step lowers Chebyshev's bound by `e^−acosh((1 + θ)/(1 − θ))`: where the least eigenvalue θ is 5e-5 of the
+// largest, 3 000 steps lower it to 4e-19.
 const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
 const LEAST_STEPS: usize = 100;
@@ -202,6 +204,7 @@ impl Levels {
         };
         let solver = StaticSolver { tolerance: MODE_TOLERANCE, ..StaticSolver::default() };
         let solve = |x: &mut [f64]| {
+            // A piece of no numbers is a panic, and a body that is held everywhere has none.
             let mut columns: Vec<&mut [f64]> = x.chunks_exact_mut(free.len().max(1)).collect();
             let forces: Vec<Vec<f64>> = columns.iter().map(|x| spread(x)).collect();
             let found = self.respond_all(&forces, &solver)?;

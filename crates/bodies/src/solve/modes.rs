@@ -119,6 +119,7 @@ pub(super) fn modes_of(
         let mut off = residual.clone();
         solve(off.as_mut_slice())?;
         // Rounding may give a small negative product, whose size is still the measure.
+        // With `x = K^½ φ` this is `ω² ‖(K^−½ M K^−½ − ω⁻²) x‖/‖x‖`: an eigenvalue is within this share of ω².
         let error = (residual.dot(&off).abs() / phi.dot(&force)).sqrt();
         // NaN is no mode either.
         if !(error <= TOLERANCE) {

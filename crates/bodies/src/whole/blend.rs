@@ -33,6 +33,7 @@ pub fn fit_mass_share(
             for ((square, shape), wanted) in modes.squares.iter().zip(&modes.shapes).zip(&vibrations.squares) {
                 let even: f64 = consistent.product(shape, dimension)?.iter().zip(shape).map(|(f, u)| f * u).sum();
                 let own: f64 = shape.iter().enumerate().map(|(dof, u)| lumped[dof / dimension] * u * u).sum();
+                // With `φᵀ M φ = 1` the logarithm of ω changes by `−½ φᵀ (∂M/∂s) φ` with the share s.
                 let rate = 0.5 * (even - own);
                 slope += rate * 0.5 * (square / wanted).ln();
                 curvature += rate * rate;

@@ -63,6 +63,7 @@ pub(super) struct PartSprings {
 }
 
 /// The share of λ that cells keep at the start if patches carry the rest.
+// Both halves add up to λ, and neither begins at zero, from which a factor could not take it away.
 const HALF: f64 = 0.5;
 
 impl Carriers {

@@ -72,6 +72,8 @@ impl Determination {
         if seen <= m {
             return Err(Error::expected("displacements", format!("more than {m} that are known"), seen));
         }
+        // Each unknown lowers the sum of squares by that of one residual on average: this divisor leaves the variance
+        // without bias.
         let residual = (dot(residuals, residuals) / (seen - m) as f64).sqrt();
         let size = noise.unwrap_or(residual);
         let reach = ninety_five(noise.is_none().then_some(seen - m));

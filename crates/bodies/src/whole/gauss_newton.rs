@@ -79,6 +79,7 @@ impl GaussNewton {
                 // The shares and factors are those of algorithm 4.1.
                 if kept < 0.25 {
                     radius = 0.25 * length;
+                // A step that the radius has cut has its length but for rounding.
                 } else if kept > 0.75 && length > 0.99 * radius {
                     radius *= 2.0;
                 }

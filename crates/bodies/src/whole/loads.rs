@@ -93,6 +93,7 @@ fn made(mesh: &Mesh, support: &Support, thickness: &CellMap<f64>) -> Vec<NodalLo
 /// The loads that move something: a chain of rods has no sides, all sides may be held, and tractions may cancel wherever points are free.
 fn acting(loads: Vec<NodalLoad>, support: &Support) -> Vec<NodalLoad> {
     let acts = |load: &NodalLoad| {
+        // A load of zeros has no force above its own largest, and is left out as well.
         let least = ROUNDING * largest(&load.forces);
         load.forces.iter().zip(&support.prescribed).any(|(f, held)| held.is_none() && f.abs() > least)
     };

@@ -258,6 +258,7 @@ impl<'a> ModuliParts<'a> {
         let mut values = Vec::new();
         for (dofs, tangent) in self.each() {
             let row = |row: &[f64]| row.iter().zip(dofs).map(|(k, &i)| k * u[i]).sum::<f64>();
+            // A part without points has no rows, and pieces of no numbers are a panic.
             values.extend(tangent.chunks_exact(dofs.len().max(1)).map(row));
         }
         PartVectors { places: self.places.clone(), values }

@@ -292,5 +292,6 @@ fn raise(constants: Vec<&mut f64>) {
     positive.sort_by(f64::total_cmp);
     // Without a positive constant there is no scale; the caller refuses such springs on lengths.
     let Some(median) = positive.get(positive.len() / 2) else { return };
+    // The comparison is negated so that constants below zero and those that are not numbers are raised too.
     constants.into_iter().filter(|k| !(**k > NOTHING * median)).for_each(|k| *k = LEAST * median);
 }

@@ -3,6 +3,7 @@
 /// Deviations on either side of the mean that hold 95 % of a normal distribution.
 const NORMAL: f64 = 1.959_963_985;
 /// Degrees of freedom from which on the first term of the difference from the normal distribution is accurate to 3e-6.
+// The next term is `(5 z⁵ + 16 z³ + 3 z)/(96 n²)`, which is 2.8e-6 with n = 1000.
 const MANY: usize = 1000;
 
 /// Standard deviations on either side that hold 95 % of Student's distribution with this many degrees of freedom, at least one; without a

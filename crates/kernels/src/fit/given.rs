@@ -298,10 +298,12 @@ impl GivenStiffness {
     fn is_straight(&self) -> bool {
         let d = self.dimension;
         let at = |p: usize| -> [f64; 3] { std::array::from_fn(|k| self.points[p * 3 + k] - self.points[k]) };
+        // In the plane a line turns about the normal, a motion that moves its points.
         if d < 3 {
             return false;
         }
         let far = (1..self.points.len() / 3).map(at).max_by(|a, b| norm(a).total_cmp(&norm(b))).unwrap_or_default();
+        // The product is the length times the distance from the line, so that the bound is a share of the length.
         (1..self.points.len() / 3).all(|p| norm(&cross(far, at(p))) <= STRAIGHT * norm(&far).powi(2))
     }
 

@@ -161,6 +161,7 @@ impl<T: Clone> Normal<T> {
     /// The equations of the springs `set` alone.
     pub fn restricted(&self, set: &[usize]) -> Normal<T> {
         let m = self.size();
+        // The lower triangle alone is filled.
         let entries = set.iter().flat_map(|&s| set.iter().map(move |&t| self.gram[s.max(t) * m + s.min(t)].clone()));
         Normal::new(entries.collect(), set.iter().map(|&s| self.rhs[s].clone()).collect())
     }

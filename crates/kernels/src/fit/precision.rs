@@ -142,6 +142,7 @@ pub fn bounded_constants(
     fit.check_constants_alone()?;
     check_length("near", near.len(), springs.len())?;
     check_finite("near", near)?;
+    // Without springs nothing is to be compared.
     if springs.is_empty() {
         return Ok(Some(Vec::new()));
     }

@@ -270,6 +270,7 @@ fn of_fit(mesh: &Mesh, material: &MaterialMap, large: Option<&LargeBody>, fit: &
         // A chunk of cells is the work of one thread, a sample as well.
         let (threads, chunks) = (rayon::current_num_threads(), total.div_ceil(CHUNK));
         let sampling = sample * most_samples(mesh) as f64 / threads as f64;
+        // No more threads have work than there are chunks.
         let expected = seconds * share / threads.min(chunks) as f64 + sampling;
         if seconds > TRIAL || made >= total || expected < SHORT {
             return Some([expected, SPRING * springs * share, entries * share]);

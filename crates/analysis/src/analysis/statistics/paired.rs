@@ -130,6 +130,7 @@ fn ranks(sorted: &[f64]) -> (Vec<f64>, f64) {
 /// The share of all signs of the ranks 1 to n whose positive ranks have at most this sum.
 fn share_below(n: usize, most: usize) -> f64 {
     let total = n * (n + 1) / 2;
+    // Of at most 25 ranks there are 2²⁵ choices of signs: doubles count them exactly.
     let mut ways = vec![0.0; total + 1];
     ways[0] = 1.0;
     for rank in 1..=n {

@@ -40,6 +40,7 @@ impl RelaxingPart {
             for (&row, k) in rows[at[0]..at[1]].iter().zip(&values[at[0]..at[1]]) {
                 own += k * z[row];
                 if row != column {
+                    // An entry beside the diagonal of the lower triangle stands for two.
                     product[row] += k * z[column];
                 }
             }
@@ -135,6 +136,7 @@ impl LinearMemory {
     /// `Σ_i g_i w_i` of a part at the end of a step to u.
     fn relaxed(&self, part: &RelaxingPart, u: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; u.len()];
+        // Each region has few of the terms of the body.
         for (term, share) in part.shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
             sum.iter_mut().zip(self.crept(term, u)).for_each(|(sum, w)| *sum += share * w);
         }

@@ -43,6 +43,8 @@ impl Numbers {
         // At most 1e7 shapes have 153 sequences. The prime 7919 is beyond that, so that no sequence of further
         // coordinates is one of other shapes.
         let block = (self.index / LONGEST + 7919 * (coordinate / WIDEST)) as u64;
+        // The sampler takes 32 bits. The upper half of the product depends on every bit of the seed, the lower one on
+        // the lower half alone.
         let seed = apart(self.seed.wrapping_add(block << 32)) >> 32;
         f64::from(sobol_burley::sample((self.index % LONGEST) as u32, (coordinate % WIDEST) as u32, seed as u32))
     }

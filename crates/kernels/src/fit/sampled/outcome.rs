@@ -113,6 +113,7 @@ impl SampledFits {
         self.held_out.push(one.held_out);
         for sums in &one.families {
             if !self.families.iter().any(|known| known.family == sums.family) {
+                // Cells before this one have no shape of the family, and NaN as its error.
                 self.families.push(FamilyErrors { family: sums.family, shapes: 0, errors: vec![f64::NAN; cells] });
             }
         }

@@ -85,6 +85,7 @@ impl Law {
         let mut parts = vec![first];
         for _ in 0..HALVINGS {
             let size = parts.iter().map(Halved::size).sum();
+            // There is always a part: one is taken and two are given back.
             let worst = (0..parts.len()).max_by(|a, b| parts[*a].doubt.total_cmp(&parts[*b].doubt)).unwrap_or(0);
             if parts[worst].is_known(size) {
                 break;
@@ -145,6 +146,7 @@ impl Halved {
 }
 
 fn halves([from, to]: [f64; 2]) -> [[f64; 2]; 2] {
+    // The sum of two large ends may overflow, their difference need not.
     let middle = from + (to - from) / 2.0;
     [[from, middle], [middle, to]]
 }

@@ -59,7 +59,10 @@ const STEP: f64 = 1e-3;
 /// Inner parameters below this count as of this size, so that their steps do not vanish.
 const SMALLEST: f64 = 1e-2;
 /// The strains, and the sizes of the parameters, at which a function is tried for being linear in some of them.
+// Both signs and zero are among them: a law may have branches that meet at rest, or a force there.
 pub(super) const STRAINS: [f64; 5] = [-0.5, -0.1, 0.0, 0.2, 0.9];
+// What bends by 1e-14 at a parameter of one would pass for rounding; at 1e4 a quadratic term is ten thousand times as
+// large beside the linear one.
 const SIZES: [f64; 3] = [0.7, 1.9, 1e4];
 /// The rounding of sums of three forces, relative to the largest.
 const ROUNDING: f64 = 1e-12;

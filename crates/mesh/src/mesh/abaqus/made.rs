@@ -135,6 +135,7 @@ impl Deck {
             let expected = format!("an increment that leads from {first} to {last}");
             return Err(lines.expected(&expected, &step.to_string()));
         }
+        // The quotient is at least one, and no larger than a difference of numbers of 64 bits.
         let intervals = (span / step) as u64;
         let (a, b) = (self.point(lines, first)?, self.point(lines, last)?);
         let arc = if is_arc {

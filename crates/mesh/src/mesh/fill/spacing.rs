@@ -68,6 +68,7 @@ impl FillSpacing {
             // Points are about as many as cubes; a surface with none has too large ones.
             let next = edge * (points.max(wanted / 8.0) / wanted).cbrt();
             edge = match (fine > 0.0, coarse.is_finite()) {
+                // Edges count by their ratios, so that the middle of two is their geometric mean.
                 (true, true) if !(next > fine && next < coarse) || away < 0.1 => (fine * coarse).sqrt(),
                 _ => next,
             };

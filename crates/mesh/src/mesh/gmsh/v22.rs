@@ -17,6 +17,7 @@ pub(super) fn nodes(reader: &mut Reader, parametric: bool) -> Result<Nodes> {
     let total: u64 = reader.text_number()?;
     reader.start_data()?;
     reader.announce("nodes", total);
+    // Memory is taken for no more numbers than the bytes that follow can hold, whatever the file counts.
     let mut tags = Vec::with_capacity(reader.capacity::<f64>(total, 3));
     let mut points = Vec::with_capacity(reader.capacity::<f64>(total, 3));
     for _ in 0..total {

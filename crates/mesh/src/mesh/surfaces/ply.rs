@@ -26,6 +26,7 @@ pub fn parse(bytes: &[u8]) -> Result<MeshSource> {
             "vertex" => vertices(&mut reader, element, &mut points)?,
             "face" => polygons(&mut reader, element, &points, &mut faces)?,
             _ => {
+                // Elements without properties have no bytes, and a header may count as many of them as it likes.
                 if element.properties.is_empty() {
                     continue;
                 }
@@ -192,6 +193,7 @@ fn vertices(reader: &mut Reader, element: &Element, points: &mut Vec<[f64; 3]>) 
     if axes.iter().any(Option::is_none) {
         return Err(reader.expected("properties x, y and z", "others"));
     }
+    // The count of a header is not believed: memory is taken for no more than the bytes that follow can hold.
     points.reserve(reader.capacity::<f32>(element.count, 3));
     for _ in 0..element.count {
         let mut point = [0.0; 3];

@@ -119,6 +119,7 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
                 let problem = format!("cell {i}: VTK cell type {cell_type} has no fixed shape or is unknown");
                 return Err(Error::new(format!("{problem}; {TETRAHEDRALIZE}")));
             };
+            // An end beyond the machine's numbers is beyond every list, and is told as one.
             let end = usize::try_from(end).unwrap_or(usize::MAX);
             let Some(cell) = piece.connectivity.get(start..end) else {
                 let problem =
@@ -226,6 +227,7 @@ fn grouping_arrays(pieces: &[Piece], annotations: &mut Annotations) -> Vec<Strin
             HashSet::new()
         });
         for &value in &labels.values {
+            // One value more than is allowed shows that there are too many.
             if of_name.len() > MOST_GROUPS {
                 break;
             }
