@@ -62,7 +62,9 @@ fn parse(text: &str) -> Result<DMatrix<f64>> {
     }
     let mut matrix = DMatrix::zeros(rows, columns);
     let mut put = |i: usize, j: usize, value: f64| {
+        // Entries of one place add up, as those of assembled matrices do.
         matrix[(i, j)] += value;
+        // An entry of the diagonal is its own mirror image, and would count twice.
         if let Some(sign) = mirror.filter(|_| i != j) {
             matrix[(j, i)] += sign * value;
         }
@@ -80,6 +82,7 @@ fn parse(text: &str) -> Result<DMatrix<f64>> {
                 let word = words.next().unwrap_or_default();
                 let place = word.parse::<usize>().ok().filter(|place| (1..=size).contains(place));
                 place
+                    // Rows and columns are counted from one in the file.
                     .map(|place| place - 1)
                     .ok_or_else(|| syntax(&format!("a place from 1 to {size}"), word).on_line(at + 1))
             };
@@ -87,6 +90,7 @@ fn parse(text: &str) -> Result<DMatrix<f64>> {
             put(i, j, real(words.next(), at)?);
             count += 1;
         }
+        // A file that was cut short would be read as another matrix.
         if count != entries {
             return Err(Error::expected("matrix", format!("{entries} entries"), count).of_kind(ErrorKind::Syntax));
         }

@@ -86,6 +86,7 @@ fn arrays_of<'a, S, C, I: Iterator<Item = &'a [usize]>, W: Write + Seek>(
     to: W,
 ) -> io::Result<ArrayFile<W>> {
     let d = network.dimension;
+    // NaN marks what is free, because zero is a displacement that is held.
     let free = vec![[f64::NAN; 3]; network.points.len()];
     let held = network.held.iter().fold(free, |mut held, given| {
         held[given.point] = prescribed(given);
@@ -238,6 +239,8 @@ impl<W: Write + Seek> ArrayFile<W> {
         let sizes: String = shape.iter().map(|size| format!("{size},")).collect();
         let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({sizes}), }}");
         // The preamble has ten bytes, and the header ends with a new line.
+        // NumPy's format asks for a multiple of 64 bytes, so that arrays can be mapped into memory with their
+        // alignment.
         header += &" ".repeat(63 - (header.len() + 10) % 64);
         header.push('\n');
         self.file.start_file(

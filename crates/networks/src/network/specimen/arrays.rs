@@ -112,10 +112,12 @@ fn parse(bytes: &[u8]) -> Result<Option<Array>> {
     let shape: Vec<usize> = file.shape()?.iter().map(|size| usize::try_from(*size).unwrap_or(usize::MAX)).collect();
     let Some((size, number)) = number(descr) else { return Ok(None) };
     let count = shape.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
+    // The shape is what a file claims: the product may overflow, or exceed the bytes that follow.
     let count = count.filter(|count| count.checked_mul(size).is_some_and(|bytes| bytes <= data.len()));
     let count = count.ok_or_else(|| wrong("fewer numbers than its shape says"))?;
     let values: Vec<f64> = data.chunks_exact(size).take(count).map(number).collect();
     let values = match (&shape[..], is_turned) {
+        // Fortran's order has columns first.
         ([rows, columns], true) => (0..count).map(|at| values[at % columns * rows + at / columns]).collect(),
         ([_, _, _, ..], true) => return Err(wrong("an array of three axes in Fortran's order")),
         _ => values,

@@ -65,9 +65,11 @@ fn one(document: &Document, flex: Node) -> Result<SpecimenFile> {
             if cell[a] == cell[b] {
                 return Err(Error::expected("element", "different vertices", format!("vertex {} twice", cell[a])));
             }
+            // MuJoCo has one spring for each edge, however many elements share the edge.
             edges.insert([cell[a].min(cell[b]), cell[a].max(cell[b])]);
         }
     }
+    // Triangles at one height are a plane body. Any other sheet is a surface in space.
     let is_plane = dim == 2 && points.iter().skip(2).step_by(3).all(|z| *z == points[2]);
     let d = if is_plane { 2 } else { 3 };
     let points: Vec<f64> = points.chunks_exact(3).flat_map(|x| &x[..d]).copied().collect();
@@ -104,5 +106,7 @@ fn mesh(points: &[f64], d: usize, dim: usize, nodes: &[usize]) -> Result<Option<
         groups: BTreeMap::new(),
         cell_groups: BTreeMap::new(),
     };
+    // A mesh that leaves points out, or that cannot be built, does not fill the network, which is then measured without
+    // a mesh.
     Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
 }

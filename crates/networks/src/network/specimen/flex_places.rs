@@ -47,6 +47,7 @@ impl Places<'_, '_> {
         }
         let offsets = bodies.iter().map(|name| self.place(name)).collect::<Result<Vec<[f64; 3]>>>()?;
         for (p, x) in points.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+            // One body carries all vertices. Of several bodies each carries its own vertex.
             let Some(offset) = offsets.get(if offsets.len() == 1 { 0 } else { p }) else { continue };
             (0..3).for_each(|k| x[k] += offset[k]);
         }
@@ -66,6 +67,7 @@ impl Places<'_, '_> {
     /// The sum of the positions of a node and of the bodies around it.
     fn offset(&self, node: Node) -> Result<[f64; 3]> {
         let mut sum = [0.0; 3];
+        // Places are relative to the body around them. Without turns the places add up.
         for around in node.ancestors() {
             if let Some(turn) = TURNS.iter().find(|turn| around.has_attribute(**turn)) {
                 let expected = "a flex and bodies around it that are not turned";

@@ -118,7 +118,9 @@ fn solid(points: &[[f64; 3]]) -> Option<Hull> {
         };
         // The set is only asked. Sides are made in the order of the list, whatever the order of the hashes.
         let all: std::collections::HashSet<[usize; 2]> = seen.iter().flat_map(edges).collect();
+        // An edge between two sides that are seen is passed in both directions, an edge of the rim in one.
         for [a, b] in seen.iter().flat_map(edges).filter(|[a, b]| !all.contains(&[*b, *a])) {
+            // A point in line with an edge of the rim spans no side with that edge.
             sides.extend(Side::new(points, [a, b, p]));
         }
     }
@@ -142,6 +144,7 @@ fn first_sides(points: &[[f64; 3]], near: f64) -> Option<Vec<Side>> {
     let farthest = |measure: &dyn Fn(&[f64; 3]) -> f64| {
         (0..points.len()).max_by(|&a, &b| measure(&points[a]).total_cmp(&measure(&points[b])))
     };
+    // Far corners make the first tetrahedron large, so that the normals of its sides have all their digits.
     let a = farthest(&|x| x[0])?;
     let b = farthest(&|x| norm(&minus(x, &points[a])))?;
     let along = minus(&points[b], &points[a]);

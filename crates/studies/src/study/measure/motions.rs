@@ -140,6 +140,8 @@ impl<'a> Motions<'a> {
         if largest <= NOTHING * springs / heaviest {
             return None;
         }
+        // Central differences are stable up to `2/ω`. Without any stiffness there is no limit, and infinity is left
+        // out.
         Some(2.0 / largest.sqrt()).filter(|step| step.is_finite())
     }
 
@@ -152,6 +154,7 @@ impl<'a> Motions<'a> {
             let (i, j) = (place[e.row], place[e.col]);
             if i != usize::MAX && j != usize::MAX {
                 k[(i, j)] += e.val;
+                // Entries are those of the lower triangle.
                 if e.row != e.col {
                     k[(j, i)] += e.val;
                 }
@@ -166,6 +169,7 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
     let d = specimen.network.dimension;
     let parts = parts(specimen);
     let is_periodic = specimen.period.is_some();
+    // A network that repeats itself does not turn as a whole, because its images would leave their places.
     let motions = if is_periodic { d } else { d * (d + 1) / 2 };
     let count_of = |points: &[usize]| {
         let count = points.len() as f64;
@@ -196,9 +200,11 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
                     gram[(a, b)] += row[a] * row[b];
                 }
             }
+            // The Gram matrix grows with the number of points, and so does its rounding.
             eigenvalues(gram).iter().filter(|value| **value > INDEPENDENT * count).count()
         };
         let all = || points.iter().flat_map(|p| p * d..(p + 1) * d);
+        // Rigid motions that the held directions see are held. Those that are left move the part freely.
         rank(&mut all()) - rank(&mut all().filter(|dof| support.is_fixed(*dof)))
     };
     parts.iter().map(|points| count_of(points)).sum()
@@ -210,6 +216,7 @@ pub fn parts(specimen: &Specimen) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..count).collect();
     fn root(parent: &mut [usize], mut p: usize) -> usize {
         while parent[p] != p {
+            // Halving the way to the root keeps the trees flat (Tarjan, van Leeuwen, J. ACM 31, 1984).
             parent[p] = parent[parent[p]];
             p = parent[p];
         }

@@ -40,6 +40,7 @@ impl<'a> Raised<'a> {
         let mut values = Vec::new();
         // The entries of K have each pair of different degrees of freedom once.
         for (a, b, mass) in masses.entries().into_iter().filter(|(a, b, _)| a >= b) {
+            // Zeros keep the places of the masses, so that one pattern serves every shift.
             entries.extend((0..d).map(|k| Triplet::new(a * d + k, b * d + k, 0.0)));
             values.extend(std::iter::repeat_n(mass, d));
         }

@@ -68,6 +68,7 @@ impl<'a> Costed<'a> {
                 frames.step(&still);
             }
             let each = clock.seconds() / count as f64;
+            // A clock that has not moved gives zero, by which nothing may be divided.
             count = ((PASS / each.max(1e-12)) as usize).clamp(1, MOST_STEPS);
             Ok(each / setting.step)
         })))
@@ -77,6 +78,7 @@ impl<'a> Costed<'a> {
     fn moved(&self) -> Vec<f64> {
         let extent = self.points.iter().fold(0.0f64, |extent, x| extent.max(x.abs()));
         let held = |dof: usize| self.support.prescribed[dof].is_some();
+        // A sine of the number has no symmetry of a body, so that no spring keeps its length.
         let moved = |dof: usize| if held(dof) { 0.0 } else { DISPLACED * extent * (1.0 + dof as f64).sin() };
         (0..self.points.len()).map(moved).collect()
     }
@@ -139,6 +141,7 @@ pub fn model_times(models: &[Costed], has_density: bool) -> Result<Vec<ModelTime
     let times = longest.into_iter().zip(has).map(|(longest_step, (has, stands))| {
         let [solve, explicit_step, implicit_step, frames] = has.map(|has| if has { found.next() } else { None });
         // A network for an engine is moved by it alone: its explicit steps are of a body that is stiffer than the engine's.
+        // A second has `1/(SHARE Δt)` steps.
         let explicit_second = || Some(explicit_step.as_ref()?.scaled(1.0 / (SHARE * longest_step?))).filter(|_| stands);
         let simulated_second = frames.or_else(explicit_second);
         ModelTimes { solve, explicit_step, implicit_step, simulated_second, longest_step }
