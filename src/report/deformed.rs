@@ -50,6 +50,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     let all = || nets.iter().flatten().chain(&rest).chain(&body);
     let range = |k: usize| all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x[k]), b.max(x[k])));
     let (across, up) = (range(0), range(1));
+    // A body that is tall is drawn smaller, so that its panel is at most 1/0.6 times as high as wide.
     let scale = (PANEL - 2.0 * MARGIN) / (across.1 - across.0).max(0.6 * (up.1 - up.0));
     let height = CAPTION + 2.0 * MARGIN + scale * (up.1 - up.0) + 24.0;
     let width = PANEL * panels.len() as f64;
@@ -107,6 +108,7 @@ fn extent(points: &[f64], d: usize) -> f64 {
 /// A solid in cabinet projection: x to the right, z up, y into the picture at half its length.
 fn seen(x: &[f64]) -> [f64; 2] {
     match x {
+        // An oblique projection: what is deeper lies farther up and to the right.
         [x, y, z] => [x + 0.35 * y, z + 0.25 * y],
         [x, y] => [*x, *y],
         _ => [x[0], 0.0],

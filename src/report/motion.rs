@@ -105,6 +105,7 @@ pub(super) fn motion_distrust(outcome: &Outcome) -> Option<String> {
         if let Some(of) = model.deformation.filter(|of| !(of.strain <= LOST_LINEAR)) {
             return Some(format!("is linear, with strains of {}", percent(of.strain)));
         }
+        // A free body may fall any distance, and a body that is pulled follows the pull.
         (is_held && !(model.largest <= FAR * size))
             .then(|| format!("moves by {} of the body", percent(model.largest / size)))
     };
@@ -192,9 +193,11 @@ const LOST: f64 = 0.01;
 /// of its amplitude.
 fn loss(motion: &MotionOutcome) -> Option<String> {
     let integrator = motion.recipe.options.integrator;
+    // A motion without inertia has no vibration, and other integrators take no energy from it.
     if motion.recipe.options.quasi_static || !matches!(integrator, Integrator::ImplicitEuler | Integrator::Bdf2) {
         return None;
     }
+    // A loss is a negative drift.
     let lost = |model: &ModelMotion| Some((-model.records.last()?.account.balance.as_ref()?.drift, model.name.clone()));
     let (lost, name) = motion.models.iter().filter_map(lost).max_by(|a, b| a.0.total_cmp(&b.0))?;
     (lost > LOST).then(|| {

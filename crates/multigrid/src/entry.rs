@@ -101,6 +101,7 @@ impl Entry for Lanes {
         let mut sums = [Lanes::ZERO; R];
         for (block, &column) in blocks.iter().zip(columns) {
             let x = &x[column as usize];
+            // A number of x is loaded once for all rows of the block.
             for j in 0..C {
                 for i in 0..R {
                     sums[i] += x[j] * block[i][j];

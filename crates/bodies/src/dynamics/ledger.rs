@@ -98,6 +98,7 @@ impl Ledger {
                 let (mut done, mut lost) = ([0.0; 4], [0.0; 4]);
                 for (i, acted) in acted.iter_mut().enumerate() {
                     let now = acting(forces, held, first + i);
+                    // The mean of both ends gives the work exactly where the force changes linearly along the way.
                     done[i % 4] += way[first + i] * (*acted + now) / 2.0;
                     *acted = now;
                 }
@@ -149,6 +150,7 @@ pub(super) fn kinetic(mass: &[f64], held: &[bool], v: &[f64]) -> (f64, f64) {
     if v.len() <= PIECE {
         return piece(mass, held, v);
     }
+    // Pieces of one length, added in their order, have the same sum on any number of threads.
     let pieces = (mass.par_chunks(PIECE), held.par_chunks(PIECE), v.par_chunks(PIECE)).into_par_iter();
     let sums: Vec<(f64, f64)> = pieces.map(|(mass, held, v)| piece(mass, held, v)).collect();
     sums.iter().fold((0.0, 0.0), |(free, still), sum| (free + sum.0, still + sum.1))
@@ -168,6 +170,7 @@ pub(super) fn angular_momentum(mass: &[f64], x: &[f64], v: &[f64], d: usize) -> 
     };
     let about = |[k, l]: &[usize; 2]| {
         let points = mass.chunks_exact(d).zip(x.chunks_exact(d)).zip(v.chunks_exact(d));
+        // A point has the same mass along all axes.
         points.map(|((m, x), v)| m[0] * (x[*k] * v[*l] - x[*l] * v[*k])).sum()
     };
     planes.iter().map(about).collect()

@@ -36,6 +36,7 @@ impl<'a> Motion<'a> {
     }
 
     pub(super) fn dimension(&self) -> usize {
+        // Masses may be missing until they are checked, and nothing may be divided by zero before.
         self.points.len() / self.masses.len().max(1)
     }
 
@@ -71,6 +72,7 @@ impl<'a> Motion<'a> {
                 return Err(Error::expected("memory", format!("one {}", of(options.linear)), of(memory.is_linear())));
             }
         }
+        // Without inertia masses do not act, and are not checked.
         if options.quasi_static {
             return match self.damping.is_none() {
                 true => Ok(()),
@@ -157,6 +159,7 @@ impl Options {
         if self.iterations == 0 {
             return Err(Error::expected("iterations", "at least one", 0));
         }
+        // The comparison is negated, so that NaN is refused too.
         if !(self.tolerance > 0.0) {
             return Err(Error::expected("tolerance", "a number above zero", self.tolerance));
         }

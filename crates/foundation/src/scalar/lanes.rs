@@ -135,6 +135,7 @@ impl<S: Simd> Scalar for Lanes<S> {
 
     #[inline(always)]
     fn epsilon() -> f64 {
+        // Rounding to the nearest number errs by half of the distance of two numbers.
         f64::EPSILON / 2.0
     }
 

@@ -176,6 +176,7 @@ impl GivenStiffness {
         let (d, n) = (self.dimension, self.points.len() / self.dimension);
         let axes = ["x", "y", "z"];
         let centre: Vec<f64> = (0..d).map(|k| self.points.iter().skip(k).step_by(d).sum::<f64>() / n as f64).collect();
+        // About the centre rotations of points far from the origin are no translations up to rounding.
         let at = |p: usize, k: usize| self.points[p * d + k] - centre[k];
         let mut motions: Vec<(String, DVector<f64>)> = (0..d)
             .map(|k| {
@@ -191,6 +192,7 @@ impl GivenStiffness {
             });
             motions.push((format!("a rotation in the plane of {} and {}", axes[k], axes[l]), turned));
         }
+        // A rotation about the line on which all points are moves none of them.
         motions.into_iter().filter(|(_, u)| u.norm() > 0.0).map(|(name, u)| (name, u.normalize())).collect()
     }
 
@@ -283,6 +285,7 @@ impl GivenStiffness {
         for (s, &[i, j]) in pairs.iter().enumerate() {
             let n = direction([i, j]);
             let block = self.matrix.view((i * d, j * d), (d, d));
+            // A spring has two blocks beside the diagonal, each `−k n nᵀ`.
             normal.rhs[s] = -2.0 * n.dot(&(block * &n));
             normal.gram[s * m + s] = 2.0;
         }

@@ -143,6 +143,7 @@ pub fn constants(element: &Element, springs: &Springs, x: &[f64], hooke: &Hooke,
     let g = gradients(element, springs, x)?;
     let seen = seen(weight, &r, x, element.dimension());
     let columns: Vec<DVector<f64>> = g.column_iter().map(|g| vector(&seen(&(g * g.transpose())))).collect();
+    // Columns of unit length keep small springs above the bound below which a motion counts as rounding.
     let norms: Vec<f64> = columns.iter().map(DVector::norm).collect();
     let v = DMatrix::from_fn(r.len(), springs.len(), |entry, s| columns[s][entry] / norms[s]);
     let k = power(&v.tr_mul(&v), -1.0) * v.tr_mul(&vector(&seen(&r)));

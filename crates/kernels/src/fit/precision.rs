@@ -121,6 +121,7 @@ fn equations<T: Real>(
 
 /// Numbers of more digits in those of the kind of `any`.
 fn known<T: Real>(any: &T, values: Option<Vec<DoubleDouble>>) -> Option<Vec<T>> {
+    // A kind of more digits than those of one double keeps both parts.
     let known = |g: DoubleDouble| any.constant(&g.hi) + &any.constant(&g.lo);
     Some(values?.into_iter().map(known).collect())
 }

@@ -27,6 +27,7 @@ impl<T: Clone + PartialEq> CellMap<T> {
     pub fn of_blocks(blocks: Vec<Vec<T>>) -> CellMap<T> {
         let mut all = blocks.iter().flatten();
         match all.next() {
+            // Equal values are one, so that a body takes the same way however its material was given.
             Some(first) if all.all(|value| value == first) => CellMap::Uniform(first.clone()),
             _ => CellMap::Each(blocks.into()),
         }

@@ -140,6 +140,7 @@ impl Measure {
         let Jet { value, gradient, hessian } = self.jet(x, dimension);
         let n = gradient.len();
         let [energy, pull, slope] = law(value);
+        // The second derivative of `U(c(x))` by the chain rule: `U'' ∇c ∇cᵀ + U' ∇∇c`.
         let entry = |(i, h): (usize, f64)| slope * gradient[i / n] * gradient[i % n] + pull * h;
         SpringResponse {
             energy,

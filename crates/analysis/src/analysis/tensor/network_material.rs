@@ -124,6 +124,8 @@ fn material_of(mesh: &Mesh, material: &MaterialMap, owners: SpringOwners, networ
     let count = most_samples(mesh);
     let flat: Vec<(Sample, Plane)> = (0..count)
         .into_par_iter()
+        // Seeds are the middles of equal parts of the list of points. Samples are collected in order, so that sums have
+        // the same bits on any number of threads.
         .map(|i| flat_sample(&stars, seeds[(2 * i + 1) * points / (2 * count)], dimension))
         .collect();
     let order = axis_order(&flat.iter().map(|(_, plane)| plane).collect::<Vec<_>>());
@@ -212,6 +214,7 @@ fn flat_sample(stars: &Stars, seed: usize, dimension: usize) -> (Sample, Plane) 
         let plane = Plane::of(&sample, dimension);
         (sample, plane)
     };
+    // A smaller piece of a bent sheet is flatter.
     let counts = std::iter::successors(Some(POINTS), |count| Some(count / 2)).take_while(|count| *count > 0);
     let mut samples = counts.map(|count| with_plane(stars.sample(seed, count)));
     samples

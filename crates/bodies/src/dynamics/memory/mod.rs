@@ -90,6 +90,7 @@ impl Memory {
             Memory::Linear(memory) => memory.places(),
             Memory::Large(memory) => memory.places(),
             Memory::Flow(memory) => memory.places(),
+            // Explicit steps solve no equations, and need no tangent.
             Memory::Explicit(_) => Vec::new(),
         }
     }

@@ -213,6 +213,8 @@ impl Coefficients {
         energy.has_contents()?;
         let Moduli { lambda, mu } = material.moduli();
         let (nu, t) = (material.poisson(), material.thickness());
+        // The moduli of a plane or rod without stress across it have the stretch across condensed by the linear theory.
+        // Laws at large deformation condense that stretch themselves, and take the moduli of the solid.
         let solid_mu = t * material.young() / (2.0 * (1.0 + nu));
         let solid_lambda = 2.0 * solid_mu * nu / (1.0 - 2.0 * nu);
         let plain = Coefficients::plain(Moduli { lambda, mu }, &0.0);

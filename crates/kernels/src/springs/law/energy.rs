@@ -52,6 +52,7 @@ impl Law {
         let pull = |((one, c), own): (&(&AskedForces, f64), &[f64])| {
             let (around, ways) = own[1..].split_at(AROUND_COUNT);
             let work = |[from, to]: [f64; 2], own: &[f64]| -> f64 {
+                // The rule is that of [−1, 1], which is two long.
                 rule().iter().zip(own).map(|((_, w), t)| w * (to - from) / 2.0 * t).sum()
             };
             let whole = [one.rest, *c];
@@ -141,6 +142,7 @@ impl Halved {
     /// Whether the doubt is rounding beside the size of the work on the whole way: what is small beside that is not refined, however far the
     /// measure is from rest. What is not finite is not refined either.
     fn is_known(&self, size: f64) -> bool {
+        // Halves of a work without a finite value do not give one, so that such a part is not halved any more.
         self.doubt <= KNOWN * size || !self.sum().is_finite()
     }
 }

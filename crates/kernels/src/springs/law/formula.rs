@@ -26,6 +26,7 @@ const ROOM: usize = 12;
 impl Formula {
     /// Derives the formula from the force and its derivatives in the parameters; the variable `first` is the first parameter.
     pub fn new(force: &Expr, by_parameter: &[Expr], first: usize) -> Formula {
+        // Second derivatives are symmetric: the lower triangle is all of them.
         let by_parameters =
             by_parameter.iter().enumerate().flat_map(|(i, slope)| (0..=i).map(move |j| slope.derivative(first + j)));
         Formula {

@@ -124,6 +124,7 @@ pub fn applied_cases(scene: &Scene, mesh: &Mesh, material: &MaterialMap) -> Resu
         cases.push(Case { name, support, forces, pressed, cavity, is_prescribed, measured, is_measured, finer, noise });
     }
     for (i, load) in scene.loads().iter().enumerate() {
+        // Sums come last, because their parts may stand after them in the scene.
         if let LoadKind::Sum(parts) = &load.kind {
             let sum = |dof: usize| parts.iter().map(|&part| cases[part].forces[dof]).sum();
             let forces: Vec<f64> = (0..mesh.points.len()).map(sum).collect();

@@ -18,6 +18,7 @@ const LARGE: usize = 12_000;
 /// The mesh of the scene and its refinements.
 pub(super) fn meshes(scene: &Scene, mesh: Mesh, wanted: Option<usize>) -> Result<Vec<Mesh>> {
     let most = if scene.law().is_some() { LARGE } else { USUAL };
+    // A refinement halves the edges: each cell becomes `2^d` cells, and points grow about alike.
     let growth = 1 << mesh.cell_dimension();
     let mut all = vec![mesh];
     for _ in 0..wanted.unwrap_or(TWICE) {
@@ -52,6 +53,7 @@ pub(super) fn level<'a>(
         }
         loads.push(LoadCase { name: case.name.clone(), support: case.support.clone(), forces: case.forces.clone() });
     }
+    // Places in millimetres lie far outside of a body in metres: the unit is asked for first.
     let outside = |e: Error| match e.kind() {
         ErrorKind::Unsupported => e.under("measured"),
         _ => Error::at(
@@ -96,6 +98,7 @@ fn owners(mesh: &Mesh, first: Option<&Mesh>) -> Result<Vec<Vec<usize>>> {
         })
         .collect();
     let block = |places: &Vec<(f64, Vec<f64>)>| {
+        // The middle of a refined cell lies inside its parent, away from the sides that the parent shares.
         let middles: Vec<f64> = places.iter().flat_map(|(_, middle)| middle.clone()).collect();
         let found = Embedding::of(&middles, first)?;
         Ok(found.cells.iter().map(|cell| starts[cell.block] + cell.cell).collect())

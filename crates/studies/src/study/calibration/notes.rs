@@ -14,6 +14,7 @@ impl CalibrationOutcome {
 
     /// Whether, without a stated noise, the body explains little of what was measured.
     fn is_hardly_explained(&self) -> bool {
+        // The comparison is negated, so that NaN counts as hardly explained.
         self.misfit.is_none() && !(self.explained >= EXPLAINED)
     }
 

@@ -204,6 +204,7 @@ impl Observed {
             return Err(Error::expected("sigma", "the noise of all measurements, or of none", found));
         }
         let size = |load: usize, force: bool| {
+            // Forces and displacements have different units, so that each has a size of its own.
             let own = self.observations.iter().filter(|o| o.load == load && o.quantity.is_force() == force);
             let (sum, count) = own.fold((0.0, 0), |(sum, count), o| (sum + o.value * o.value, count + 1));
             (sum / f64::from(count).max(1.0)).sqrt()

@@ -95,6 +95,7 @@ fn region_of(
     let lame = |nu: f64| e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
     let lambda = lame(nu);
     // λ may have either sign, so that its interval is in itself.
+    // λ is proportional to E, so that its slope by ln E is λ.
     let of_lambda = spread.value(lambda, &slopes(lambda, rate(&lame)), |way| [lambda - way, lambda + way]);
     // The interval of Poisson's ratio is that of t, which every ratio of a material has.
     let of_t = poisson.map(|p| vec![(p, 1.0)]).unwrap_or_default();
@@ -105,6 +106,7 @@ fn region_of(
         region: name.into(),
         is_known,
         factor,
+        // Slopes of the logarithm: the unknown is ln E, and μ is proportional to E.
         young: spread.value(e, &slopes(1.0, 0.0), share(e)),
         poisson: Value {
             deviation: scaled(of_poisson.deviation),

@@ -188,6 +188,7 @@ fn of_regions(
     noise: bool,
     found: Estimate,
 ) -> CalibrationOutcome {
+    // Each unknown that is fitted takes one degree of freedom from the residuals.
     let freedom = found.residuals.len() - limit.unknowns.count();
     let square: f64 = found.residuals.iter().map(|r| r * r).sum();
     // What is left of the error of the meshes is no fault of the model.
@@ -287,6 +288,7 @@ fn loads(limit: &Limit, residuals: &[f64], noise: bool) -> Vec<CalibratedLoad> {
                 quantity: if force { "forces" } else { "displacements" }.into(),
                 measurements: own.len(),
                 size: rms(&|i| limit.observations[i].value),
+                // Residuals carry their weights, which are taken off here to give metres or newtons.
                 residual: rms(&|i| residuals[i] / limit.weights[i]),
                 sigma: noise.then(|| rms(&|i| 1.0 / limit.weights[i])),
                 misfit: noise.then(|| rms(&|i| residuals[i])),

@@ -127,6 +127,7 @@ fn of_levels(
         }
         notes.iter().for_each(|note| progress(Event::Note(note)));
         convergence.notes.extend(notes);
+        // The time grows at least with the number of cells, of which each becomes `2^d`.
         let factor = 2f64.powi(mesh.cell_dimension() as i32);
         if level + 1 < count && factor * seconds > LONG {
             let next = format!("level {} of {count}: {}", level + 2, expected(&outcome, seconds, factor));

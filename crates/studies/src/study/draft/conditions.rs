@@ -93,6 +93,7 @@ pub(super) fn conditions(mesh: &Mesh, longest: f64, young: f64) -> Vec<String> {
             )
         }
         None => {
+            // A force per volume adds up along the body, and has the stress of the traction at the far end.
             let body = rounded(STRAIN * young / longest, 1);
             format!("body     = [{body}, {zeros}]   # N/m^3; on a part: traction (Pa), force (N), displacement (m)")
         }
@@ -143,6 +144,8 @@ fn is_rigid(mesh: &Mesh, points: &[usize]) -> bool {
     let arm = |point: &usize| from(at(first), at(*point));
     let longest = others.iter().map(arm).max_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default();
     let length = square(&longest);
+    // Two different places hold a plane body, which has one rotation. The comparison is negated, so that NaN holds
+    // nothing.
     if !(length > 0.0) || mesh.dimension == 2 {
         return length > 0.0;
     }

@@ -40,6 +40,7 @@ pub(super) fn stated_poisson(mesh: &Mesh) -> Option<f64> {
 pub(super) fn young(mesh: &Mesh, given: &DraftMaterial, scale: f64) -> f64 {
     let given = given.young.as_deref().and_then(|text| Quantity::Pressure.parse(text).ok());
     let stated = mesh.annotations.sections.iter().find(|section| stands(section)).and_then(|section| section.young);
+    // The deck's stress is in newtons per square of the mesh unit, which is `scale` metres.
     given.or(stated.map(|young| young / (scale * scale))).unwrap_or(YOUNG)
 }
 
@@ -117,6 +118,7 @@ fn regions(mesh: &Mesh) -> Vec<Region<'_>> {
     if regions.is_empty() {
         let labels = mesh.groups.iter().filter(|(name, group)| is_name(name) && !group.cells.is_empty());
         regions.extend(labels.map(|(name, _)| Region { group: Some(name), section: None }));
+        // Labels may mark anything. Only labels that divide the body are taken for its materials.
         if covered(mesh, &regions) != Some(mesh.cell_count()) {
             return whole();
         }
@@ -188,6 +190,8 @@ fn constants(mesh: &Mesh, given: &DraftMaterial, section: Option<&Section>, scal
     }
     // Every part has a density, or none.
     let all = mesh.annotations.sections.iter().all(|section| section.density.is_some_and(|density| density > 0.0));
+    // A mass in the deck's units is N s² per mesh unit, and a density that mass by its cube: the fourth power of the
+    // unit.
     let stated = section.filter(|_| all).and_then(|section| of_deck(section.density, scale.powi(-4)));
     let density = given.density.as_deref().map(value);
     let words = "kg/m^3; masses, [motion] and frequencies require it";

@@ -229,6 +229,7 @@ fn positive(mesh: &Mesh) -> Option<(&'static str, &'static str)> {
     if !is_full || !all(&|block| block.element.has_corners_alone()) || !all(&is_of("all + volume")) {
         return None;
     }
+    // Of elements with corners alone only quadrilaterals and hexahedra have `2^d` nodes.
     let is_bricks = |block: &CellBlock| block.element.nodes() == 1 << block.element.dimension();
     match (all(&|block| block.element.cell.is_simplex()), all(&is_bricks)) {
         (true, _) => Some(("divergence", "[\"all + volume\"]")),

@@ -54,6 +54,7 @@ fn bar(element: &Arc<Element>, case: &str, ratio: f64) -> Result<StabilityRow> {
     for (side, young) in [(true, 1.0), (false, ratio)] {
         let mut part = whole.clone();
         let cells = whole.blocks[0].cells().zip(&first).filter(|(_, is_first)| **is_first == side);
+        // Both halves keep all points, so that their entries belong to one matrix.
         part.blocks[0].connectivity = cells.flat_map(|(nodes, _)| nodes.to_vec()).collect();
         // With ν = 0 the moduli are λ = 0 and μ = E/2.
         entries.extend(finite_elements(&part, Moduli { lambda: 0.0, mu: young / 2.0 }));
@@ -77,6 +78,7 @@ fn springs_in_a_row(case: &str, ratio: f64) -> Result<StabilityRow> {
     let network = Network { dimension: 2, lengths, others: Vec::new() };
     let points: Vec<f64> = (0..=ROW).flat_map(|i| [i as f64, 0.0]).collect();
     let mut support = Support { prescribed: vec![None; points.len()] };
+    // Straight springs have no stiffness across the row, and points are held there.
     support.fix(&(0..=ROW).collect::<Vec<_>>(), &[1], 2);
     support.fix(&[0], &[0], 2);
     let mut f = vec![0.0; points.len()];
@@ -121,6 +123,8 @@ fn solved(
     let largest = largest_square(scaled.iter().map(|e| (e.row, e.col, e.val)), &ones, &held);
     let scaled = System::new(&scaled, support)?;
     let softest = scaled.cholesky()?.map(|factor| 1.0 / (largest * compliance(&factor, scaled.size())));
+    // Entries that are rounded at the size of the largest stiffness change the softest motion by ε over its share of
+    // that stiffness.
     let rounding = if is_rounded { f64::EPSILON / softest.unwrap_or(0.0) } else { 0.0 };
     let allowed = rounding.max(PROMISED);
     let verdict = match error {

@@ -74,6 +74,7 @@ fn implicit(square: f64, step: f64, kind: &str, masses: [f64; 2], solver: Linear
         return of(Verdict::Refused(e.to_string())).with_way_out("take a shorter step");
     }
     let (mut errors, mut iterations) = (Vec::new(), 0);
+    // A step of implicit Euler divides the complex amplitude, whose real part is the stretch, by `1 − iωΔt`.
     let root = Complex::new(1.0, -step * square.sqrt());
     for n in 1..=COUNT {
         iterations += simulation.step().solver_iterations;
@@ -96,6 +97,7 @@ fn explicit(square: f64, step: f64, kind: &str, masses: [f64; 2]) -> StabilityRo
     let network = pair(square, masses);
     let points = [0.0, 0.0, 1.0, 0.0];
     let options = Options { step, integrator: Integrator::SymplecticEuler, ..Options::default() };
+    // Symplectic Euler is stable up to `2/ω`, with `ω² = k/m`.
     let limit = 2.0 / square.sqrt();
     match Simulation::new(Motion::free(&network, &points, &masses), options) {
         // The limit of the program is an upper bound of ω, so that it refuses steps up to a thousandth early.

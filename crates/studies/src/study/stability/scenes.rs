@@ -92,6 +92,7 @@ fn of_fit(
 ) -> StabilityRow {
     let changes = known.iter().flat_map(|known| fit.loads.iter().zip(&known.loads)).map(|(new, old)| {
         match (new.error, old.error) {
+            // Errors are in percent, and what is promised is a share.
             (Some(new), Some(old)) => (new.rms - old.rms).abs() / 100.0,
             (None, None) => 0.0,
             _ => f64::INFINITY,

@@ -108,6 +108,7 @@ fn planned(
     if !(recipe.gravity.is_empty() || recipe.gravity.len() == d) {
         return Err(entries("gravity", d, recipe.gravity.len()));
     }
+    // Pictures are drawn at the end, of the states of the body and of every network.
     let kept = if scene.output().has_pictures() { scene.fits().len() + 1 } else { 1 };
     let (state, written) = ((8 * mesh.points.len() * kept) as f64, recipe.written());
     if state * written.len() as f64 > MOST_BYTES {
@@ -139,6 +140,8 @@ fn planned(
         planned.watched = points(mesh, part).map_err(|e| e.under("watch"))?;
     }
     let moves = |p: usize| (p * d..(p + 1) * d).any(|dof| !planned.support.is_fixed(dof));
+    // Row sums of some quadratic cells are zero or negative at corners. The comparison is negated, so that NaN counts
+    // as massless.
     let massless = |p: &usize| moves(*p) && !(planned.masses[*p] > 0.0);
     if let Some(p) = (0..mesh.point_count()).find(massless).filter(|_| !recipe.options.quasi_static) {
         let expected = "a mass above zero at every point that moves (\"hrz\" gives one)";
@@ -187,6 +190,7 @@ fn add_prescribed_motion(
         let still = *expression == Expr::integer(0);
         let varies = (1..=d).any(|k| expression.uses(k));
         let program = Program::of(expression);
+        // A curve of time alone is the same at all points, and is made and checked once.
         let mut shared: Option<Curve> = None;
         let mut moved = Vec::new();
         for &p in &points {
@@ -213,6 +217,7 @@ fn add_prescribed_motion(
                     let mut at = [0.0; 4];
                     at[1..=d].copy_from_slice(mesh.point(p));
                     let program = program.clone();
+                    // An expression has the time first, and then the place at rest.
                     let curve = Curve::new(move |t| program.evaluate(&[t, at[1], at[2], at[3]]));
                     let size = size(planned, &curve, points.len(), 1).map_err(|e| e.under(&key))?;
                     largest = largest.max(size);
@@ -223,6 +228,7 @@ fn add_prescribed_motion(
                 }
             };
             moved.push(p);
+            // The drive gives the value at each time. The support only says that the direction is held.
             planned.support.prescribed[dof] = Some(0.0);
             planned.drive = std::mem::take(&mut planned.drive).displacement(dof, curve);
         }
@@ -257,6 +263,7 @@ fn add_force(planned: &mut Planned, mesh: &Mesh, thicknesses: &CellMap<f64>, pus
         }
         let shares = (0..mesh.point_count()).map(|p| (p, forces[p * d + k])).filter(|(_, share)| *share != 0.0);
         planned.forces.push(TimedForce { axis: k, curve: expression.text(&["t"]), shares: shares.collect() });
+        // A force on held points alone would leave the body at rest without a word.
         felt |= forces.iter().enumerate().any(|(dof, f)| *f != 0.0 && !planned.support.is_fixed(dof));
         planned.drive = std::mem::take(&mut planned.drive).forces(&forces, curve);
     }
@@ -275,15 +282,18 @@ fn size(planned: &Planned, curve: &Curve, count: usize, beyond: usize) -> Result
     let (h, halves) = (planned.recipe.options.step, 2 * planned.recipe.steps + beyond);
     let trials = (TRIALS / count.max(1)).max(100);
     let stride = halves.div_ceil(trials);
+    // The end is a time of its own, because the stride need not divide the number of half steps.
     let mut times = (0..=halves).step_by(stride).chain([halves]).map(|i| i as f64 * h / 2.0);
     let mut largest = 0.0f64;
     let beyond_range = |t: &f64| {
         largest = largest.max(curve.at(*t).abs());
+        // The comparison is negated, so that NaN is found too.
         !(curve.at(*t).abs() <= range::LARGEST)
     };
     let Some(t) = times.find(beyond_range) else { return Ok(largest) };
     // Without the last digits, which half steps change.
     let shown: f64 = format!("{t:.9e}").parse().unwrap_or(t);
+    // The sum of half steps is the duration up to rounding.
     let after = if t > planned.recipe.duration * (1.0 + 1e-9) { ", half a step after the end" } else { "" };
     let expected = format!("finite values of at most {:e} in size at all times of the motion", range::LARGEST);
     Err(Error::new(format!("expected {expected}, found {} at {shown} s{after}", curve.at(t))))

@@ -49,6 +49,8 @@ impl Relaxing {
                     (serves, "exact networks of the stable neo-Hookean energy at large deformation")
                 }
                 (_, true) => (false, "exact networks of the stable neo-Hookean energy at large deformation"),
+                // What a search finds need not be linear in the moduli. A factor that all moduli share is one of the
+                // network as well.
                 (Recipe::Sampled(_) | Recipe::Whole(_), false) => (
                     body.is_uniform() && body.first().is_alike(),
                     "one series of the whole body, whose shares of shear and bulk are alike, for fits to shapes or to the whole object",
@@ -166,6 +168,7 @@ impl Relaxing {
     fn remembered(&self, mesh: &Mesh, parts: Vec<RelaxingStiffness>) -> Result<Memory> {
         let mut times: Vec<f64> = Vec::new();
         for term in self.body.series.iter().flatten().flat_map(Relaxation::terms) {
+            // Terms of equal times share one history. Equal times of a scene have the same digits, and the same bits.
             if !times.contains(&term.time) {
                 times.push(term.time);
             }

@@ -118,6 +118,7 @@ impl RelaxingBody {
                 if !self.is_part(part, region) {
                     return Hooke::Isotropic(Moduli { lambda: 0.0, mu: 0.0 });
                 }
+                // Shares that are alike scale the whole stiffness, so that the material may also be anisotropic.
                 if self.is_alike(part) {
                     return hooke.clone();
                 }
@@ -259,6 +260,7 @@ fn combined(parts: &[(f64, &Entries)]) -> Entries {
     let scaled = |(factor, entries): &(f64, &Entries)| -> Entries {
         entries.iter().map(|e| Triplet::new(e.row, e.col, factor * e.val)).collect()
     };
+    // Entries of one place stay apart, because whoever assembles them adds them up.
     parts.iter().flat_map(scaled).collect()
 }
 
