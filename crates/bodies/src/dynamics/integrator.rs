@@ -55,6 +55,8 @@ impl Integrator {
     /// `[c₁, c₂]` for the step h in s; `first` for a step without a previous one.
     pub(super) fn coefficients(self, h: f64, first: bool) -> [f64; 2] {
         match self {
+            // Two states are known from the second step on. The derivative of Δ is 3/2h, and the second derivative
+            // takes it twice.
             Integrator::Bdf2 if !first => [1.5 / h, 2.25 / (h * h)],
             Integrator::Newmark { beta, gamma } => [gamma / (beta * h), 1.0 / (beta * h * h)],
             _ => [1.0 / h, 1.0 / (h * h)],
@@ -75,6 +77,7 @@ impl Integrator {
                 // From `a = (Δ − y)/βh²`, put into the rule of v and solved for Δ.
                 [y - (v + h * (1.0 - gamma) * a) * beta * h / gamma, y]
             }
+            // Implicit Euler: `v = Δ/h` and `a = (Δ − h v_n)/h²`.
             _ => [0.0, h * v],
         }
     }

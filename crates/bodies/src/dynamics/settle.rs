@@ -166,6 +166,8 @@ impl Trial {
         // All degrees of freedom, since dampers between held and free points oppose both.
         let drag: f64 = target.velocity.iter().zip(&self.viscous).map(|(v, f)| v * f).sum();
         let acting: f64 = acting.iter().map(|square| square.sqrt()).sum();
+        // A damper pulls with `D v`, and `v = c₁ (Δ − z)`: its potential is half of `D v (Δ − z)`, which is `v D v/(2
+        // c₁)`.
         self.potential = energy - work + kinetic / 2.0 + drag / (2.0 * c1);
         // A body at rest without loads has 0/0.
         self.size = if left == 0.0 { 0.0 } else { left.sqrt() / acting };

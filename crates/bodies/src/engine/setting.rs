@@ -149,6 +149,7 @@ impl Setting {
                 return Err(Error::expected(key, format!("a whole number from 1 to {MOST}"), count));
             }
         }
+        // Successive over-relaxation converges below the factor 2 alone (Ostrowski, Reich).
         if !(self.relaxation >= LEAST_RELAXATION && self.relaxation < 2.0) {
             let expected = format!("a factor of at least {LEAST_RELAXATION} and below 2");
             return Err(Error::expected("relaxation", expected, self.relaxation));

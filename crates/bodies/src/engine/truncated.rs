@@ -238,6 +238,7 @@ impl Truncated {
                 Sweeps::Springs(constraints) => constraints.change(&history, changes),
                 Sweeps::Points(descents) => descents.change(&history, changes),
             });
+            // From `K y = f` with a constant f follows `K dy = −dK y`.
             change.iter_mut().flatten().for_each(|f| *f = -*f);
             vectors(&change, chunk.len())
         };
@@ -266,6 +267,7 @@ impl Truncated {
         let mut total = vec![0.0; parts.first().map_or(0, Vec::len)];
         // Added in the order of the loads, so that the sum has the same bits on any number of threads.
         for part in &parts {
+            // The derivative of `K⁻¹` is `−K⁻¹ dK K⁻¹`, whence the sign.
             total.iter_mut().zip(part).for_each(|(t, own)| *t -= own);
         }
         Ok(total)

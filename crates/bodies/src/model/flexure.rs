@@ -63,6 +63,8 @@ fn of_edge(mesh: &Mesh, axes: &[[f64; 3]; 3], [a, b]: [usize; 2], springs: &[&Me
         for (place, &p) in spring.points[..3].iter().enumerate() {
             let [x, y] = in_plane(p);
             let rise = dot(&gradient[3 * place..3 * place + 3], &axes[2]);
+            // A sheet of constant curvatures rises by `κ_x x²/2 + κ_y y²/2 + κ_xy x y/2`, where κ_xy is twice the mixed
+            // derivative.
             turns += rise * Vector3::new(x * x / 2.0, y * y / 2.0, x * y / 2.0);
         }
         let by_director = dot(&gradient[9..12], &across);

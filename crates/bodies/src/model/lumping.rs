@@ -46,6 +46,8 @@ fn lumped(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>, lumping: 
             Integrand::Load(0),
             |_| true,
             |cell| {
+                // Shape functions add up to one, so that the sum of a row of the mass matrix is the integral of its own
+                // function.
                 for (values, v) in cell.each() {
                     cell.nodes.iter().zip(values).for_each(|(&p, n)| masses[p] += of(cell.index) * (v * n));
                 }

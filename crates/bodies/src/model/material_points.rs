@@ -147,6 +147,7 @@ impl MaterialPoint<'_> {
             f += Vector3::new(at[0], at[1], at.get(2).copied().unwrap_or(0.0)) * gradient.transpose();
         }
         if d < 3 {
+            // In plane strain nothing stretches across the plane.
             f[(2, 2)] = 1.0;
         }
         f

@@ -83,6 +83,7 @@ impl<'a> Triangle<'a> {
             let length = norm(&edge);
             let conormal = cross(edge.map(|x| x / length), normal);
             let [x, y] = [dot(&conormal, &axis), dot(&conormal, &other)];
+            // A turn about the edge is the curvature `n nᵀ`, whose mixed entry counts twice, as in strains.
             (length, Vector3::new(x * x, y * y, 2.0 * x * y))
         };
         let positions = (0..BEND_POINTS).flat_map(at).collect();

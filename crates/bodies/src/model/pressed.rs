@@ -123,6 +123,7 @@ impl PressedFaces {
             (0..mesh.dimension).map(along).collect()
         };
         let points = shapes.values.chunks_exact(shapes.nodes).zip(&shapes.weights);
+        // A pressure acts against the outward normal.
         let weights = points.map(|(values, w)| -w * factor * pressure.at(&at(values))).collect();
         self.faces.push(Face { table, nodes, weights });
     }

@@ -49,6 +49,7 @@ impl Specimen {
     /// The number of its own points.
     pub fn count(&self) -> usize {
         match &self.period {
+            // Images stand behind the points that they repeat.
             Some(period) => period.owners.iter().enumerate().take_while(|(p, owner)| p == *owner).count(),
             None => self.points.len() / self.network.dimension.max(1),
         }

@@ -245,6 +245,7 @@ fn affine(mesh: &Mesh) -> Vec<Vec<f64>> {
     let field = |i: usize, j: usize| {
         let mut u = vec![0.0; mesh.points.len()];
         for (u, x) in u.chunks_exact_mut(d).zip(mesh.points.chunks_exact(d)) {
+            // Symmetric gradients alone, because a rotation has no energy to compare.
             u[i] += x[j];
             u[j] += x[i];
         }

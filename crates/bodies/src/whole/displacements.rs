@@ -134,6 +134,7 @@ impl<'a> Displacements<'a> {
                 both += u * s * wanted;
             }
         }
+        // All constants times α divide the displacements by α, and `Σ (u/α − ū)²` is least at `α = Σ u²/Σ u ū`.
         Ok(Some(own / both).filter(|alpha| *alpha > 0.0 && alpha.is_finite()))
     }
 
@@ -268,6 +269,7 @@ impl<'a> Displacements<'a> {
         let (object, count) = (self.object, wanted.squares.len());
         let Some(equations) = self.equations(theta, &[&wanted.support])? else { return Ok(None) };
         let modes = equations[0].lowest_modes(&wanted.masses, object.dimension(), count)?;
+        // The residual is the logarithm of the quotient of frequencies, half of that of their squares.
         let root = 0.5 * wanted.weight.sqrt();
         let residuals = modes.squares.iter().zip(&wanted.squares).map(|(a, b)| root * (a / b).ln()).collect();
         let row = |(square, shape): (&f64, &Vec<f64>)| {

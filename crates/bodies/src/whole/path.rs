@@ -187,6 +187,8 @@ impl Path<'_> {
         let noise = self.wanted.noise.ok_or_else(missing)?;
         let Some(errors) = problem.errors(theta)? else { return Ok(None) };
         let square: f64 = errors.loads.iter().zip(&problem.targets).map(|(e, target)| target.weight * e * e).sum();
+        // Half of the logarithm of a square is the logarithm itself, and zero where residuals are as large as the
+        // noise.
         Ok(Some(0.5 * (square / (noise * noise * problem.observations() as f64)).ln()))
     }
 

@@ -161,6 +161,7 @@ impl<'a> Content<'a> {
                 let (a, b) = (&dn[i / space * d..][..d], &dn[j / space * d..][..d]);
                 // The tangent of a curve is linear in the positions, and has no second derivative.
                 let turned = if d == 1 { 0.0 } else { a[0] * b[1] - a[1] * b[0] };
+                // With the unit normal u: `∂∂‖n‖ = u·∂∂n + (∂n·∂n − (u·∂n)²)/‖n‖`.
                 let across = dot(&turns[i], &turns[j]) - dot(&unit, &turns[i]) * dot(&unit, &turns[j]);
                 let second = turned * triple(unit, axis(i % space), axis(j % space));
                 *entry += w * (second + across / length);

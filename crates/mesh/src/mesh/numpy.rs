@@ -51,6 +51,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshSource> {
 fn turned(values: Vec<i128>, [a, b, c]: [u64; 3]) -> Vec<i128> {
     let [a, b, c] = [a, b, c].map(|n| n as usize);
     let index = |i: usize, j: usize, k: usize| (i * b + j) * c + k;
+    // NumPy's last axis runs fastest, and the first axis of a lattice.
     (0..values.len()).map(|at| values[index(at % a, at / a % b, at / a / b)]).collect()
 }
 
@@ -78,6 +79,7 @@ impl<'a> NumpyFile<'a> {
         };
         let ends = || wrong(Error::new("the file ends inside header"));
         let (length, rest) = match rest {
+            // The length of the header has two bytes in version 1, and four bytes in later ones.
             [1, _, a, b, rest @ ..] => (u32::from(u16::from_le_bytes([*a, *b])), rest),
             [2 | 3, _, a, b, c, d, rest @ ..] => (u32::from_le_bytes([*a, *b, *c, *d]), rest),
             [1..=3, ..] | [] => return Err(ends()),
@@ -165,6 +167,7 @@ impl Array {
             _ => return Err(syntax("descr", "a byte order, one of < > |", file.value("descr")?)),
         };
         let (is_fortran, counts) = (file.is_fortran()?, file.shape()?);
+        // Along an axis there is one point more than voxels, which must be a number too.
         if !(2..=3).contains(&counts.len()) || counts.iter().any(|count| *count >= u64::MAX / 2) {
             let error = Error::expected("shape", "an array of 2 or 3 dimensions", self::shown(&counts));
             return Err(error.of_kind(ErrorKind::Unsupported));

@@ -32,6 +32,7 @@ pub fn parse(node: &[u8], ele: &[u8], face: Option<&[u8]>) -> Result<MeshSource>
     let regions = cells(&mut ele, &mut listing)?;
     ele.lines.beyond("cells of .ele").into_iter().for_each(|sentence| annotations.remark(sentence));
     let mut resolved = listing.resolve(length, ".ele: cell")?;
+    // TetGen marks with zero what has no mark.
     for (place, mark) in marks.into_iter().enumerate().filter(|(_, mark)| *mark != 0) {
         let group = resolved.group(&format!("mark={mark}"));
         resolved.add_node(group, place)?;
@@ -132,6 +133,7 @@ fn cells(table: &mut Table, listing: &mut Listing) -> Result<Vec<String>> {
         if attributes > 0 {
             let last = usize::try_from(attributes.saturating_add(cell_type.nodes() as u64)).unwrap_or(usize::MAX);
             let region = lines.real(word(last), "an attribute")?;
+            // Attributes are real numbers. A whole one is written without a point, as regions are numbered.
             regions.push(format!("{region}"));
         }
         Ok(())

@@ -143,6 +143,7 @@ impl Branches {
             [piece] => pull(piece),
             pieces => pieces.par_iter_mut().map(pull).reduce(|| true, |a, b| a & b),
         };
+        // Each piece has forces of its own, which are added in the order of the pieces: threads do not change the sums.
         energies.fill(0.0);
         for piece in &self.pieces {
             for (energy, lanes) in energies.iter_mut().zip(piece.energies.chunks_exact(LANES)) {
@@ -172,6 +173,7 @@ impl Piece {
             let Draft { nodes, per_cell, gradients, is_simplex, points: own } = draft;
             let batches = (own.len() / per_cell).div_ceil(LANES);
             let mut weights = vec![0.0; batches * LANES * per_cell * terms];
+            // Lanes without a cell keep the one, so that their numbers are finite.
             let mut inverses = vec![1.0; batches * LANES * per_cell];
             let mut rows = Vec::with_capacity(own.len() / per_cell * nodes);
             let mut tables = Gradients::Own(Vec::new());

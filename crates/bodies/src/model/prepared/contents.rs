@@ -88,6 +88,7 @@ impl Contents {
                 lawful.push(Lawful { cell: at, scale, spring: s });
             } else {
                 // Linear springs on one point of a cell add up to one, which is evaluated once.
+                // The energy `k/2 (w c − c₀)²` pulls on c with `k w² c − k w c₀`.
                 all.slopes[at] += spring.constant * scale * scale;
                 all.pulls[at] += spring.constant * scale * spring.rest;
             }

@@ -63,6 +63,7 @@ impl DomainSprings {
     pub fn sum(&self, others: &DomainSprings, factor: f64) -> DomainSprings {
         let add = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + factor * b).collect();
         let constant = self.constant + factor * others.constant;
+        // Two linear springs on one content are one, whose pull at the content zero is the sum of theirs.
         let pull = self.constant * self.rest + factor * others.constant * others.rest;
         DomainSprings {
             pairs: add(&self.pairs, &others.pairs),

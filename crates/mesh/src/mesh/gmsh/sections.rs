@@ -151,6 +151,7 @@ impl File {
             let Some((dimension, nodes_per_cell)) = types::find(cell_type) else { continue };
             let name = |tag| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{dimension}:{tag}"));
             let mut known = HashSet::new();
+            // Several tags may have one name, which is one group.
             let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
             blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups, is_marker: true });
         }
@@ -171,6 +172,7 @@ impl File {
 fn format(reader: &mut Reader) -> Result<Version> {
     let number: Option<f64> = std::str::from_utf8(reader.peek()).ok().and_then(|word| word.parse().ok());
     let version = match number {
+        // A version has the digits of these numbers, and parses to the same bits.
         Some(4.1) => Version::V41,
         Some(4.0) => Version::V40,
         Some(2.0..=2.2) => Version::V22,
@@ -193,6 +195,7 @@ fn format(reader: &mut Reader) -> Result<Version> {
     }
     reader.encoding = Encoding::Binary { big_endian: false };
     reader.start_data()?;
+    // The file has a one in binary, which tells its order of bytes.
     let one: i32 = reader.number()?;
     match one {
         1 => {}

@@ -217,12 +217,14 @@ impl<'a> Document<'a> {
         let end = if in_base64 || tag.empty {
             text_after(self.bytes, tag.end).end
         } else {
+            // Raw bytes may spell the end tag by chance: the last one closes the data.
             let end = self.bytes[tag.end..].windows(APPENDED_END.len()).rposition(|window| window == APPENDED_END);
             tag.end
                 + end.ok_or_else(|| {
                     Error::expected("AppendedData", "</AppendedData> after the data", "the end of the file")
                 })?
         };
+        // The format marks the first byte of the data with an underscore.
         let data = self.bytes[tag.end..end].trim_ascii_start().strip_prefix(b"_");
         self.appended = data.map(|bytes| Stored { bytes, in_base64 });
         Ok(end)

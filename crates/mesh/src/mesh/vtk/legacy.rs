@@ -71,6 +71,7 @@ fn header(reader: &mut Reader) -> Result<()> {
     reader.encoding = if encoding.eq_ignore_ascii_case(b"ASCII") {
         Encoding::Text
     } else if encoding.eq_ignore_ascii_case(b"BINARY") {
+        // Legacy files have big-endian numbers, whatever machine writes them.
         Encoding::Binary { big_endian: true }
     } else {
         return Err(reader.expected("ASCII or BINARY", &quoted(encoding)));
