@@ -229,6 +229,7 @@ impl<const D: usize, const M: usize> Multigrid<D, M> {
     fn rounding<T: Entry>(&self, x: &[[T; D]]) -> T {
         let a = self.matrix();
         let mut sizes = vec![[T::ZERO; D]; x.len()];
+        // Each row is a sum of its own, so that threads do not change it.
         sizes.par_chunks_mut(PIECE).enumerate().for_each(|(piece, sizes)| {
             vectorized(
                 #[inline(always)]

@@ -66,6 +66,7 @@ impl<const R: usize, const C: usize> BlockMatrix<R, C> {
 
     /// Calls `set(y_i, (A x)_i)` for each row.
     pub(crate) fn each_row<T: Entry>(&self, y: &mut [[T; R]], x: &[[T; C]], set: impl Fn(&mut [T; R], [T; R]) + Sync) {
+        // Each row is a sum of its own, so that threads do not change it.
         y.par_chunks_mut(PIECE).enumerate().for_each(|(piece, y)| {
             vectorized(
                 #[inline(always)]

@@ -40,6 +40,7 @@ pub(crate) fn dot<T: Entry, const N: usize>(x: &[[T; N]], y: &[[T; N]]) -> T {
 
 /// `y ← a y + b x`.
 pub(crate) fn combine<T: Entry, const N: usize>(y: &mut [[T; N]], a: T, x: &[[T; N]], b: T) {
+    // Entries are independent of each other, so that threads do not change them.
     y.par_chunks_mut(PIECE).zip(x.par_chunks(PIECE)).for_each(|(y, x)| {
         vectorized(
             #[inline(always)]
@@ -102,6 +103,7 @@ pub(crate) fn list_rows<T: Send + Copy, S>(
         }
         (ends, entries)
     };
+    // Pieces are joined in the order of their rows, whichever thread has made them.
     let parts: Vec<(Vec<usize>, Vec<T>)> = firsts.par_iter().map(piece).collect();
     let total = parts.iter().map(|(_, entries)| entries.len()).sum();
     let (mut starts, mut all) = (Vec::with_capacity(rows + 1), Vec::with_capacity(total));

@@ -39,6 +39,7 @@ pub fn tentative<const R: usize, const C: usize>(aggregates: &Aggregates, motion
         (q, r, held)
     };
     let parts: Vec<(Vec<Block<R, C>>, Block<C, C>, [bool; C])> =
+        // Aggregates have no node in common, and are collected in their order.
         (0..aggregates.count).into_par_iter().map(one).collect();
     let mut basis = vec![zero(); aggregates.of.len()];
     let (mut coarse, mut is_held) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));

@@ -26,6 +26,7 @@ pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
         for nodes in block.cells() {
             for side in block.element.sides() {
                 let mut key: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
+                // Both cells of a side list its nodes, each in an order of its own.
                 key.sort_unstable();
                 // Two cells at most share a side: what was found needs to be known no more.
                 if let Some(other) = sides.remove(&key) {

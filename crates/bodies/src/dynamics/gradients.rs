@@ -42,6 +42,7 @@ impl<const D: usize> Gradients<D> {
     /// There are more than 2³² entries.
     pub fn new(entries: &[(usize, usize)], held: &[bool], tolerance: f64) -> Result<Gradients<D>> {
         let mut pairs: Vec<(usize, usize)> = entries.iter().map(|(row, column)| (row / D, column / D)).collect();
+        // The entries of a block of coordinates all name one pair of points.
         pairs.sort_unstable();
         pairs.dedup();
         let is_row: Vec<bool> = held.chunks(D).map(|held| held.contains(&false)).collect();
@@ -70,6 +71,7 @@ impl<const D: usize> Gradients<D> {
         };
         let slots = entries.iter().map(slot).collect();
         let mut points: Vec<usize> = (0..is_row.len()).filter(|point| is_row[*point]).collect();
+        // Rows of the pattern are numbered by place.
         points.sort_unstable_by_key(|point| place[*point]);
         let order: Vec<usize> = points.iter().flat_map(|p| p * D..(p + 1) * D).filter(|dof| !held[*dof]).collect();
         let coordinates = order.iter().map(|dof| (place[dof / D] * 4 + dof % D) as u32).collect();

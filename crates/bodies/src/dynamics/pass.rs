@@ -62,6 +62,7 @@ pub(super) fn leap(h: f64, changed: Changed, given: Given) {
     match u.len() {
         0..=PIECE => piece((u, way, next, given)),
         _ => {
+            // A number depends on those of its own place alone, so that threads do not change it.
             let of = |at: usize| given.map(|list| &list[at * PIECE..(at * PIECE + PIECE).min(list.len())]);
             let pieces = (u.par_chunks_mut(PIECE), way.par_chunks_mut(PIECE), next.par_chunks_mut(PIECE));
             pieces.into_par_iter().enumerate().for_each(|(at, (u, way, next))| piece((u, way, next, of(at))));

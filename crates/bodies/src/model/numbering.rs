@@ -11,6 +11,7 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
         beside[j].push(i);
     }
     for beside in &mut beside {
+        // Several entries name the same two points, and their order must not change the numbering.
         beside.sort_unstable();
         beside.dedup();
     }

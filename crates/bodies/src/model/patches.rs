@@ -69,6 +69,7 @@ fn springs_of_patches(mesh: &Mesh, material: MaterialMap, fit: &ExactFit, held: 
     };
     let spring = |parts: &[Part]| {
         let mut points: Vec<usize> = parts.iter().flat_map(|part| part.nodes).copied().collect();
+        // Cells of a patch share points, and the binary search below asks for an ascending list.
         points.sort_unstable();
         points.dedup();
         let place = |node: &usize| points.binary_search(node).expect("the points of the patch are those of its cells");

@@ -84,6 +84,7 @@ pub(super) fn strain_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit
         }
     };
     let groups: Vec<&[([usize; 2], usize)]> = sides.chunk_by(|a, b| a.0 == b.0).collect();
+    // Edges do not depend on each other, and the list keeps their order on any number of threads.
     network.others = groups.into_par_iter().flat_map_iter(of_edge).collect();
     Ok(network)
 }

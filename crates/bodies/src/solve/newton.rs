@@ -161,6 +161,7 @@ impl Newton {
                 }
                 ForceBalance::None => {
                     step /= 2.0;
+                    // So short a step does not pass a limit point or a fold either.
                     if step < first * 0.5f64.powi(HALVINGS as i32) {
                         found.residuals.push(history);
                         found.ending = Ending::Stalled;

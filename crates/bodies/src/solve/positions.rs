@@ -40,6 +40,7 @@ pub(crate) fn positions(
                 stored[row] = distinct.len();
             }
         }
+        // Columns of a sparse matrix have ascending rows.
         distinct[first..].sort_unstable();
         distinct[first..].iter().enumerate().for_each(|(i, &row)| stored[row] = first + i + 1);
         own.for_each(|at| slots[numbers[at]] = stored[rows[at]] - 1);

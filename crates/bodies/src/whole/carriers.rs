@@ -179,6 +179,7 @@ impl Carriers {
                     };
                     fits.map(part).collect()
                 };
+                // Cells are independent of each other, and are collected in their order.
                 cells.par_iter().map(of_cell).collect()
             }
             Carriers::Domains(domains, parts, law) => {

@@ -1,6 +1,8 @@
 //! Euclidean lengths of vectors, without overflow or underflow.
 
 /// If a norm lies within these bounds, no square that contributes to it has overflowed or underflowed.
+// Squares are then 1e280 at most. An entry that changes the sum is more than 1e-8 of the norm, whose square of 1e-296
+// is still a normal number.
 const ORDINARY: std::ops::Range<f64> = 1e-140..1e140;
 
 /// The Euclidean norm `‖v‖`. It is not finite only if an entry is not finite or the norm itself overflows.

@@ -88,7 +88,10 @@ pub fn push_exponential(text: &mut Vec<u8>, value: f64) {
 fn lowest_bit(value: f64) -> i32 {
     let bits = value.to_bits();
     let (exponent, fraction) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1));
+    // Normal numbers have a leading one that is not stored. Subnormal ones have none, and the exponent of the least
+    // normal number.
     let mantissa = if exponent == 0 { fraction } else { fraction | 1 << 52 };
+    // The exponent is stored with 1023 added, and the mantissa counts units of 2⁻⁵².
     exponent.max(1) - 1075 + mantissa.trailing_zeros() as i32
 }
 

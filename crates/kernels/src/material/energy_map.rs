@@ -41,6 +41,7 @@ impl EnergyMap {
     ) -> Result<EnergyMap> {
         let both = self.of.try_zip(region, |law, region| Ok((*law, *region)))?;
         let mut known: Vec<(usize, usize)> = both.values().copied().collect();
+        // A law is made once for each region that has it, and not for each cell.
         known.sort_unstable();
         known.dedup();
         let law = |&(law, region): &(usize, usize)| -> Result<(Energy, State)> {

@@ -48,10 +48,12 @@ impl MeshArrays {
         mesh.groups = groups.into_iter().map(|(name, points)| (name, mesh.group_of(&points, &boundary))).collect();
         let indices: Vec<CellIndex> = if cell_groups.is_empty() { Vec::new() } else { mesh.cell_indices().collect() };
         for (name, mut listed) in cell_groups {
+            // A caller may list cells in any order, and twice.
             listed.sort_unstable();
             listed.dedup();
             let cells: Vec<CellIndex> = listed.into_iter().map(|cell| indices[cell]).collect();
             let mut points: Vec<usize> = cells.iter().flat_map(|cell| mesh.cell_nodes(*cell)).copied().collect();
+            // Neighbours share points. Groups have ascending lists, in which points are searched by halving.
             points.sort_unstable();
             points.dedup();
             let group = mesh.groups.entry(name).or_insert_with(|| Group { points, ..Group::default() });

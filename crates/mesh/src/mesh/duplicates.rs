@@ -24,6 +24,7 @@ impl Mesh {
         if repeated.is_empty() {
             return Ok(());
         }
+        // Sets of cells come in the order of their lowest points, and the message names the first cell of the mesh.
         repeated.sort_unstable_by_key(|(cell, _)| (cell.block, cell.cell));
         let cells: Vec<CellIndex> = repeated.iter().map(|(cell, _)| *cell).collect();
         if !skip {

@@ -76,6 +76,7 @@ impl Mesh {
                 gather(&self.points, self.dimension, nodes, &mut x);
                 bounds.folds(&x).then_some(CellIndex { block: index, cell })
             };
+            // Cells are independent of each other, and are collected in their order.
             block.connectivity.par_chunks_exact(n).enumerate().filter_map(folds).collect()
         };
         self.blocks.iter().enumerate().flat_map(of_block).collect()

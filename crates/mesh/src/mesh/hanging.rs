@@ -31,6 +31,7 @@ impl Mesh {
     pub(super) fn hanging(&self, places: &Places, overlapping: &mut HashSet<CellIndex>) -> usize {
         let hosts = self.hosts(overlapping);
         let mut candidates: Vec<usize> = hosts.iter().flat_map(|host| host.points.iter().copied()).collect();
+        // A point belongs to several sides, and is looked up once.
         candidates.sort_unstable();
         candidates.dedup();
         let boxes: Vec<[[f64; 3]; 2]> = hosts.iter().map(|host| self.surroundings(host)).collect();

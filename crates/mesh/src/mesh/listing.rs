@@ -228,6 +228,8 @@ impl Resolved {
     pub fn into_source(mut self, annotations: Annotations) -> MeshSource {
         let Groups { names, mut cells, mut nodes, mut sides, .. } = std::mem::take(&mut self.groups);
         let named = |groups: &[u32]| groups.iter().map(|&group| names[group as usize].clone()).collect::<Vec<_>>();
+        // A deck may name a cell twice in a group. Sorted by cell, the groups of each are met while cells are passed in
+        // order.
         cells.sort_unstable();
         cells.dedup();
         let mut members = cells.into_iter().peekable();
@@ -243,6 +245,7 @@ impl Resolved {
         }
         let mut blocks: Vec<SourceBlock> =
             gather.into_lists().map(|((cell_type, groups), list)| cell_type.cells(list, named(&groups))).collect();
+        // Sorted by group, each run of the list becomes a block.
         nodes.sort_unstable();
         nodes.dedup();
         for members in nodes.chunk_by(|a, b| a.0 == b.0) {

@@ -222,6 +222,7 @@ pub(super) fn outer_sides(mesh: &Mesh, is_selected: &[bool]) -> Vec<SideIndex> {
             outer.extend(mesh.side_points(side).all(|p| is_selected[p]).then_some(*side));
         }
     });
+    // Sides come in the order of their lowest points, and are listed in that of the cells.
     outer.sort_unstable_by_key(|side| (side.cell.block, side.cell.cell, side.side));
     outer
 }

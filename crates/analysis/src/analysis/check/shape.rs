@@ -104,6 +104,7 @@ fn patch_defect(element: &Element, x: &[f64]) -> f64 {
     let mut boundary = vec![0.0; x.len()];
     if d == 1 {
         for (a, at) in element.positions.iter().enumerate() {
+            // The ends of the reference line are at −1 and 1, and files give them with ten digits or more.
             boundary[a] = if at.abs() > 1.0 - 1e-9 { at.signum() } else { 0.0 };
         }
     }

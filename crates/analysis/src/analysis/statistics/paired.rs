@@ -139,6 +139,7 @@ fn share_below(n: usize, most: usize) -> f64 {
             ways[sum] += ways[sum - rank];
         }
     }
+    // Each rank has either sign with the same chance, so that `2ⁿ` choices are equally likely.
     ways[..=most.min(total)].iter().sum::<f64>() / 2f64.powi(n as i32)
 }
 
@@ -146,6 +147,7 @@ fn share_below(n: usize, most: usize) -> f64 {
 /// level says: Holm (1979), Scandinavian Journal of Statistics 6.
 pub fn adjust(probabilities: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..probabilities.len()).collect();
+    // Holm's factors fall from the least probability to the largest.
     order.sort_by(|a, b| probabilities[*a].total_cmp(&probabilities[*b]));
     let (mut adjusted, mut least) = (vec![0.0; order.len()], 0.0f64);
     for (done, place) in order.iter().enumerate() {

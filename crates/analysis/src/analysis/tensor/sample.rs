@@ -117,6 +117,7 @@ impl<'a> Stars<'a> {
     }
 
     fn gather(&self, mut cells: Vec<usize>, points: Vec<usize>, places: HashMap<usize, usize>) -> Sample {
+        // A cell is found once for each of its points, and in an order that depends on the seed.
         cells.sort_unstable();
         cells.dedup();
         let mut own = vec![Vec::new(); self.mesh.blocks.len()];

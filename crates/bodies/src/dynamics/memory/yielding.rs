@@ -114,6 +114,7 @@ fn root(high: f64, value: f64, of: impl Fn(f64) -> f64) -> f64 {
         let [(low, above), (high, below)] = ends;
         let x = (low * below - high * above) / (below - above);
         let off = of(x) - value;
+        // The value or the place is the wanted one to rounding.
         if off.abs() <= f64::EPSILON * value || high - low <= f64::EPSILON * high {
             return x;
         }

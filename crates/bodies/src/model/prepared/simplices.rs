@@ -291,6 +291,7 @@ impl Builder {
         let mut place = vec![0; order.len()];
         order.iter().enumerate().for_each(|(at, &cell)| place[cell] = at);
         lawful.iter_mut().for_each(|lawful| lawful.cell = place[lawful.cell]);
+        // Cells have moved, and laws are evaluated in the order in which contents lie in memory.
         lawful.sort_by_key(|lawful| lawful.cell);
         let rounded =
             |Simplex { nodes, slope, pull }: Simplex<f64>| Simplex { nodes, slope: N::of(slope), pull: N::of(pull) };

@@ -38,6 +38,7 @@ impl Layout {
         self.0.iter().rev().map(move |width| {
             let exponent = key & ((1 << width) - 1);
             key >>= width;
+            // The mask has left the bits of one exponent, which was packed as a number of 32 bits.
             exponent as u32
         })
     }

@@ -33,6 +33,7 @@ pub fn sum(a: &BigRational, b: &BigRational) -> BigRational {
         let shared = divisor(c, d);
         let (c, d) = (c / shared, d / shared);
         let above = (i128::from(a) * i128::from(d)).checked_add(i128::from(b) * i128::from(c))?;
+        // The remainder is below the divisor, which is a word.
         let cancels = divisor((above % i128::from(shared)) as i64, shared);
         let below = i128::from(c) * i128::from(d);
         let below = below.checked_mul(i128::from(shared / cancels))?;

@@ -121,6 +121,7 @@ impl Value {
         if !whole {
             return self.of(Node::Power(self.number, exponent.to_bits()));
         }
+        // Repeated squaring needs as many products as the exponent has bits, at most twice.
         let (mut result, mut square, mut left) = (self.like(1.0), self.clone(), exponent as u32);
         while left > 0 {
             if left % 2 == 1 {

@@ -237,6 +237,7 @@ impl<'a> Writer<'a> {
         if index.constant != 0 || terms.is_empty() {
             terms.push((index.constant < 0, self.syntax.integer(index.constant.abs())));
         }
+        // A positive term in front spares a sign at the beginning.
         terms.sort_by_key(|(is_negative, _)| *is_negative);
         let mut text = String::new();
         for (i, (is_negative, term)) in terms.iter().enumerate() {

@@ -128,6 +128,7 @@ impl<'a> CellFunction<'a> {
         let n = self.element.nodes();
         let all: Vec<_> =
             chunks(first, of_first, self.cells()).into_iter().zip(chunks(second, of_second, self.cells())).collect();
+        // Each chunk writes its own columns, so that threads do not change a result.
         all.into_par_iter().enumerate().try_for_each(|(i, (first, second))| {
             let start = i * CHUNK;
             let nodes = &self.connectivity[start * n..(start * n + CHUNK * n).min(self.connectivity.len())];

@@ -100,6 +100,7 @@ fn edges(cell: Cell) -> Vec<[usize; 2]> {
             cell.sides().iter().flat_map(of_side).collect()
         }
     };
+    // Two sides share an edge, which each of them passes in its own direction.
     edges.iter_mut().for_each(|edge| edge.sort_unstable());
     edges.sort_unstable();
     edges.dedup();

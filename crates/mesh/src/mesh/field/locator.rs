@@ -23,6 +23,7 @@ impl Locator {
         let extent = (0..3).map(|k| ends(k).1 - ends(k).0).fold(0.0, f64::max);
         let mut locator = Locator { points, corner, tolerance: TOLERANCE * extent, bins: Vec::new() };
         locator.bins = locator.points.iter().enumerate().map(|(p, x)| (locator.bin(x, 0.0), p)).collect();
+        // A bin is found by halving.
         locator.bins.sort_unstable();
         locator
     }

@@ -245,6 +245,7 @@ fn group(mesh: &mut Mesh) -> Result<usize> {
     let sides: Vec<Vec<usize>> = outer.iter().map(|side| sorted(&mesh.side_nodes(side))).collect();
     let points = sorted(&sides.concat());
     let mut surface = Group { points, sides, ..Group::default() };
+    // A point belongs to several sides, and the list is ascending already.
     surface.points.dedup();
     let body = Group {
         points: (0..mesh.point_count()).collect(),
@@ -282,6 +283,7 @@ fn inside(columns: &Columns, grid: &Grid, patterns: &[Pattern], filled: &mut Fil
             }
         }
     }
+    // Cells were found column by column, and are numbered layer by layer.
     cells.sort_unstable_by_key(|([i, j, k], pattern)| (*k, *j, *i, *pattern));
     Ok(cells)
 }

@@ -65,6 +65,8 @@ fn triangle(element: &Element) -> Option<Vec<[i64; 2]>> {
         let d = element.dimension();
         let r: Vec<f64> = element.positions[a * d..(a + 1) * d].iter().zip(&origin).map(|(x, o)| x - o).collect();
         let (rs, rt) = (dot(&r, s), dot(&r, t));
+        // Coordinates in the two tangents, which need not be at right angles, rounded to whole multiples of 2⁻²⁰, so
+        // that equal places are equal keys.
         [rs * tt - rt * st, rt * ss - rs * st].map(|x| (x / (ss * tt - st * st) * (1u64 << 20) as f64).round() as i64)
     };
     let mut places: Vec<[i64; 2]> = element.sides()[side].nodes.iter().map(place).collect();

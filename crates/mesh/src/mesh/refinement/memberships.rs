@@ -112,6 +112,7 @@ impl<'a> Memberships<'a> {
             }
         }
         let sorted = |mut group: Group| {
+            // Parents that share a point have both added it.
             group.points.sort_unstable();
             group.points.dedup();
             for parts in [&mut group.sides, &mut group.edges] {

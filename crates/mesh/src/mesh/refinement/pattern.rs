@@ -115,6 +115,7 @@ fn edges(
     for (own, nodes) in cells {
         all.extend(edge_nodes(own).iter().map(|edge| points_of(edge, nodes)));
     }
+    // Children share edges.
     all.sort_unstable();
     all.dedup();
     let parts_of = |own: Vec<usize>| {

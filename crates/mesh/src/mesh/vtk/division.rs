@@ -57,6 +57,7 @@ impl Division {
         let (bottom, top) = nodes.split_at(n);
         let key = |base: &[usize]| {
             let mut key = base.to_vec();
+            // A neighbour lists the same base in another order.
             key.sort_unstable();
             key
         };

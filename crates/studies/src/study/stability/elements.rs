@@ -74,6 +74,7 @@ pub fn sweep_element(element: &Element, progress: &mut dyn FnMut(usize, usize)) 
         progress(done, total);
         let some: Vec<(usize, ShapeCase)> = cases.by_ref().take(AT_ONCE).collect();
         done += some.len();
+        // The rows keep the order of the shapes, on any number of threads.
         rows.par_extend(some.into_par_iter().flat_map_iter(of_case));
     }
     Ok(rows)

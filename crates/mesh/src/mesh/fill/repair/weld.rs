@@ -37,8 +37,10 @@ pub(in crate::mesh::fill) fn weld(triangles: &mut Triangles) -> Welded {
         let mut lengths: Vec<f64> =
             edges.iter().map(|[a, b]| distance(&triangles.points[*a], &triangles.points[*b])).collect();
         lengths.sort_unstable_by(f64::total_cmp);
+        // A unit beyond a share of the median edge would weld corners of one triangle.
         let unit = (tolerance * extent).min(OF_EDGE * lengths[lengths.len() / 2]);
         let mut ends: Vec<usize> = edges.into_iter().flatten().collect();
+        // An end belongs to two open edges or more.
         ends.sort_unstable();
         ends.dedup();
         let places: Vec<[f64; 3]> = ends.iter().map(|&p| triangles.points[p]).collect();
