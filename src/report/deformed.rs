@@ -33,6 +33,7 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     }
     let standard = outcome.loads[place].measured.map_or("", |measured| measured.standard.heading());
     let largest = fem.chunks_exact(d).map(norm).fold(0.0, f64::max);
+    // The scale of the displacements would divide by zero.
     if panels.is_empty() || largest == 0.0 {
         return None;
     }

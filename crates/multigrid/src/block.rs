@@ -129,6 +129,7 @@ pub fn softest<const N: usize>(a: &Block<N, N>, free: &[bool; N]) -> [f64; N] {
     for _ in 0..60 {
         for p in 0..N {
             for q in p + 1..N {
+                // The quotient below would divide by the zero that is wanted.
                 if a[p][q] == 0.0 {
                     continue;
                 }

@@ -75,6 +75,7 @@ impl Column {
         let (solution, ratio) = (&mut self.solution, next / self.along);
         self.lanczos.step(step, ratio);
         solution.iterations += 1;
+        // Rounding can take the product of a small residual with its correction below zero.
         solution.error = (next / self.scale.unwrap_or(next)).max(0.0).sqrt();
         if solution.error < self.best.0 {
             self.best = (solution.error, solution.iterations);

@@ -146,6 +146,7 @@ fn largest<const N: usize>(a: &BlockMatrix<N, N>, inverse: &[Block<N, N>]) -> f6
     for _ in 0..STEPS {
         scale(inverse, &force, &mut motion);
         let size = dot(&force, &motion).max(0.0).sqrt();
+        // All that the operator reaches is spanned, and a further vector would be divided by zero.
         if !(size > 0.0 && size.is_finite()) {
             break;
         }

@@ -124,6 +124,7 @@ impl Data<'_> {
             let medians = self.records.iter().filter_map(|r| Some(median(method(r, &fit)?.times.get(kind)?)));
             let times = Quantiles::of(&medians.collect::<Vec<f64>>());
             let errors = Quantiles::of(&self.errors(&fit));
+            // Without a time or an error a fit has no place in the plane of both.
             if times.count == 0 || errors.count == 0 {
                 continue;
             }

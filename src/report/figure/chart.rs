@@ -286,6 +286,7 @@ impl Chart {
     /// The row and the left end of each name, and its place among the series.
     fn legend(&self, width: i32) -> Vec<(i32, i32, usize)> {
         let named = || self.series.iter().enumerate().filter(|(_, series)| series.is_named());
+        // A single series needs no name to be told from others.
         if named().count() < 2 {
             return Vec::new();
         }

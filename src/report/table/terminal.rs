@@ -97,6 +97,7 @@ fn notes(table: &Table) -> String {
 fn strips(table: &Table, priorities: RangeInclusive<Priority>) -> Vec<Strip> {
     let chosen = |place: &usize| *place == 0 || priorities.contains(&table.columns[*place].priority);
     let places: Vec<usize> = (0..table.columns.len()).filter(chosen).collect();
+    // The names of the rows alone say nothing.
     if table.columns.len() > 1 && places.len() < 2 {
         return Vec::new();
     }

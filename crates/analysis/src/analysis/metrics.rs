@@ -30,6 +30,7 @@ pub fn displacement_error(fem: &[f64], lem: &[f64], dimension: usize) -> Option<
     let square = |a: &[f64]| a.iter().map(|x| x * x).collect::<Sum>().value();
     let length = |a: &[f64]| scaled_norm(a, square);
     let largest = fem.chunks_exact(dimension).map(length).fold(0.0, f64::max);
+    // Errors are shares of the largest displacement, and zero has no share.
     if largest == 0.0 {
         return None;
     }

@@ -130,6 +130,7 @@ pub fn moduli_of_body(mesh: &Mesh, entries: &Entries) -> Result<Option<Effective
         let system = System::new(entries, &support)?.placed(&mesh.points, d);
         let Some(factor) = system.factorize()? else { return Ok(None) };
         let (u, left) = system.solve(&factor, &vec![0.0; mesh.points.len()]);
+        // A factor of a nearly singular matrix leaves residuals, or NaN, which the negated comparison finds too.
         if !(left <= SOLVED) {
             return Ok(None);
         }

@@ -182,6 +182,7 @@ fn search(
                 }
                 break;
             }
+            // The whole step is shortened, and keeps its direction.
             let length = (LARGEST / largest).min(1.0);
             let tried: Vec<f64> = theta.iter().zip(&step).map(|(t, s)| t + length * s).collect();
             if let Some(next) = limit.at(&tried, meshes, finest)?

@@ -80,6 +80,7 @@ pub fn estimate_field(limit: &Limit, prior: Prior, goes_on: &mut dyn FnMut(usize
         return Err(Error::expected("unknowns", format!("at most {MOST} cells with a modulus each"), m));
     }
     let pairs = pairs(&limit.levels[0].mesh);
+    // A mesh of one cell has no pairs.
     let unit = pairs.iter().map(|pair| pair.distance).sum::<f64>() / pairs.len().max(1) as f64;
     // Sides over the largest one, so that the weight has no unit.
     let largest = pairs.iter().map(|pair| pair.side).fold(0.0, f64::max);

@@ -15,6 +15,7 @@ impl Vibration {
     /// That with the eigenvalue κ of `W K_N`, 1/s², in substeps of h; `None` if it is no vibration.
     pub(super) fn of(kappa: f64, substep: f64) -> Option<Vibration> {
         let square = 1.0 - substep * substep * kappa;
+        // The square is that of the factor on the amplitude: at zero a substep ends all motion, and nothing vibrates.
         if !(square > 0.0) {
             return None;
         }

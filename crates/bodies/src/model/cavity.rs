@@ -93,6 +93,7 @@ fn planes(mesh: &Mesh, rim: &[Vec<usize>], sides: &PressedFaces, support: &Suppo
     let mut planes = vec![Vec::new(); d];
     for end in rim {
         let is_along = |k: usize, place: f64| end.iter().all(|&p| is_in(p, k, place));
+        // Ends of the rim that lie in one plane are closed by one face.
         if (0..d).any(|k| planes[k].iter().any(|&place| is_along(k, place))) {
             continue;
         }

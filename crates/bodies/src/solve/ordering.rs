@@ -86,6 +86,7 @@ impl Graph {
         }
         while let Some(mut part) = parts.pop() {
             if part.len() <= LEAF {
+                // Small parts cost less in any order than their separation would.
                 order.extend(part.iter().rev().map(|&node| node as usize));
                 continue;
             }

@@ -87,6 +87,7 @@ impl Linearized<'_> {
     /// # Errors
     /// Iterations stall.
     pub fn objective(&self, rho: f64) -> Result<(f64, Vec<f64>)> {
+        // The mean square of θ is weighed, so that ρ does not depend on the number of unknowns.
         let share = rho / self.theta.len().max(1) as f64;
         let value = self.square() + share * self.theta.iter().map(|t| t * t).sum::<f64>();
         let slope = self.adjoint(&self.residuals, PRODUCT)?;

@@ -240,6 +240,7 @@ impl<'a> Problem<'a> {
     /// Gauss–Newton steps from θ along the moments.
     fn descend(&self, rho: f64, theta: Vec<f64>, of: &[(usize, usize)]) -> Result<Vec<f64>> {
         let share = rho / theta.len() as f64;
+        // Means of both squares are weighed against each other, whatever the numbers of frequencies and of points are.
         let weight = (1.0 / of.len().max(1) as f64).sqrt();
         let value = |r: &[f64], theta: &[f64]| {
             weight * weight * r.iter().map(|r| r * r).sum::<f64>() + share * theta.iter().map(|t| t * t).sum::<f64>()

@@ -252,6 +252,7 @@ pub(super) fn leave_one_out(
                 goes_on
             };
             theta = path.stage(&problem, stage, &theta, &mut visit)?.theta;
+            // A mean over some of the loads could choose another stage.
             if !goes_on {
                 return Ok(Vec::new());
             }

@@ -97,6 +97,8 @@ struct Residual {
 impl Residual {
     fn minimize(&self, norm: Norm) -> Option<Vec<f64>> {
         match norm {
+            // Huber's function is quadratic up to its bound and linear beyond: without a bound it is the square, with a
+            // bound of zero the magnitude.
             Norm::Two => self.smallest_huber(f64::INFINITY),
             Norm::One => self.smallest_huber(0.0),
             Norm::Huber { share } => self.smallest_huber(share),

@@ -82,6 +82,7 @@ fn descend(normal: &Normal, k: &mut [f64], set: &mut Vec<usize>) -> bool {
         }
         let fall = |(&s, z): (&usize, &f64)| (*z <= 0.0).then(|| (k[s] / (k[s] - z), s));
         let first = set.iter().zip(&free.rhs).filter_map(fall).min_by(|a, b| a.0.total_cmp(&b.0));
+        // No constant falls to zero on the way, and the whole step is made.
         let Some((share, leaving)) = first else {
             set.iter().zip(&free.rhs).for_each(|(&s, z)| k[s] = *z);
             return true;

@@ -150,6 +150,7 @@ impl Energy {
         for i in 0..3 {
             for j in 0..3 {
                 tangent += h[3 * i + j] * flat(direction(i, i)) * flat(direction(j, j)).transpose();
+                // An axis does not turn against itself: what follows is the part of rotations of two axes.
                 if i == j {
                     continue;
                 }

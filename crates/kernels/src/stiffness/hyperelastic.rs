@@ -142,6 +142,8 @@ impl EnergyFunction {
                 let stretch = f[q][(free[0], free[0])];
                 let slope = (pull(&p[2]) - pull(&p[1])) / (2.0 * STEP * stretch);
                 let change = -pull(&p[0]) / slope;
+                // The comparison is negated, so that NaN is refused too: a falling pull would send the stretch away
+                // from its root.
                 if !(slope > 0.0) {
                     let expected = "an energy that resists a stretch through the thickness";
                     return Err(Error::expected("energy", expected, format!("a slope of {slope:.3e} Pa")));

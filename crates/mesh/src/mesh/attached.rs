@@ -19,6 +19,7 @@ impl Mesh {
         for name in names {
             let Some(group) = self.groups.get(name).filter(|group| group.cells.is_empty()) else { continue };
             let sides = ListedSides::of(self, group).sides;
+            // Sides of lines are points, on which no cell can lie.
             if sides.is_empty() || self.cell_dimension() < 2 {
                 continue;
             }

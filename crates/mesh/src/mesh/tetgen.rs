@@ -143,6 +143,7 @@ fn cells(table: &mut Table, listing: &mut Listing) -> Result<Vec<String>> {
 
 /// Adds the marked faces to the groups of their marks.
 fn faces(table: &mut Table, resolved: &mut Resolved) -> Result<()> {
+    // Faces without marks belong to no group.
     if table.count(1) == 0 {
         return Ok(());
     }

@@ -55,6 +55,7 @@ fn syntax(error: &serde_json::Error, text: &[u8]) -> Error {
         true => format!("the file is cut short after {} bytes: {}", text.len(), words(error)),
         false => format!("expected JSON: {} at column {}", words(error), error.column()),
     };
+    // An error of the whole text has the line zero, and lines are counted from one.
     Error::new(problem).of_kind(ErrorKind::Syntax).on_line(error.line().max(1))
 }
 

@@ -28,6 +28,7 @@ impl Locking {
     /// Finds the cells of these elements that lock: those from Poisson's ratio 0.4 on whose nodes are their corners and that integrate changes
     /// of volume like all others. Plane stress does not lock.
     pub fn of(mesh: &Mesh, material: &MaterialMap, is_asked: &dyn Fn(&Element) -> bool) -> Option<Locking> {
+        // Plane stress and rods change their thickness freely, so that a cell can keep its volume.
         if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
             return None;
         }

@@ -92,6 +92,7 @@ fn isotropic(c: &DMatrix<f64>, d: usize) -> DMatrix<f64> {
 
 /// Zener's ratio of a tensor with the symmetry of a cube, of a square in the plane.
 fn zener(c: &DMatrix<f64>, d: usize) -> Option<f64> {
+    // A line has no shear to compare with its stretch.
     if d < 2 {
         return None;
     }

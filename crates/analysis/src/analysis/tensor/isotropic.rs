@@ -61,6 +61,7 @@ pub fn constants(stiffness: &DMatrix<f64>, state: State) -> Option<(f64, Option<
         return None;
     }
     let eigenvalues = stiffness.clone().symmetric_eigenvalues();
+    // A strain without resistance has no compliance, and the tensor no moduli.
     if !(eigenvalues.min() > LEAST * eigenvalues.amax()) {
         return None;
     }

@@ -47,6 +47,7 @@ impl<'a> Stars<'a> {
         let (mut firsts, mut cell) = (Vec::new(), 0);
         for block in &mesh.blocks {
             firsts.push(cell);
+            // Membranes and rods on a solid are no cells of its samples.
             if block.element.dimension() < mesh.cell_dimension() {
                 continue;
             }

@@ -34,6 +34,7 @@ impl Decay {
     /// negative.
     pub fn lost(&self, before: f64, after: f64) -> f64 {
         match self.steps > 0.0 {
+            // In a short step both terms nearly cancel, and rounding can take their sum below zero.
             true => (after * (1.0 / self.mean - 1.0) + before * (1.0 - self.left / self.mean)).max(0.0),
             false => 0.0,
         }

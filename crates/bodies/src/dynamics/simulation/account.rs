@@ -40,6 +40,7 @@ impl Simulation<'_> {
         self.state();
         let d = self.motion.dimension();
         let (free, held) = self.kinetic();
+        // A state without a response has no energy, and accounts show NaN as unknown.
         let elastic = self.resistance.energy(&self.state.displacement).unwrap_or(f64::NAN);
         let x = self.positions();
         let (mass, v) = (&self.resistance.mass, &self.state.velocity);

@@ -34,6 +34,7 @@ impl Simulation<'_> {
 
     /// Makes a step of the length h that ends at `time`, s, in as many pieces as its error asks for.
     pub(super) fn step_in_pieces(&mut self, time: f64, h: f64) -> Step {
+        // Without a bound every error is allowed.
         let allowed = self.options.error.unwrap_or(f64::INFINITY);
         let before = self.before_step();
         // A difference of the second order needs two pieces.
@@ -76,6 +77,7 @@ impl Simulation<'_> {
                 all.outcome = step.outcome;
             }
             if matches!(step.outcome, StepOutcome::NoResponse | StepOutcome::Stalled) {
+                // No bound allows this error, so that the step is made again in shorter pieces.
                 return (all, f64::INFINITY);
             }
             for (way, last) in self.way.iter().zip(&last) {

@@ -74,6 +74,7 @@ impl Layout {
             }
             let shift = key.checked_sub(*last)?;
             let (factor, remainder) = c.div_rem(lead);
+            // A remainder, or a power that the quotient cannot have, shows that the division is not exact.
             if !remainder.is_zero() || self.unpack(shift).zip(&room).any(|(e, most)| e > *most) {
                 return None;
             }

@@ -24,6 +24,7 @@ impl Expr {
             Expr::Power(base, exponent) => {
                 let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= LARGEST_POWER)?;
                 let base = base.fraction(at)?;
+                // Zero has no reciprocal.
                 if n < 0 && base.is_zero() {
                     return None;
                 }

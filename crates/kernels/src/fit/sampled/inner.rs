@@ -71,6 +71,7 @@ pub fn search(cell: &SampledCell, starts: usize, bounds: &[[f64; 2]]) -> Result<
         if eliminated != outer {
             let positive = (0..outer.len()).any(|i| outer[i] && bounds[i][0] >= 0.0);
             descent.eliminate(few.as_ref().unwrap_or(&all), &mut first, &outer, positive)?;
+            // The linear equations do not know the bounds.
             first.iter_mut().zip(bounds).for_each(|(p, b)| *p = p.clamp(b[0], b[1]));
         }
         found.push(match &few {

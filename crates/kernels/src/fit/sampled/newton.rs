@@ -75,6 +75,7 @@ impl Descent<'_> {
                 match self.step(&end, damping) {
                     Some(found) => break found,
                     None if damping > STIFFEST => return Ok(end),
+                    // A factor alone would leave a damping of zero where it is.
                     None => damping = (10.0 * damping).max(1e-3),
                 }
             };
@@ -127,6 +128,7 @@ impl Descent<'_> {
         }
         let at: Vec<f64> = unknowns.iter().zip(outer).map(|(p, outer)| if *outer { 0.0 } else { *p }).collect();
         let normal = shapes.sums(&at, outer)?.sums.normal.restricted(&set);
+        // Inner parameters at which a force has no value say nothing of the outer ones, which stay as they are.
         if !normal.gram.iter().chain(&normal.rhs).all(|x| x.is_finite()) {
             return Ok(());
         }

@@ -54,6 +54,7 @@ pub fn minimize(
     let (mut at, mut is_scaled) = (start, false);
     let (mut own, mut slopes) = value(&at)?;
     let is_finite = |own: f64, slopes: &[f64]| own.is_finite() && slopes.iter().all(|slope| slope.is_finite());
+    // From a start without a value no step can be judged.
     if !is_finite(own, &slopes) {
         return Ok(None);
     }
@@ -122,6 +123,7 @@ fn lower_beside(
     for seed in [None, Some(1)] {
         for side in [BESIDE, -BESIDE] {
             let sign = |i: usize| seed.map_or(1.0, |seed| 2.0 * unit_at(seed, i as u64, 0) - 1.0);
+            // A parameter that is zero would not move by a share of itself.
             let moved = at.iter().enumerate().map(|(i, p)| p + side * sign(i) * p.abs().max(mean));
             let tried: Vec<f64> = moved.map(|p| if nonnegative { p.max(0.0) } else { p }).collect();
             let (after, slopes) = value(&tried)?;

@@ -217,6 +217,7 @@ impl Active {
         rhs[f] = -1.0;
         let mut row = f + 1;
         for ActiveSide { sign, first, pairs, multipliers, bends, .. } in sides {
+            // A side without an active pair has no constraint.
             if pairs.is_empty() {
                 continue;
             }
@@ -295,6 +296,8 @@ fn make_positive(a: &mut DMatrix<f64>) {
     if a.is_empty() || Cholesky::new(a.clone()).is_some() {
         return;
     }
+    // Without its negative eigenvalues the matrix is the nearest one that is positive (Higham, Linear Algebra Appl.
+    // 103, 1988).
     let eigen = a.clone().symmetric_eigen();
     *a = combination(&eigen.eigenvectors, &DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0))));
 }

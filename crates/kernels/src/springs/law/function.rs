@@ -164,6 +164,7 @@ impl Function {
         }
         let starts: Vec<usize> =
             asked.iter().scan(0, |next, one| Some(std::mem::replace(next, *next + one.c.len()))).collect();
+        // A place that the function does not write has no force.
         let mut forces = vec![f64::NAN; asked.iter().map(|one| one.c.len()).sum()];
         self.function.forces_of_all(&asked, &mut forces);
         for (place, row, Combination { terms, divisor }) in rows {

@@ -219,6 +219,7 @@ impl Law {
     /// It is not.
     pub(crate) fn check_linear(&self, rest: f64, parameters: &[f64]) -> Result<()> {
         let Body::Function(function) = &self.body else { return Ok(()) };
+        // A law without outer parameters promises no linearity.
         if !self.outer.contains(&true) {
             return Ok(());
         }
@@ -230,6 +231,7 @@ impl Law {
             sum.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += parameters[i] * slope);
         }
         let size = forces.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
+        // A force without a value has nothing to be compared with.
         if forces.iter().zip(&sum).all(|(t, sum)| (t - sum).abs() <= LINEAR * size || t.is_nan()) {
             return Ok(());
         }

@@ -80,6 +80,7 @@ impl<'a> Columns<'a> {
 
     fn bin(&self, k: usize, x: f64) -> usize {
         let place = (x - self.surface.low[k]) / self.width[k];
+        // Rounding may put a place on the border outside of the bins.
         (place.max(0.0) as usize).min(self.counts[k] - 1)
     }
 
@@ -175,5 +176,6 @@ fn height([a, b, c]: [[f64; 3]; 3], x: f64, y: f64) -> f64 {
     let (p, q) = (x - a[0], y - a[1]);
     let height = a[2] + ((p * v[1] - q * v[0]) * (b[2] - a[2]) + (u[0] * q - u[1] * p) * (c[2] - a[2])) / area;
     let (low, high) = (a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2]));
+    // Rounding over a small area may lead beyond the corners, between which all heights are.
     if height.is_finite() { height.clamp(low, high) } else { (low + high) / 2.0 }
 }

@@ -120,6 +120,7 @@ fn passing([p, q]: [[f64; 3]; 2], [a, b, c]: [[f64; 3]; 3]) -> Option<([f64; 3],
         return None;
     }
     let around = [[a, b], [b, c], [c, a]].map(|[x, y]| volume([p, q, x, y]));
+    // A line that passes through a triangle goes round all its edges the same way.
     if around.iter().any(|v| *v < 0.0) && around.iter().any(|v| *v > 0.0) {
         return None;
     }

@@ -78,6 +78,7 @@ fn nodes(element: &Element, cells: &[Vec<usize>], places: &[[f64; 3]], points: &
     for cell in cells {
         for at in element.positions.chunks_exact(3) {
             let weights = [1.0 - at.iter().sum::<f64>(), at[0], at[1], at[2]];
+            // Whole weights of neighbours are equal to the bit, however the coordinates of their nodes were rounded.
             let parts = (0..4).map(|a| (cell[a], (weights[a] * WEIGHT).round().max(0.0) as u64));
             let mut key: Vec<(usize, u64)> = parts.filter(|(_, weight)| *weight > 0).collect();
             // Neighbours name the corners of a common side in other orders.

@@ -123,6 +123,7 @@ impl Cells {
         }
         reader.count_one();
         let (last_type, groups) = &mut self.key;
+        // Version 2.2 writes a cell once for each physical group that it belongs to.
         let again = *last_type == cell_type && self.entity == entity && self.nodes == self.next;
         if again && physical != 0 && !groups.is_empty() && !groups.contains(&physical) {
             groups.push(physical);

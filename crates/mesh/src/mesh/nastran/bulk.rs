@@ -156,6 +156,7 @@ impl Bulk {
         for (number, grid) in &self.grids {
             if self.has_superelements && *met.entry(*number).or_insert(grid.line) != grid.line {
                 let first = self.grids.iter().find(|(other, _)| other == number);
+                // Superelements repeat the points that they share with others.
                 if first.is_some_and(|(_, first)| first.system == grid.system && first.at == grid.at) {
                     continue;
                 }

@@ -188,6 +188,7 @@ impl File<'_> {
         self.reader.line();
         loop {
             let is_last = self.reader.rest().is_empty();
+            // METADATA has no count, and ends at an empty line.
             if is_last || self.reader.line().trim_ascii().is_empty() {
                 return Ok(());
             }

@@ -22,6 +22,7 @@ pub(super) fn next_tag(bytes: &[u8], mut at: usize) -> Option<Tag<'_>> {
     loop {
         let start = text_after(bytes, at).end;
         let rest = bytes.get(start + 1..)?;
+        // A comment may have brackets, and ends at its own mark alone.
         if rest.starts_with(b"!--") {
             at = start + 4 + rest.windows(3).position(|w| w == b"-->")?;
             continue;

@@ -177,6 +177,7 @@ fn in_engine(
             all.push(NetworkAnswer { displacement: None, work: None, unsolved, ..answer });
             continue;
         }
+        // Loads of one support share one matrix, which is dear.
         if known.iter().all(|(support, _)| **support != case.support) {
             known.push((&case.support, Truncated::new(model, &case.support, &setting)?));
         }

@@ -322,6 +322,7 @@ fn count_held(outcome: &mut CalibrationOutcome, limit: &Limit, held: &[(usize, f
 
 /// The probability that a number with the χ² distribution of `freedom` degrees of freedom exceeds `square` (Wilson and Hilferty 1931).
 fn chi_squared_beyond(square: f64, freedom: usize) -> f64 {
+    // Where measurements are no more than unknowns nothing is left to divide by.
     let k = freedom.max(1) as f64;
     // The cube root of χ²/k is nearly normal, with the mean 1 − 2/(9k) and the variance 2/(9k).
     let share = 2.0 / (9.0 * k);

@@ -103,6 +103,7 @@ impl<'a> Motions<'a> {
         let zero = stability.rigid + stability.mechanisms;
         let wanted = (zero + count).min(self.free());
         let (squares, _) = self.squares(masses, wanted)?;
+        // The shift was taken off, and rounding may leave a square below zero.
         Ok(Some(squares.iter().skip(zero).map(|square| square.max(0.0).sqrt() / TAU).collect()))
     }
 

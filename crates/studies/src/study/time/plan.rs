@@ -203,6 +203,7 @@ fn add_prescribed_motion(
                 )
             };
             if fixed.is_fixed(dof) {
+                // A displacement of zero repeats what the support says already.
                 if still {
                     continue;
                 }

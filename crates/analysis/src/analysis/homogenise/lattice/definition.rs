@@ -132,6 +132,7 @@ impl NamedLattice {
         let mut network = Network { dimension: d, ..Network::default() };
         for bond in self.bonds() {
             let constant = constants.get(bond.shell).copied().unwrap_or(0.0);
+            // A shell without a spring would only add images that nothing holds.
             if constant == 0.0 {
                 continue;
             }

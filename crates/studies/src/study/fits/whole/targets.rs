@@ -87,6 +87,8 @@ impl WholeBody<'_> {
         let sigmas: Vec<Option<f64>> = trained.iter().map(known).collect();
         let needed = recipe.validation == ValidationRecipe::Discrepancy;
         if let Some(without) = sigmas.iter().position(Option::is_none) {
+            // Loads are weighed by their noise all together or not at all, because weights of two kinds cannot be
+            // compared.
             if needed || sigmas.iter().any(Option::is_some) {
                 let expected = "a sigma in the measured displacements of every load that is fitted, or of none";
                 let key = if needed { "validate" } else { "loads" };
