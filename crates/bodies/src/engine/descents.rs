@@ -267,6 +267,7 @@ impl Descents {
         let c = self.inert(z);
         let mut state = self.at_rest(z.len());
         let mut sums = vec![0.0; self.springs.len()];
+        // The adjoint passes through the sweeps from the last to the first.
         for reached in history.sweeps.iter().rev() {
             self.sweep(
                 &mut state,

@@ -23,6 +23,7 @@ impl Random {
 
     /// The next number in [−1, 1).
     pub fn symmetric(&mut self) -> f64 {
+        // The multiplier and the increment are those of Knuth's MMIX: the sequence has the full period of 2⁶⁴.
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         // 53 bits are a double without rounding, and the lowest bits of such a generator repeat soonest.
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0

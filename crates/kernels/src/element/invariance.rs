@@ -66,6 +66,7 @@ struct Sequence(u64);
 
 impl Sequence {
     fn next(&mut self) -> f64 {
+        // Knuth's numbers of MMIX. The upper 53 bits are a double without rounding, and the lowest repeat soonest.
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }

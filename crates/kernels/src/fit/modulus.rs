@@ -33,6 +33,7 @@ impl Modulus {
     pub fn orthotropic(dimension: usize) -> Vec<Modulus> {
         let d = dimension;
         let normal = (0..d).flat_map(|i| (i..d).map(move |j| [i, j]));
+        // Voigt's order has the shear strains from yz to xy, which pairs of axes count the other way.
         let shear = (0..d * d).filter(|e| e / d < e % d).map(|e| voigt(d, e / d, e % d)).rev();
         let all = normal.chain(shear.map(|s| [s, s]));
         // C66 of the plane is the third entry of its three.

@@ -132,6 +132,7 @@ impl<'a> Stars<'a> {
             points.iter().flat_map(|&point| self.mesh.point(point)).copied().collect(),
             self.mesh.blocks.iter().zip(&own).map(block).collect(),
         );
+        // A point with a cell outside of the sample lacks the forces of that cell, and is no free one.
         let mut is_held: Vec<bool> =
             points.iter().map(|&p| self.around(p).any(|cell| cells.binary_search(&cell).is_err())).collect();
         is_held.iter_mut().zip(mesh.outer_points()).for_each(|(held, outer)| *held |= outer);

@@ -88,6 +88,7 @@ impl Field {
 
     /// The next number of a random sequence, which is the same in every run.
     pub fn random(&mut self) -> u64 {
+        // Knuth's numbers of MMIX, whose sequence has the full period of 2⁶⁴.
         self.state = self.state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         // The lowest bits of such a sequence repeat soonest.
         (self.state >> 4) % self.prime()

@@ -109,6 +109,7 @@ impl Sampling {
     /// The seed of the shapes of a part.
     pub(super) fn seed_of(&self, part: Part) -> u64 {
         match part {
+            // Even and odd seeds are never equal, so that no shape of the fit is held out as well.
             Part::Trained => self.seed.wrapping_mul(2),
             Part::HeldOut => self.seed_held_out.unwrap_or(self.seed).wrapping_mul(2).wrapping_add(1),
         }

@@ -98,6 +98,7 @@ fn place(lines: &Lines, word: &[u8], count: usize) -> Result<usize> {
     let number: Option<i64> = std::str::from_utf8(number).ok().and_then(|number| number.parse().ok());
     let place = match number {
         Some(number) if number > 0 => usize::try_from(number - 1).ok(),
+        // A number below zero counts back from the last point that was read.
         Some(number) if number < 0 => {
             usize::try_from(number.unsigned_abs()).ok().and_then(|back| count.checked_sub(back))
         }

@@ -163,6 +163,7 @@ impl File<'_> {
     fn points(&mut self) -> Result<()> {
         let count: u64 = self.reader.text_number()?;
         let scalar = legacy_cells::scalar_type(&mut self.reader)?;
+        // A file can claim any count: a product beyond all numbers is more than it has, and is refused as such.
         let coordinates = scalar.reals(&mut self.reader, count.saturating_mul(3))?;
         self.piece.points = coordinates.as_chunks().0.to_vec();
         Ok(())

@@ -133,6 +133,7 @@ impl Storage {
                 "expected {total} bytes of compressed data, found {found} with their coding"
             )));
         }
+        // The format gives the size of the last block apart, as zero where that block is whole.
         let size = match count.checked_sub(1) {
             None => 0,
             Some(whole) => block.saturating_mul(whole).saturating_add(if last == 0 { block } else { last }),

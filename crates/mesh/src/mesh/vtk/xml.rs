@@ -166,6 +166,8 @@ impl Arrays<'_> {
 
     fn points(&mut self, tag: &PieceTag) -> Result<Vec<[f64; 3]>> {
         let Some(array) = needed(tag, Section::Points, None, tag.points)? else { return Ok(Vec::new()) };
+        // The count is what a file claims. A product beyond all numbers is more than any file has, and is refused as
+        // such.
         let count = tag.points.saturating_mul(3);
         let coordinates = self.values(array, count, |reader| array.scalar.reals(reader, count))?;
         Ok(coordinates.as_chunks().0.to_vec())

@@ -167,6 +167,7 @@ impl NamedLattice {
     pub fn piece(&self, spacing: f64, constants: &[f64], cells: &[usize]) -> Result<Specimen> {
         self.check(spacing, constants)?;
         let d = self.dimension();
+        // The product of given counts may be beyond the machine's numbers.
         let total = cells.iter().try_fold(self.points.len(), |product, n| product.checked_mul(*n));
         let is_sound = cells.len() == d && cells.iter().all(|n| *n > 0);
         let Some(_) = total.filter(|total| is_sound && *total <= MOST) else {
