@@ -193,7 +193,7 @@ const LOST: f64 = 0.01;
 /// of its amplitude.
 fn loss(motion: &MotionOutcome) -> Option<String> {
     let integrator = motion.recipe.options.integrator;
-    // A motion without inertia has no vibration, and other integrators take no energy from it.
+    // A motion without inertia has no vibration, and other integrators take no energy from one.
     if motion.recipe.options.quasi_static || !matches!(integrator, Integrator::ImplicitEuler | Integrator::Bdf2) {
         return None;
     }

@@ -10,7 +10,7 @@ impl Random {
 
     /// Above 0 and at most 1.
     fn uniform(&mut self) -> f64 {
-        // The increment is 2⁶⁴ over the golden ratio. It is odd, so that all numbers are passed before one comes again.
+        // The increment is 2⁶⁴ over the golden ratio, and odd, so that all numbers are passed before one comes again.
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

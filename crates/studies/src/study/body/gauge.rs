@@ -103,6 +103,7 @@ impl Gauged {
         }
         let size = moments.trace();
         // Points in one plane do not tell how the body stretches across it.
+        // Eigenvalues are squares: points that are nearer to a plane than 3e-5 of their extent count as in it.
         let thin = moments.clone().symmetric_eigenvalues().min() <= 1e-9 * size;
         let gradient = moments.cholesky().filter(|_| !thin)?.solve(&mixed);
         Some((0..d).map(|k| gradient[(k, k)]).collect())
