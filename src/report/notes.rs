@@ -9,7 +9,7 @@ use super::note::{Note, Weight, grouped, ordered};
 use super::quality::quality_lines;
 use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
-use crate::model::{Lumping, RestTension};
+use crate::model::{Lumping, is_balanced};
 use crate::solve::{Ending, Standing};
 use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
 
@@ -208,14 +208,13 @@ const SMALL: f64 = 0.02;
 
 /// A note on a network that moves without a load. Only sampled laws of force and fitted rest measures can make such a network.
 fn unrest(outcome: &Outcome, fit: &FitOutcome) -> Option<Note> {
-    let tension = RestTension::of(&fit.network, &outcome.mesh.points);
-    let left = tension.unbalanced;
+    let left = fit.unbalanced(&outcome.mesh);
     let words = "the network is not at rest in the mesh: its springs pull there, and their forces do not balance, so that it moves without a load. \
                  Displacements and errors of loads at small deformation are those of its stiffness alone";
     let figures = format!(": {:.1} % of the largest pull is left at some point", 100.0 * left);
     // A small rest of forces moves a body by less than most errors are.
     let weight = if left <= SMALL { Weight::Model } else { Weight::Broken };
-    (!tension.is_balanced()).then(|| Note::of_model(weight, &fit.fit.name, words).figures(figures))
+    (!is_balanced(left)).then(|| Note::of_model(weight, &fit.fit.name, words).figures(figures))
 }
 
 /// Why a network does not stand, or is not known to.

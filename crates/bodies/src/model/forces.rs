@@ -54,15 +54,19 @@ impl Network {
 
     /// The gradient of the energy, `[points × dimension]`, N; false if there is none.
     pub(super) fn pull(&self, x: &[f64], force: &mut [f64]) -> bool {
+        let sound = self.pull_lengths(x, force);
+        // Without a short cut, so that forces are complete even if one spring has no direction.
+        self.add_others(&self.others, x, force) & sound
+    }
+
+    /// The gradient of the energy of the springs between two points, `[points × dimension]`, N; false if one has no direction.
+    pub(super) fn pull_lengths(&self, x: &[f64], force: &mut [f64]) -> bool {
         force.fill(0.0);
-        let d = self.dimension;
-        let sound = match d {
+        match self.dimension {
             1 => pull::<1>(&self.lengths, x, force),
             2 => pull::<2>(&self.lengths, x, force),
             _ => pull::<3>(&self.lengths, x, force),
-        };
-        // Without a short cut, so that forces are complete even if one spring has no direction.
-        self.add_others(&self.others, x, force) & sound
+        }
     }
 
     /// Adds the forces of some of the other springs; false if one has no force.
@@ -73,6 +77,21 @@ impl Network {
         force: &mut [f64],
     ) -> bool {
         let (d, mut sound) = (self.dimension, true);
+        self.each_tension(springs, x, |spring, tension, gradient| {
+            sound &= tension.is_finite();
+            dofs(&spring.points, d).zip(gradient).for_each(|(dof, g)| force[dof] += tension * g);
+        });
+        sound
+    }
+
+    /// Calls `visit(spring, T, ∇c)` with the tension and the gradient of what is measured, for some of the other springs.
+    pub(super) fn each_tension<'a>(
+        &self,
+        springs: impl IntoIterator<Item = &'a MeasureSpring, IntoIter: Clone>,
+        x: &[f64],
+        mut visit: impl FnMut(&MeasureSpring, f64, &[f64]),
+    ) {
+        let d = self.dimension;
         let mut local = Vec::new();
         let springs = springs.into_iter();
         let (all, mut tensions) = (springs.clone(), None);
@@ -82,11 +101,8 @@ impl Network {
             let ask = || function_tensions(all.clone(), x, d).into_iter();
             let known = spring.function().and_then(|_| tensions.get_or_insert_with(ask).next());
             let tension = known.unwrap_or_else(|| spring.tension(spring.measure.value(&local, d)));
-            let gradient = spring.measure.gradient(&local, d);
-            sound &= tension.is_finite();
-            dofs(&spring.points, d).zip(&gradient).for_each(|(dof, g)| force[dof] += tension * g);
+            visit(spring, tension, &spring.measure.gradient(&local, d));
         }
-        sound
     }
 
     /// Forces, the values of the tangent at [`Network::places`], and the energy. If the tangent is to be `definite`,

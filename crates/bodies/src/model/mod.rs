@@ -88,7 +88,7 @@ pub use specimen::{Period, Specimen};
 pub use strains::has_strains;
 pub use support::{Support, Unheld, unheld_bodies, unheld_parts};
 pub use system::{cell_places, content, each_cell_forces, finite_elements};
-pub use tension::{BALANCED, RestTension};
+pub use tension::{RestTension, is_balanced};
 
 use faer::sparse::Triplet;
 

@@ -1,10 +1,9 @@
 //! The tension of the springs of a network at rest.
 
-use super::elastic::Elastic;
 use super::network::Network;
+use super::numbering::dofs;
 use crate::fit::Spread;
 use crate::springs::{distance, norm};
-use crate::stiffness::gather;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,43 +24,58 @@ pub struct RestTension {
 }
 
 /// Forces at rest balance each other where what is left of them is below this share: files of networks have six digits and more.
-pub const BALANCED: f64 = 1e-5;
+const BALANCED: f64 = 1e-5;
+/// Whether forces of which this share of the largest is left balance each other. A share that is not a number is none of a balance.
+pub fn is_balanced(left: f64) -> bool {
+    left <= BALANCED
+}
+
 /// A pull below this share of the constant times the length is that of rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl RestTension {
-    /// Whether the forces balance each other, to the digits of files. A share that is not a number is none of a balance.
-    pub fn is_balanced(&self) -> bool {
-        self.unbalanced <= BALANCED
-    }
-
     /// The tension of a network with its points at `points`, `[points × dimension]`, m.
     pub fn of(network: &Network, points: &[f64]) -> RestTension {
-        let d = network.dimension;
-        let at = |point: usize| &points[point * d..(point + 1) * d];
-        let length = |[i, j]: [usize; 2]| distance(at(i), at(j));
-        let changes: Vec<f64> = network.lengths.iter().map(|s| (s.rest / length(s.points) - 1.0).abs()).collect();
-        let pulls = network.lengths.iter().map(|s| s.pull(length(s.points))[1].abs());
-        let mut largest = pulls.fold(0.0, f64::max);
-        // What springs pull by the rounding of their rest lengths is nothing.
-        let lengths = network.lengths.iter().map(|s| (s.constant * length(s.points)).abs());
-        let rounding = ROUNDING * lengths.fold(0.0, f64::max);
-        for spring in &network.others {
-            let mut x = vec![0.0; spring.points.len() * d];
-            gather(points, d, &spring.points, &mut x);
-            let pull = spring.tension(spring.measure.value(&x, d)).abs();
-            // What a spring on another measure pulls has another unit; its largest force on a point is in N.
-            let steepest = spring.measure.gradient(&x, d).chunks_exact(d).map(norm).fold(0.0, f64::max);
-            largest = largest.max(pull * steepest);
-        }
-        let mut force = vec![0.0; points.len()];
-        network.forces(points, &mut force);
-        let left = force.chunks_exact(d).map(norm).fold(0.0, f64::max);
+        let changes = network.lengths.iter().map(|s| (s.rest / network.distance(points, s.points) - 1.0).abs());
         RestTension {
-            rest_lengths: Spread::of(&changes),
+            rest_lengths: Spread::of(&changes.collect::<Vec<f64>>()),
             negative: network.lengths.iter().filter(|s| s.rest < 0.0).count(),
             steady: network.others.iter().filter(|s| s.law.is_some()).count(),
-            unbalanced: if largest > rounding { left / largest } else { 0.0 },
+            unbalanced: network.unbalanced(points),
         }
     }
+}
+
+impl Network {
+    /// The share [`RestTension::unbalanced`] with the points at `points`, `[points × dimension]`, m.
+    pub fn unbalanced(&self, points: &[f64]) -> f64 {
+        let d = self.dimension;
+        // The largest pull of a spring between two points, and the largest of one that pulls with its whole length.
+        let [mut largest, mut whole] = [0.0_f64; 2];
+        for spring in &self.lengths {
+            let length = self.distance(points, spring.points);
+            largest = largest.max(spring.pull(length)[1].abs());
+            whole = whole.max((spring.constant * length).abs());
+        }
+        let mut force = vec![0.0; points.len()];
+        self.pull_lengths(points, &mut force);
+        self.each_tension(&self.others, points, |spring, tension, gradient| {
+            // What a spring on another measure pulls has another unit; its largest force on a point is in N.
+            largest = largest.max(tension.abs() * longest(gradient, d));
+            dofs(&spring.points, d).zip(gradient).for_each(|(dof, g)| force[dof] += tension * g);
+        });
+        // What springs pull by the rounding of their rest lengths is nothing.
+        if largest > ROUNDING * whole { longest(&force, d) / largest } else { 0.0 }
+    }
+
+    /// The distance of two points, m.
+    fn distance(&self, points: &[f64], [i, j]: [usize; 2]) -> f64 {
+        let d = self.dimension;
+        distance(&points[i * d..(i + 1) * d], &points[j * d..(j + 1) * d])
+    }
+}
+
+/// The length of the longest vector.
+fn longest(vectors: &[f64], dimension: usize) -> f64 {
+    vectors.chunks_exact(dimension).map(norm).fold(0.0, f64::max)
 }

@@ -64,6 +64,7 @@ pub fn fit_without_errors(
         times: None,
         model_times: None,
         errors: OnceLock::new(),
+        unbalanced: OnceLock::new(),
         springs: fitted.springs,
         network: fitted.network,
         as_material,

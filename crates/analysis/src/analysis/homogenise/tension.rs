@@ -2,7 +2,7 @@
 
 use super::body::forces;
 use crate::analysis::tensor::basis;
-use crate::model::{BALANCED, Network, Specimen};
+use crate::model::{Network, Specimen, is_balanced};
 use crate::springs::distance;
 use crate::stiffness::gather;
 use nalgebra::DMatrix;
@@ -67,7 +67,7 @@ impl Tension {
 
     /// Whether the forces balance each other, to the digits of files.
     pub fn is_balanced(&self) -> bool {
-        self.unbalanced <= BALANCED
+        is_balanced(self.unbalanced)
     }
 }
 

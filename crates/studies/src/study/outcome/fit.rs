@@ -4,6 +4,7 @@ use super::load::LoadOutcome;
 use crate::analysis::moduli::EffectiveModuli;
 use crate::analysis::tensor::NetworkMaterial;
 use crate::fit::Spread;
+use crate::mesh::Mesh;
 use crate::model::Network;
 use crate::solve::{Ending, Stability, Standing};
 use crate::springs::Springs;
@@ -46,6 +47,8 @@ pub struct FitOutcome {
     pub reused: usize,
     /// The relative errors of the elements' matrices, once they are computed.
     pub errors: OnceLock<MatrixErrors>,
+    /// What [`Network::unbalanced`] gives in the mesh, once it is computed.
+    pub unbalanced: OnceLock<f64>,
     /// The network as a material, from samples of its cells.
     pub as_material: NetworkMaterial,
     /// The moduli of the whole network under linear displacements of its boundary, in plane strain those of the solid, if the scene
@@ -73,6 +76,11 @@ impl FitOutcome {
     /// The relative errors of the elements in the induced 2-norm, as mean and maximum; `None` if they are not computed.
     pub fn spectral(&self) -> Option<Spread> {
         self.errors.get()?.spectral
+    }
+
+    /// The share of the largest pull that is left at some point of the mesh, where the fit was made, without a load.
+    pub fn unbalanced(&self, mesh: &Mesh) -> f64 {
+        *self.unbalanced.get_or_init(|| self.network.unbalanced(&mesh.points))
     }
 
     /// The masses of the network, `[points]`, kg, if they were fitted.
