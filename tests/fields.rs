@@ -26,6 +26,7 @@ fn tetrahedra(count: usize) -> Mesh {
         connectivity: (0..4 * count).collect(),
         groups: Vec::new(),
         is_marker: true,
+        runs: Vec::new(),
     };
     let corners = |side: f64| [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0], [0.0, 0.0, 1.0]];
     let points = (0..count).flat_map(|i| corners(if i == 0 { 1.0 } else { -1.0 })).collect();

@@ -42,6 +42,7 @@ fn source_of(mesh: &Mesh) -> MeshSource {
             connectivity: block.cells().flat_map(in_order).collect(),
             groups: Vec::new(),
             is_marker: true,
+            runs: Vec::new(),
         }
     };
     let place = |x: &[f64]| std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0));
@@ -340,6 +341,7 @@ fn hanging_nodes_are_counted() {
                 connectivity,
                 groups: Vec::new(),
                 is_marker: true,
+                runs: Vec::new(),
             });
         }
         let fine = resolve(&source, Below::Warn).unwrap();

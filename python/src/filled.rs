@@ -35,7 +35,15 @@ fn source(py: Python, (points, polygons): Surface) -> PyResult<MeshSource> {
             return Err(invalid(py, "surface", &format!("places of {} points", points.shape()[0]), outside));
         }
         let groups = Vec::new();
-        Ok(SourceBlock { dimension: 2, cell_type, nodes_per_cell, connectivity, groups, is_marker: false })
+        Ok(SourceBlock {
+            dimension: 2,
+            cell_type,
+            nodes_per_cell,
+            connectivity,
+            groups,
+            is_marker: false,
+            runs: Vec::new(),
+        })
     };
     Ok(MeshSource {
         format: Format::Vtk,

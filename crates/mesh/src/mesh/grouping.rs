@@ -3,29 +3,49 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
+/// Cells of a key that follow each other in their source, without cells of other keys between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Run {
+    /// The place of the first node in the connectivity of the key.
+    pub start: usize,
+    /// The number of runs, of all keys, that come before in the source.
+    pub turn: usize,
+}
+
+/// The connectivity of the cells of a key.
+pub(super) struct Gathered<K> {
+    pub key: K,
+    pub nodes: Vec<usize>,
+    pub runs: Vec<Run>,
+}
+
 /// The connectivity of the cells of each key.
 pub(super) struct Gather<K> {
-    lists: Vec<(K, Vec<usize>)>,
+    lists: Vec<Gathered<K>>,
     places: HashMap<K, usize>,
     /// The list used last: neighbours in a file usually have the same key.
     last: usize,
+    turns: usize,
 }
 
 impl<K: Clone + Eq + Hash> Gather<K> {
     pub fn new() -> Self {
-        Gather { lists: Vec::new(), places: HashMap::new(), last: 0 }
+        Gather { lists: Vec::new(), places: HashMap::new(), last: 0, turns: 0 }
     }
 
     /// The connectivity of the cells with `key`, to which nodes can be appended.
     pub fn list(&mut self, key: &K) -> &mut Vec<usize> {
-        if self.lists.get(self.last).is_none_or(|(last, _)| last != key) {
+        if self.lists.get(self.last).is_none_or(|last| last.key != *key) {
             self.last = self.places.get(key).copied().unwrap_or(self.lists.len());
             if self.last == self.lists.len() {
                 self.places.insert(key.clone(), self.last);
-                self.lists.push((key.clone(), Vec::new()));
+                self.lists.push(Gathered { key: key.clone(), nodes: Vec::new(), runs: Vec::new() });
             }
+            let list = &mut self.lists[self.last];
+            list.runs.push(Run { start: list.nodes.len(), turn: self.turns });
+            self.turns += 1;
         }
-        &mut self.lists[self.last].1
+        &mut self.lists[self.last].nodes
     }
 
     /// Appends a whole list, without a copy if it is the first of its key.
@@ -39,7 +59,7 @@ impl<K: Clone + Eq + Hash> Gather<K> {
     }
 
     /// The keys that have cells, with their connectivity.
-    pub fn into_lists(self) -> impl Iterator<Item = (K, Vec<usize>)> {
-        self.lists.into_iter().filter(|(_, nodes)| !nodes.is_empty())
+    pub fn into_lists(self) -> impl Iterator<Item = Gathered<K>> {
+        self.lists.into_iter().filter(|list| !list.nodes.is_empty())
     }
 }

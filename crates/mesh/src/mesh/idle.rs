@@ -23,6 +23,8 @@ impl MeshSource {
         let mut source = self.clone();
         for (block, kept) in source.blocks.iter_mut().zip(kept) {
             block.connectivity = kept.map_or_else(|| std::mem::take(&mut block.connectivity), |kept| kept.list);
+            // Those that are left out have moved the others.
+            block.runs.clear();
         }
         // A file of such faces alone is refused by what it has.
         if !source.blocks.iter().any(|block| block.dimension == 2 && !block.connectivity.is_empty()) {

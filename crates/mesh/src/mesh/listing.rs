@@ -1,7 +1,7 @@
 //! Numbered nodes and cells, and the groups that list them by number, as finite element programs write them.
 
 use super::annotations::Annotations;
-use super::grouping::Gather;
+use super::grouping::{Gather, Gathered};
 use super::indices::Indices;
 use super::numbering::NumberOrigin;
 use super::polytope::CellType;
@@ -243,8 +243,11 @@ impl Resolved {
             }
             gather.list(&key).extend_from_slice(self.cell_nodes(cell));
         }
-        let mut blocks: Vec<SourceBlock> =
-            gather.into_lists().map(|((cell_type, groups), list)| cell_type.cells(list, named(&groups))).collect();
+        let block = |Gathered { key: (cell_type, groups), nodes, runs }: Gathered<(CellType, Vec<u32>)>| SourceBlock {
+            runs,
+            ..cell_type.cells(nodes, named(&groups))
+        };
+        let mut blocks: Vec<SourceBlock> = gather.into_lists().map(block).collect();
         // Sorted by group, each run of the list becomes a block.
         nodes.sort_unstable();
         nodes.dedup();

@@ -41,6 +41,7 @@ mod mesh;
 mod nastran;
 mod numbering;
 mod numpy;
+mod order;
 mod outside;
 mod overlaps;
 mod places;

@@ -55,6 +55,7 @@ impl CellType {
             connectivity,
             groups,
             is_marker: true,
+            runs: Vec::new(),
         }
     }
 

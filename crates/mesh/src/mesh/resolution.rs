@@ -3,6 +3,7 @@
 use super::attached::attached_words;
 use super::mesh::{CellBlock, CellIndex, Mesh, sorted};
 use super::numbering::Numbering;
+use super::order::SourceOrder;
 use super::places::Places;
 use super::quality::{Below, Gate};
 use super::selection::ListedSides;
@@ -69,7 +70,7 @@ impl Mesh {
         let points = source.points.iter().flat_map(|p| p[..space].iter().map(|x| x * scale)).collect();
         let annotations = source.annotations.clone();
         let mut mesh = Mesh { numbering: numbering(source), annotations, ..Mesh::of_points(space, points) };
-        let mut served: BTreeMap<u32, usize> = BTreeMap::new();
+        let (mut served, mut order) = (BTreeMap::<u32, usize>::new(), SourceOrder::default());
         let is_of_body = |name: &String| {
             source.blocks.iter().any(|block| block.dimension == dimension && block.groups.contains(name))
         };
@@ -94,8 +95,10 @@ impl Mesh {
                     mesh.blocks.len() - 1
                 }
             };
+            order.add(index, mesh.blocks[index].cells().len(), block);
             mesh.add_cells(index, block, source.format);
         }
+        order.restore(&mut mesh);
         let mut is_of_cell = vec![false; source.points.len()];
         mesh.blocks.iter().flat_map(|block| &block.connectivity).for_each(|&p| is_of_cell[p] = true);
         // A name stands for its points of the lowest dimension that are of the body.

@@ -1,6 +1,7 @@
 //! The content of a mesh file, before its cells have elements.
 
 use super::annotations::Annotations;
+use super::grouping::Run;
 use super::numbering::NumberOrigin;
 
 /// The numbering of cell types of a source. Readers of other formats turn their types and node orders into those of VTK.
@@ -47,6 +48,8 @@ pub struct SourceBlock {
     pub groups: Vec<String>,
     /// Whether cells of fewer dimensions than the body mark its sides, edges and points by their groups; or else they are bodies themselves.
     pub is_marker: bool,
+    /// The runs of cells between which the source has cells of other blocks; empty if that is not known.
+    pub runs: Vec<Run>,
 }
 
 impl SourceBlock {

@@ -1,6 +1,7 @@
 //! Voxels as cells of another shape.
 
 use super::boxes::parts;
+use super::grouping::Run;
 use super::mesh::Mesh;
 use super::polytope::CellType;
 use super::source::{Format, MeshSource, SourceBlock};
@@ -76,7 +77,10 @@ impl VoxelMesh {
             }
             let groups = std::mem::take(&mut block.groups);
             let is_marker = block.is_marker;
-            *block = SourceBlock { is_marker, ..CellType::TET4.cells(connectivity, groups) };
+            let per_voxel = 4 * parts.len();
+            let run = |run: &Run| Run { start: run.start / block.nodes_per_cell * per_voxel, ..*run };
+            let runs = block.runs.iter().map(run).collect();
+            *block = SourceBlock { is_marker, runs, ..CellType::TET4.cells(connectivity, groups) };
         }
         Mesh::resolve(&divided, &own, scale)
     }

@@ -4,7 +4,7 @@ use super::nodes::Nodes;
 use super::{types, v22, v40, v41};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::annotations::Annotations;
-use crate::mesh::grouping::Gather;
+use crate::mesh::grouping::{Gather, Gathered};
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::reader::{Encoding, Reader, quoted};
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
@@ -139,21 +139,29 @@ impl File {
             Cells::OfGroups(cells) => cells,
             Cells::OfEntities(cells) => {
                 let mut gather = Gather::new();
-                for ((cell_type, dimension, entity), list) in cells.into_lists() {
+                for Gathered { key: (cell_type, dimension, entity), nodes, .. } in cells.into_lists() {
                     let groups = self.entities.get(&(dimension, entity)).cloned().unwrap_or_default();
-                    gather.append(&(cell_type, groups), list);
+                    gather.append(&(cell_type, groups), nodes);
                 }
                 gather
             }
         };
         let mut blocks = Vec::new();
-        for ((cell_type, tags), connectivity) in cells.into_lists() {
+        for Gathered { key: (cell_type, tags), nodes: connectivity, runs } in cells.into_lists() {
             let Some((dimension, nodes_per_cell)) = types::find(cell_type) else { continue };
             let name = |tag| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{dimension}:{tag}"));
             let mut known = HashSet::new();
             // Several tags may have one name, which is one group.
             let groups = tags.into_iter().map(name).filter(|group| known.insert(group.clone())).collect();
-            blocks.push(SourceBlock { dimension, cell_type, nodes_per_cell, connectivity, groups, is_marker: true });
+            blocks.push(SourceBlock {
+                dimension,
+                cell_type,
+                nodes_per_cell,
+                connectivity,
+                groups,
+                is_marker: true,
+                runs,
+            });
         }
         let origin = NumberOrigin::GmshTag;
         Ok(MeshSource {

@@ -1,11 +1,11 @@
 //! Triangles and quadrangles in groups, as files of surfaces list them.
 
 use crate::mesh::annotations::Annotations;
-use crate::mesh::grouping::Gather;
+use crate::mesh::grouping::{Gather, Gathered};
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::polygons::triangles;
 use crate::mesh::polytope::CellType;
-use crate::mesh::source::{Format, MeshSource};
+use crate::mesh::source::{Format, MeshSource, SourceBlock};
 
 pub(super) struct Faces {
     gather: Gather<(CellType, Vec<String>)>,
@@ -55,8 +55,10 @@ impl Faces {
             let faces = if faces == 1 { "1 face".to_string() } else { format!("{faces} faces") };
             annotations.remark(format!("{faces} of more than four corners: {parts} triangles here"));
         }
-        let blocks =
-            self.gather.into_lists().map(|((cell_type, groups), list)| cell_type.block(list, groups)).collect();
+        let block = |Gathered { key: (cell_type, groups), nodes, runs }: Gathered<(CellType, Vec<String>)>| {
+            SourceBlock { runs, ..cell_type.block(nodes, groups) }
+        };
+        let blocks = self.gather.into_lists().map(block).collect();
         let numbers = (first..first + points.len() as u64).collect();
         let origin = if first == 0 { NumberOrigin::FilePlace } else { NumberOrigin::NodeNumber };
         MeshSource { format: Format::Vtk, origin, points, numbers, blocks, space: Some(3), annotations }

@@ -4,7 +4,7 @@ use super::cells::{plain, shape};
 use super::division::Division;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::annotations::Annotations;
-use crate::mesh::grouping::Gather;
+use crate::mesh::grouping::{Gather, Gathered};
 use crate::mesh::numbering::NumberOrigin;
 use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -158,16 +158,17 @@ pub(in crate::mesh) fn mesh(mut all: Vec<Piece>) -> Result<MeshSource> {
         }
     }
     division.tell(&mut annotations);
-    let blocks = cells.into_lists().filter_map(|((cell_type, nodes_per_cell, values), connectivity)| {
+    let blocks = cells.into_lists().filter_map(|Gathered { key: (cell_type, nodes_per_cell, values), nodes, runs }| {
         let (dimension, _) = shape(cell_type)?;
         let groups = values.into_iter().map(|(place, value)| format!("{}={value}", arrays[place])).collect();
         Some(SourceBlock {
             dimension,
             cell_type: cell_type.into(),
             nodes_per_cell,
-            connectivity,
+            connectivity: nodes,
             groups,
             is_marker: true,
+            runs,
         })
     });
     let numbers = (0..points.len() as u64).collect();

@@ -166,6 +166,7 @@ fn meshes() -> Vec<(&'static str, MeshSource, bool)> {
             connectivity: cells.concat(),
             groups: Vec::new(),
             is_marker: true,
+            runs: Vec::new(),
         }],
         space: None,
         annotations: Annotations::default(),
