@@ -64,6 +64,17 @@ fn cases_are_all_combinations_and_fits_too() {
     let mut found = found.fit_names();
     found.sort_unstable_by_key(|name| name.contains("free"));
     assert_eq!(found, names);
+    // Entries of their own are told apart alike, by the keys in which they differ, and these keys are columns. Without the key a fit has the
+    // plain name.
+    let norms = laws.replace("shapes = { count = [10, 20] }\nname = \"mine\"\n", "");
+    let other = "[[compare.fit]]\nobjective = \"sampled\"\nnorm = \"1\"\nweight = \"none\"\n";
+    let found = comparing(&format!("{norms}{other}{}", other.replace("\"1\"", "\"max\""))).unwrap();
+    assert_eq!(found.fit_names(), ["sampled", "sampled, norm 1, weight none", "sampled, norm max, weight none"]);
+    // The same fit twice is a mistake, and so is a name that two entries have.
+    for twice in [format!("{norms}{other}{other}"), format!("{laws}{other}name = \"mine, count 10\"\n")] {
+        let error = comparing(&twice).unwrap_err().to_string();
+        assert!(error.contains("name") && error.contains("fit["), "{error}");
+    }
 }
 
 /// The values of a case are those that the library finds for the same shapes, to the bit; and every pass has a time.

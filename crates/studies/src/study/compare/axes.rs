@@ -34,7 +34,7 @@ const MOST: usize = 1000;
 pub struct VariedFit {
     pub named: NamedFit,
     /// By the paths of the keys.
-    pub varied: BTreeMap<String, serde_json::Value>,
+    pub varied: Values,
 }
 
 impl From<NamedFit> for VariedFit {
@@ -43,47 +43,71 @@ impl From<NamedFit> for VariedFit {
     }
 }
 
+/// A fit with its entry's place, and the keys that tell it from fits of the same name: those of its whole entry, or where that has a name those
+/// with lists.
+struct Candidate {
+    fit: VariedFit,
+    place: usize,
+    has_name: bool,
+    keys: Values,
+}
+
+impl Candidate {
+    /// Whether keys are to tell the fits apart. Names that entries give themselves are for them to choose.
+    fn is_like(&self, other: &Candidate) -> bool {
+        let is_free = self.place == other.place || !(self.has_name || other.has_name);
+        is_free && self.fit.named.name == other.fit.named.name
+    }
+}
+
 /// The fits of all entries; files are relative to `folder`.
 ///
 /// # Errors
 /// A list is empty, a key is wrong, two fits have the same name, or there are too many. The key is `fit[i]` and that of the entry.
 pub fn varied_fits(entries: &[Table], folder: &Path) -> Result<Vec<VariedFit>> {
-    let mut all: Vec<VariedFit> = Vec::new();
+    let mut all: Vec<Candidate> = Vec::new();
     for (place, entry) in entries.iter().enumerate() {
         let at = |e: Error| e.placed(|e| e.under(format!("fit[{place}]")));
-        let mut own: Vec<VariedFit> = Vec::new();
-        for (table, varied) in combinations(entry).map_err(at)? {
+        let has_name = entry.contains_key("name");
+        for Combination { table, varied, keys } in combinations(entry).map_err(at)? {
             let entry: FitEntry = crate::file::parse_table(table).map_err(at)?;
             entry.check().map_err(at)?;
-            let fits = entry.fits(folder).map_err(at)?.into_iter();
-            own.extend(fits.map(|named| VariedFit { named: named.of_entry(place), varied: varied.clone() }));
-        }
-        for fit in told_apart(own) {
-            let names = std::iter::once(BODY).chain(all.iter().map(|known| known.named.name.as_str()));
-            expect_own_name(&format!("fit[{place}].name"), &fit.named.name, names)?;
-            all.push(fit);
+            for named in entry.fits(folder).map_err(at)? {
+                let fit = VariedFit { named: named.of_entry(place), varied: varied.clone() };
+                let keys = if has_name { varied.clone() } else { keys.clone() };
+                all.push(Candidate { fit, place, has_name, keys });
+            }
         }
         if all.len() > MOST {
             return Err(Error::expected("fit", format!("at most {MOST} fits"), "more"));
         }
     }
-    Ok(all)
+    let mut told: Vec<VariedFit> = Vec::new();
+    for (place, fit) in told_apart(all) {
+        let names = std::iter::once(BODY).chain(told.iter().map(|known| known.named.name.as_str()));
+        expect_own_name(&format!("fit[{place}].name"), &fit.named.name, names)?;
+        told.push(fit);
+    }
+    Ok(told)
 }
 
-/// The fits of one entry. Those of the same name have the values in it by which they differ.
-fn told_apart(fits: Vec<VariedFit>) -> Vec<VariedFit> {
-    let name = |fit: &VariedFit| {
-        let same: Vec<&VariedFit> = fits.iter().filter(|other| other.named.name == fit.named.name).collect();
-        let differs = |key: &&String| same.iter().any(|other| other.varied.get(*key) != fit.varied.get(*key));
-        let told = fit.varied.keys().filter(differs).map(|key| words(key, &fit.varied[key]));
-        std::iter::once(fit.named.name.clone()).chain(told).collect::<Vec<_>>().join(", ")
+/// The fits with the places of their entries. Those of the same name have the values in it by which they differ.
+fn told_apart(all: Vec<Candidate>) -> Vec<(usize, VariedFit)> {
+    let differences = |own: &Candidate| -> Values {
+        let same: Vec<&Candidate> = all.iter().filter(|other| own.is_like(other)).collect();
+        let differs = |(key, value): &(&String, &serde_json::Value)| {
+            same.iter().any(|other| other.keys.get(*key) != Some(*value))
+        };
+        own.keys.iter().filter(differs).map(|(key, value)| (key.clone(), value.clone())).collect()
     };
-    let names: Vec<String> = fits.iter().map(name).collect();
-    let named = |(mut fit, name): (VariedFit, String)| {
-        fit.named.name = name;
-        fit
+    let told: Vec<Values> = all.iter().map(differences).collect();
+    let named = |(Candidate { mut fit, place, .. }, told): (Candidate, Values)| {
+        let words = told.iter().map(|(key, value)| words(key, value));
+        fit.named.name = std::iter::once(fit.named.name).chain(words).collect::<Vec<_>>().join(", ");
+        fit.varied.extend(told);
+        (place, fit)
     };
-    fits.into_iter().zip(names).map(named).collect()
+    all.into_iter().zip(told).map(named).collect()
 }
 
 /// A key and its value in the name of a fit.
@@ -108,18 +132,30 @@ fn words(key: &str, value: &serde_json::Value) -> String {
     }
 }
 
-type Combination = (Table, BTreeMap<String, serde_json::Value>);
+/// Values of keys by their paths.
+type Values = BTreeMap<String, serde_json::Value>;
+
+/// An entry in which each key has one value.
+#[derive(Clone, Default)]
+struct Combination {
+    table: Table,
+    /// Those of the keys that have lists of values.
+    varied: Values,
+    /// Those of all keys.
+    keys: Values,
+}
 
 /// All combinations of the values, the last key fastest, with those of the keys that vary.
 fn combinations(entry: &Table) -> Result<Vec<Combination>> {
-    let mut all: Vec<Combination> = vec![(Table::new(), BTreeMap::new())];
+    let mut all = vec![Combination::default()];
     let mut add = |path: [Option<&str>; 2], value: &Value| -> Result<()> {
         let key = path.iter().flatten().copied().collect::<Vec<_>>().join(".");
         let choices = choices(&key, value)?;
         let mut more = Vec::new();
-        for (table, varied) in &all {
+        for known in &all {
             for choice in choices.as_deref().unwrap_or(std::slice::from_ref(value)) {
-                let (mut table, mut varied) = (table.clone(), varied.clone());
+                let Combination { mut table, mut varied, mut keys } = known.clone();
+                let of_json = serde_json::to_value(choice).unwrap_or_default();
                 match path {
                     [Some(parent), Some(name)] => {
                         let inner = table.entry(parent).or_insert_with(|| Value::Table(Table::new()));
@@ -128,9 +164,10 @@ fn combinations(entry: &Table) -> Result<Vec<Combination>> {
                     [_, name] => drop(table.insert(name.unwrap_or_default().into(), choice.clone())),
                 }
                 if choices.is_some() {
-                    varied.insert(key.clone(), serde_json::to_value(choice).unwrap_or_default());
+                    varied.insert(key.clone(), of_json.clone());
                 }
-                more.push((table, varied));
+                keys.insert(key.clone(), of_json);
+                more.push(Combination { table, varied, keys });
             }
         }
         all = more;
