@@ -83,6 +83,13 @@ impl Sweep {
             StudyTable::of(sweep.keys(), sweep.studies(), of_shard)
         };
         let path = folder.join(name);
+        let all: HashSet<&str> = marks.iter().map(String::as_str).collect();
+        let beyond = lines.beyond(&all);
+        if beyond > 0 {
+            terminal.note(&format!(
+                "the folder has {beyond} studies of other values: the table leaves them out, and figures of the folder have them as well"
+            ));
+        }
         // Each is run once, also where the design has it twice.
         let mut known = HashSet::new();
         let mut is_left = |mark| lines.record(mark).is_none() && own.contains(mark) && known.insert(mark);

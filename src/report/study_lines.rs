@@ -7,7 +7,7 @@ use crate::study::{CaseRecord, ComparedCase, Comparing, MethodRecord};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -208,6 +208,11 @@ impl<R: Line> StudyLines<R> {
             self.records.insert(mark, record);
         }
         Ok(())
+    }
+
+    /// The number of studies whose marks are none of these.
+    pub fn beyond(&self, marks: &HashSet<&str>) -> usize {
+        self.records.keys().filter(|mark| !marks.contains(mark.as_str())).count()
     }
 
     /// The record of the study of these values.

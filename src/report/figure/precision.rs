@@ -8,7 +8,7 @@ use clap::ValueEnum;
 /// Decades below the largest error within which errors are shown: an exact network has errors of rounding.
 const DECADES: f64 = 4.0;
 /// Smaller errors have a mark that is so many times below the least that is shown.
-const BELOW: f64 = 3.0;
+pub(super) const BELOW: f64 = 3.0;
 
 /// What a figure of errors against times has across.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, Series, Shape};
+use super::precision::BELOW;
 use super::run_folder::RunFolder;
 use crate::error::{Error, Result};
 use crate::file::{files_in, read_text};
@@ -65,14 +66,29 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
             }
         }
     }
-    let curve = |(place, (name, mut points)): (usize, (String, Errors))| {
+    let medians = |(name, mut points): (String, Errors)| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Errors that are rounding, in percent, have no place on a logarithmic axis.
-        let points = points.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > 1e-9);
-        Series::new(name, points.collect(), Shape::Curve).styled(place)
+        let points = points.iter().filter(|(_, errors)| !errors.is_empty()).map(|(at, errors)| (*at, median(errors)));
+        (name, points.collect::<Vec<(f64, f64)>>())
     };
-    let series: Vec<Series> =
-        curves.into_iter().enumerate().map(curve).filter(|curve| !curve.points.is_empty()).collect();
+    let curves: Vec<(String, Vec<(f64, f64)>)> = curves.into_iter().map(medians).collect();
+    let errors = || curves.iter().flat_map(|(_, points)| points).map(|(_, error)| *error);
+    // Errors that are rounding, in percent, have no place on a logarithmic axis.
+    let is_shown = |error: &f64| *error > 1e-9;
+    let least = errors().filter(is_shown).fold(f64::INFINITY, f64::min);
+    let curve = |(place, (name, points)): (usize, &(String, Vec<(f64, f64)>))| {
+        let largest = points.iter().map(|(_, error)| *error).fold(0.0, f64::max);
+        // A fit that is rounding at all values is below the others, with its largest number in the legend.
+        let is_below = least.is_finite() && !is_shown(&largest);
+        let (name, shape) = match is_below {
+            true => (format!("{name} (at most {largest:.0e} %)"), Shape::Below),
+            false => (name.clone(), Shape::Curve),
+        };
+        let drawn = points.iter().filter(|(_, error)| is_below || is_shown(error));
+        let drawn = drawn.map(|(at, error)| (*at, if is_below { least / BELOW } else { *error }));
+        Series::new(name, drawn.collect(), shape).styled(place)
+    };
+    let series: Vec<Series> = curves.iter().enumerate().map(curve).filter(|curve| !curve.points.is_empty()).collect();
     Ok(Chart {
         title: format!("e_rms over {key}, {} studies", records.len()),
         x: Axis::linear(key.as_str()),
