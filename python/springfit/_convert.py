@@ -225,7 +225,11 @@ def to_meshio(mesh: Mesh) -> Any:
     counts = np.cumsum([0, *(len(nodes) for _, nodes in blocks)])
     sets = {name: [own[(own >= a) & (own < b)] - a for a, b in zip(counts, counts[1:])] for name, own in mesh.cell_groups.items()}
     cells = [(names[number], nodes) for number, nodes in blocks]
-    return meshio.Mesh(np.array(mesh.points), cells, point_sets=mesh.groups, cell_sets=sets)
+    try:
+        return meshio.Mesh(np.array(mesh.points), cells, point_sets=mesh.groups, cell_sets=sets)
+    except KeyError as unknown:
+        # meshio has names for some cells and does not take them in a mesh.
+        raise failure("cells", "cells that meshio takes", str(unknown.args[0]), "unsupported") from unknown
 
 
 def _meshio() -> Any:
@@ -255,6 +259,12 @@ def _save_deck(mesh: Mesh, path: str) -> None:
     for name in (*mesh.groups, *mesh.cell_groups):
         if any(sign in name for sign in _NO_NAME):
             raise failure("groups", "names without commas, quotes and stars, for Abaqus", f"{name!r}")
+    for groups in (mesh.groups, mesh.cell_groups):
+        known: "dict[str, str]" = {}
+        for name in groups:
+            # Names of Abaqus have no case: both sets would be read as one.
+            if known.setdefault(name.lower(), name) != name:
+                raise failure("groups", "names that differ by more than capital letters, for Abaqus", f"{known[name.lower()]!r} and {name!r}")
     lines, first = ["*HEADING", "*NODE"], 1
     lines += [f"{i}, {', '.join(map(repr, x))}" for i, x in enumerate(_in_space(mesh.points).tolist(), 1)]
     for number, nodes in blocks:
@@ -289,10 +299,30 @@ def save(mesh: Mesh, path: str) -> None:
     if mesh.dimension < 3:
         # Most formats have three coordinates.
         found.points = _in_space(found.points)
+    expected = "a format that meshio writes, with these cells"
     try:
         meshio.write(path, found)
-    except (meshio.WriteError, KeyError) as error:
-        raise failure("path", "a format that meshio writes, with these cells", str(error) or type(error).__name__, "unsupported") from error
+    except (meshio.WriteError, KeyError, TypeError, ImportError) as error:
+        raise failure("path", expected, str(error) or type(error).__name__, "unsupported") from error
+    # Some formats leave cells out that they do not know, or write them without their middle nodes.
+    try:
+        again = meshio.read(path).cells
+    except Exception:
+        # meshio writes more formats than it reads.
+        return
+    counts = [sorted((block.type, len(block.data)) for block in blocks) for blocks in (found.cells, again)]
+    if _sums(counts[0]) != _sums(counts[1]):
+        os.remove(path)
+        words = ", ".join(f"{count} of {name}" for name, count in _sums(counts[1]).items()) or "no cells"
+        raise failure("path", expected, f"one that keeps {words}", "unsupported")
+
+
+def _sums(counts: "list[tuple[str, int]]") -> "dict[str, int]":
+    """The number of cells of each type."""
+    found: "dict[str, int]" = {}
+    for name, count in counts:
+        found[name] = found.get(name, 0) + count
+    return found
 
 
 def to_pyvista(mesh: Mesh, u: Any) -> Any:

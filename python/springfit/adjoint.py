@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 from collections import OrderedDict
 from dataclasses import dataclass
@@ -149,7 +150,8 @@ class Statics:
     def __init__(self, springs: "SpringConstants | Network", fix: Any, *, large: bool = False) -> None:
         if not isinstance(springs, (SpringConstants, Network)):
             raise failure("springs", "a springfit.SpringConstants or a springfit.Network", shown(springs))
-        self.springs, self.fix, self.large = springs, fix, bool(large)
+        # A copy, so that an array may be used again for other supports.
+        self.springs, self.fix, self.large = springs, copy.deepcopy(fix), bool(large)
         self._groups = springs._groups if isinstance(springs, Network) else None
         if fix is None or (self._groups is None and isinstance(fix, str)):
             raise failure("fix", 'places of points or flags, such as mesh.groups["xmin"]', shown(fix))

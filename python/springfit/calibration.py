@@ -73,7 +73,8 @@ class Calibration:
         names: The unknowns, in the order of ``correlations``.
         correlations: Of the errors by noise, shape (unknowns, unknowns); NaN where they are not determined.
         young: Young's modulus of each cell, Pa, in the order of :attr:`Mesh.cells`; None with other unknowns.
-        deviation: The standard deviation of each as a share of it, by noise and the prior; None with other unknowns.
+        deviation: The standard deviation of each as a share of it, by noise with this prior, without the pull of the prior, which makes
+            fields smoother than the body; None with other unknowns.
         misfit: How many times as large as the stated noise the residuals are; None without a stated noise.
         probability: Of residuals as large as these, or larger, if the model describes the body; None without a stated noise.
         is_unexplained: The residuals are more than noise: the model does not describe the body.
@@ -185,7 +186,7 @@ def calibrate(
         unknowns: Young's modulus of each region (the default), with Poisson's ratio ("moduli"), or Young's modulus of each cell ("cells").
         fix: What is held: a name of a group or keys of ``[[fix]]``, or a list of these.
         loads: By name, the keys of each ``[[load]]``, such as ``{"group": "top", "traction": [0, 0, -100]}``.
-        law: A law of large deformation, such as "neo-hookean".
+        law: A law of large deformation, such as "neo-hookean", of all regions; or each ``Material`` has it.
         known: Regions that keep their moduli.
         prior: With "cells", whether the field is constant but for jumps ("edges", the default) or smooth.
         refinements: How often the mesh is refined to know its error, 0 to 3; as often as takes seconds, at most twice, if None.
@@ -256,12 +257,16 @@ def _materials(regions: Any, law: "str | None") -> Any:
 
     def keys(key: str, own: Any) -> "dict[str, Any]":
         if isinstance(own, Material):
-            named = ("young", "poisson", "plane", "thickness", "area", "density")
-            found = {name: getattr(own, name) for name in named if getattr(own, name) is not None}
+            arrays: "dict[str, Any]" = {}
+            found = own._entry(arrays)
+            if arrays:
+                raise failure(key, "numbers, texts or expressions, of which a factor is found", f"an array by cell for {', '.join(arrays)}")
         elif isinstance(own, Mapping):
             found = dict(own)
         else:
             raise failure(key, "a Material, or keys of [[material]]", shown(own))
+        if law is not None and found.get("law", law) != law:
+            raise failure("law", f"the law of the material, {found['law']}", law)
         return {**rest, **found}
 
     if isinstance(regions, Material):

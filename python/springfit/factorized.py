@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import warn
+from ._arguments import failure, warn
 from ._supports import check_acting, displacement_of, forces_of
 
 if TYPE_CHECKING:
@@ -53,7 +53,10 @@ class Factorized:
         """
         acting = forces_of(self.network, forces)
         moved = displacement_of(self.network, displacement, self._held)
-        shape = np.broadcast_shapes(acting.shape, moved.shape)
+        try:
+            shape = np.broadcast_shapes(acting.shape, moved.shape)
+        except ValueError as unlike:
+            raise failure("displacement", f"as many loads as forces, of shape {acting.shape}", f"those of shape {moved.shape}") from unlike
         stacked = [np.ascontiguousarray(np.broadcast_to(given, shape)).reshape(-1, *shape[-2:]) for given in (acting, moved)]
         check_acting(*stacked, self._held)
         u, left, beyond = self._core.solve(*stacked)

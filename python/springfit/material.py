@@ -102,6 +102,8 @@ class Material:
             if not isinstance(self.law, (str, os.PathLike)):
                 raise failure("law", "the name of an energy, or the path of its file", shown(self.law))
             object.__setattr__(self, "law", os.fspath(self.law))
+        for name in _OTHERS:
+            object.__setattr__(self, name, _own(getattr(self, name)))
         # Names of arrays are asked for once it is right.
         numbers = zip(_QUANTITIES, _core.checked_material(self, list(_QUANTITIES)))
         object.__setattr__(self, "_is_checked", True)
@@ -183,6 +185,17 @@ def regions(material: Mapping[Any, Material], held: dict[str, Any] | None) -> li
             raise failure("material", "names of groups of the mesh, and None for the rest", shown(name))
         entries.append({**own._entry(held), **({} if name is None else {"group": name})})
     return entries
+
+
+def _own(value: Any) -> Any:
+    """A value that does not change with the lists, dictionaries and arrays from which it comes."""
+    if isinstance(value, np.ndarray):
+        value = value.copy()
+        value.setflags(write=False)
+        return value
+    if isinstance(value, Mapping):
+        return {key: _own(own) for key, own in value.items()}
+    return [_own(own) for own in value] if isinstance(value, (list, tuple)) else value
 
 
 def _quantity(key: str, value: Any, what: str) -> Any:

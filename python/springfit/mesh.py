@@ -133,6 +133,12 @@ class Mesh:
                 f"{quality['poor']} cells have a quality below {least:g}, the worst {quality['worst']:.1e} ({quality['worst_cell']}): "
                 "their spring constants lose accuracy in proportion"
             )
+        if quality["folding"]:
+            # Nodes in the order of another program look so: middle nodes lie on other edges.
+            warn(
+                f"{quality['folding']} curved cells fold between their quadrature points ({quality['folding_cells']}): if their nodes are in another "
+                "order than that of the element, matrices and networks are wrong; Element.positions has the order"
+            )
 
     @classmethod
     def _of(cls, core: _core.Mesh, least: float | None = None) -> Mesh:

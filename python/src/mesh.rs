@@ -301,6 +301,9 @@ impl Mesh {
         record.set_item("duplicates", quality.duplicates)?;
         record.set_item("folded", quality.folded)?;
         record.set_item("turned", self.mesh.reversed)?;
+        let (folding, cells) = quality.folding.clone().unwrap_or_default();
+        record.set_item("folding", folding)?;
+        record.set_item("folding_cells", cells)?;
         record.set_item("coincident", quality.coincident)?;
         record.set_item("hanging", quality.hanging)?;
         record.set_item("pieces", quality.pieces)?;

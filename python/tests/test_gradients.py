@@ -121,7 +121,7 @@ def test_slivers_do_not_depend_on_the_cells_beside_them(objective):
 def test_second_derivatives_are_those_of_differences():
     jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
     jax.config.update("jax_enable_x64", True)
-    for name, objective, keys in [*CASES[:5], ("hex8", "modal", {}), ("quad4", "exact", {}), ("tri3", "frobenius", {})]:
+    for case, (name, objective, keys) in enumerate([*CASES[:5], ("hex8", "modal", {}), ("quad4", "exact", {}), ("tri3", "frobenius", {})]):
         d = sf.Element(name).dimension
         mesh = sf.Mesh.box(name, size=[1.0, 0.8, 0.7][:d], cells=[1, 1, 1][:d])
         rng = np.random.default_rng(5)
@@ -131,7 +131,9 @@ def test_second_derivatives_are_those_of_differences():
         w = weighted(rng, constants(points, young, poisson))
         loss = lambda *given: sum((w * own**2).sum() for w, own in zip(w, constants.jax(*given)))
         own = np.array(jax.hessian(loss)(points, young, poisson))
-        for other in (jax.jacfwd(jax.jacfwd(loss)), jax.jacrev(jax.jacfwd(loss)), jax.jit(jax.jacrev(jax.jacrev(loss)))):
+        # The order of directions is a matter of JAX, and no other with another element.
+        orders = (jax.jacfwd(jax.jacfwd(loss)), jax.jacrev(jax.jacfwd(loss)), jax.jit(jax.jacrev(jax.jacrev(loss))))
+        for other in orders if case == 0 else orders[case % 3 :][:1]:
             assert np.allclose(other(points, young, poisson), own, rtol=0, atol=1e-12 * np.abs(own).max())
         v = rng.normal(size=points.shape)
         known = slope(lambda h: np.array(jax.grad(loss)(points + h * v, young, poisson)), 1e-3)

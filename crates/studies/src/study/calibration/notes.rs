@@ -58,6 +58,14 @@ impl CalibrationOutcome {
                     .into(),
             );
         }
+        if self.unknowns == "cells" {
+            // Morozov's rule takes the strongest prior that the noise allows.
+            all.push(
+                "deviations by cell are those by noise with this prior: they leave out its pull, by which fields are smoother than the body \
+                 and inclusions softer"
+                    .into(),
+            );
+        }
         if !self.hardly_seen.is_empty() {
             all.push(format!(
                 "the measurements hardly see {}: intervals reach beyond the factor 2",

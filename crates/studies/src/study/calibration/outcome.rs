@@ -48,7 +48,7 @@ pub struct CalibrationOutcome {
     pub meshes: Vec<MeshStep>,
     /// Young's modulus of each cell of the mesh in Pa, by blocks, where the unknowns are those of cells.
     pub young_by_cell: Vec<f64>,
-    /// The standard deviation of each, as a share of it, by noise and the prior.
+    /// The standard deviation of each, as a share of it, by noise with this prior, without the pull of the prior.
     pub deviation_by_cell: Vec<f64>,
     /// The prior of the field has this weight; it is null where the unknowns are those of regions.
     pub prior_weight: Option<f64>,
