@@ -47,7 +47,7 @@ pub struct FieldEstimate {
 
 /// The weight falls by this factor from stage to stage.
 const FALL: f64 = 3.0;
-/// Stages at most: ten powers of ten.
+/// Stages at most: eleven powers of ten.
 // Twenty-three falls by the factor three are 9e10.
 const STAGES: usize = 24;
 /// Steps of each stage.
