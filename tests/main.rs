@@ -93,6 +93,7 @@ mod published;
 mod quadrature;
 mod quantities;
 mod recomputed;
+mod recovery;
 mod referee;
 mod regions;
 mod report;

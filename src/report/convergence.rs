@@ -7,7 +7,7 @@ use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
-use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, rates};
+use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, QUADRATIC, rates};
 use crate::text::printable;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -110,15 +110,19 @@ fn share(percent: Option<f64>) -> String {
 
 /// What the errors refer to, and how far that is to be trusted.
 fn truth_text(truth: Option<&Limit>, reference: Option<&str>) -> String {
-    let of = reference.map_or(String::new(), |title| format!(" of \"{title}\""));
-    let Some(limit) = truth else {
-        return "there is no reference, because the finite elements do not reach the load on every level".into();
+    let models = match reference {
+        None => "finite elements".into(),
+        Some(QUADRATIC) => QUADRATIC.into(),
+        Some(title) => format!("finite elements of \"{title}\""),
     };
-    let finest = format!("the truth is taken to be {:.6e} J of the finest finite elements{of}", limit.value);
+    let Some(limit) = truth else {
+        return "no truth is known, because the finite elements do not reach the load on every level, or lock".into();
+    };
+    let finest = format!("the truth is taken to be {:.6e} J of the finest {models}", limit.value);
     let uncertain = format!("{} %", share(Some(100.0 * (limit.uncertainty / limit.value).abs())));
     match limit.kind {
         LimitKind::Extrapolated(order) => format!(
-            "the truth is {:.6e} J, extrapolated from the finite elements{of} with order {order:.2}, uncertain by {uncertain}",
+            "the truth is {:.6e} J, extrapolated from the {models} with order {order:.2}, uncertain by {uncertain}",
             limit.value
         ),
         LimitKind::Constant => format!("{finest}: the two finest levels agree to rounding"),
@@ -131,8 +135,8 @@ fn truth_text(truth: Option<&Limit>, reference: Option<&str>) -> String {
             )
         }
         LimitKind::Growing => format!(
-            "there is no truth, because the differences between levels grow: errors are relative to the {:.6e} J of the finest finite \
-             elements{of}, which differ by {uncertain} from the level before",
+            "there is no truth, because the differences between levels grow: errors are relative to the {:.6e} J of the finest \
+             {models}, which differ by {uncertain} from the level before",
             limit.value
         ),
         LimitKind::TooSlow(order) => format!(

@@ -27,7 +27,7 @@ pub struct FitRecord {
     /// `stalled`.
     pub status: String,
     /// What must be known first of the network: `not trusted`, its status where that is not well, `inverted cells`, `not the optimum`, `locks`,
-    /// `not the material` with the percentage, or its status.
+    /// `too stiff`, `not the material` with the percentage, or its status.
     #[serde(default)]
     pub verdict: String,
     /// The network has this number of springs.

@@ -43,7 +43,7 @@ pub struct Report {
     pub elements: usize,
     /// The cells have elements of these names.
     pub element_types: Vec<String>,
-    /// What must be known first of the finite elements of the mesh: `not trusted` or `locks`; it is empty if they are right.
+    /// What must be known first of the finite elements of the mesh: `not trusted`, `locks` or `too stiff`; it is empty if they are right.
     #[serde(default)]
     pub finite_elements_verdict: String,
     /// This number of elements had their nodes numbered the other way round.

@@ -3,7 +3,7 @@
 use super::note::{Note, Weight};
 use crate::model::Deformation;
 use crate::number::finite;
-use crate::study::{BodyLoad, ModelMotion, Outcome, TooStiff};
+use crate::study::{BodyLoad, LACKING, ModelMotion, Outcome, TooStiff};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -69,15 +69,24 @@ pub(super) fn distrust(outcome: &Outcome) -> Option<String> {
 
 /// That a body bends whose linear cells resist it too much, and that errors are relative to these cells.
 pub(super) fn bending_note(outcome: &Outcome) -> Option<Note> {
-    let is_seen = |load: &&BodyLoad| load.measured.is_none() && load.bends;
-    let mut under: Vec<&str> = outcome.loads.iter().filter(is_seen).map(|load| load.name.as_str()).collect();
+    let too_stiff = outcome.too_stiff?;
+    let is_seen = |load: &&BodyLoad| match too_stiff {
+        TooStiff::Coarse => load.lacking.is_some_and(|share| share >= LACKING),
+        _ => load.bends,
+    };
+    let loads = outcome.loads.iter().filter(|load| load.measured.is_none()).filter(is_seen);
+    // Of cells that are one across the jumps of strains see a part alone.
+    let share =
+        |load: &BodyLoad| load.lacking.map_or(String::new(), |share| format!(" (by about {:.0} %)", 100.0 * share));
+    let mut under: Vec<String> = loads.map(|load| format!("{}{}", load.name, share(load))).collect();
     if outcome.loads.is_empty() {
-        under.push("its vibrations");
+        under.push("its vibrations".into());
     }
-    let cells = match outcome.too_stiff.filter(|_| !under.is_empty())? {
+    let cells = match too_stiff {
+        _ if under.is_empty() => return None,
         TooStiff::Locks(_) => return None,
         TooStiff::Bends => "the body is about one cell across and",
-        TooStiff::Slender => "the cells are long beside the thickness of the body, which",
+        TooStiff::Coarse => "the cells are large for the body, which",
     };
     // A finer body of a law has no quadratic elements.
     let way_out = match outcome.law {

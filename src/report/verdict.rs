@@ -1,8 +1,8 @@
 //! What a reader must know first of a network, in a few words.
 
-use super::linear_theory::distrust;
+use super::linear_theory::{bending_note, distrust};
 use super::materials::{difference, is_material};
-use crate::study::{FitOutcome, Outcome, TooStiff};
+use crate::study::{ExactOutcome, FitOutcome, Outcome, TooStiff};
 
 /// A network or the finite elements whose cells lock.
 pub(super) const LOCKS: &str = "locks";
@@ -10,7 +10,7 @@ pub(super) const LOCKS: &str = "locks";
 pub(super) const TOO_STIFF: &str = "too stiff";
 
 /// The dearest that is true of a network: that no figure is to be trusted, that it does not stand or has no equilibrium, that cells are inverted,
-/// that constants are not the optimum, that it locks, that it is not the material; otherwise its status.
+/// that constants are not the optimum, that it locks or is too stiff with the finite elements, that it is not the material; otherwise its status.
 pub(super) fn verdict(outcome: &Outcome, fit: &FitOutcome) -> String {
     let status = fit.status();
     if distrust(outcome).is_some() {
@@ -23,6 +23,8 @@ pub(super) fn verdict(outcome: &Outcome, fit: &FitOutcome) -> String {
         "not the optimum".into()
     } else if fit.kind.exact().is_some_and(|exact| exact.locking.is_some()) {
         LOCKS.into()
+    } else if fit.kind.exact().is_some_and(ExactOutcome::is_finite_elements) && bending_note(outcome).is_some() {
+        TOO_STIFF.into()
     } else if !is_material(outcome, fit) {
         match difference(fit) {
             Some(percent) => format!("not the material, {percent} %"),
@@ -40,7 +42,7 @@ pub(super) fn finite_elements_verdict(outcome: &Outcome) -> String {
     }
     match outcome.too_stiff {
         Some(TooStiff::Locks(_)) => LOCKS.into(),
-        Some(TooStiff::Bends | TooStiff::Slender) => TOO_STIFF.into(),
+        Some(TooStiff::Bends | TooStiff::Coarse) => TOO_STIFF.into(),
         None => String::new(),
     }
 }

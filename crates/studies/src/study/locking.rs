@@ -1,9 +1,9 @@
 //! Whether the linear cells of a body resist it too much: they cannot keep a volume that the material keeps, or bend one cell across.
 
 use crate::element::Element;
-use crate::material::{MaterialMap, State};
+use crate::material::{Hooke, MaterialMap, State, strains};
 use crate::mesh::{CellBlock, Mesh};
-use crate::model::Deformation;
+use crate::model::{Deformation, lacking_energy};
 
 /// Finite elements of linear cells are markedly too stiff from this Poisson's ratio on.
 // At this ratio λ is 4 μ, and grows without bound beyond: the spurious changes of volume of a linear cell in bending
@@ -13,7 +13,7 @@ pub(super) const LOCKS: f64 = 0.4;
 /// Cells that lock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Locking {
-    /// The largest Poisson's ratio of these cells.
+    /// The largest Poisson's ratio of these cells; of anisotropic ones that of the nearest isotropic law, to three digits.
     pub poisson: f64,
     /// Whether the cells with this ratio are triangles or tetrahedra.
     pub of_simplices: bool,
@@ -32,7 +32,7 @@ impl Locking {
         if !matches!(material.state(), State::Solid | State::PlaneStrain { .. }) {
             return None;
         }
-        let poisson = material.poisson();
+        let (poisson, moduli) = (material.poisson(), material.moduli());
         let of_block = |(index, block): (usize, &CellBlock)| {
             let element = &block.element;
             let is_linear =
@@ -40,12 +40,26 @@ impl Locking {
             if !is_linear {
                 return None;
             }
-            let [_, poisson] = poisson.range_of(index);
+            let [_, of_isotropic] = poisson.range_of(index);
+            let moduli = moduli.block(index);
+            let of_others = moduli.values().iter().filter(|hooke| hooke.is_anisotropic());
+            let poisson = of_others.map(|hooke| nearest_poisson(hooke, mesh.dimension)).fold(of_isotropic, f64::max);
             (poisson >= LOCKS).then_some(Locking { poisson, of_simplices: element.cell.is_simplex() })
         };
         // The worst cells decide what a report says.
         mesh.body_blocks().filter_map(of_block).max_by(|a, b| a.poisson.total_cmp(&b.poisson))
     }
+}
+
+/// Poisson's ratio of the isotropic law that is nearest to an anisotropic one, to three digits: cells lock where a change of volume is much stiffer than
+/// a change of shape, whatever the directions of the latter.
+fn nearest_poisson(hooke: &Hooke, dimension: usize) -> f64 {
+    let (entries, lambda) = hooke.entries(dimension);
+    let (s, d) = (strains(dimension), dimension as f64);
+    // Of the isotropic projection `C_iijj = d² λ + 2 d μ`.
+    let normal: f64 = (0..dimension).map(|i| entries[i * s..i * s + dimension].iter().sum::<f64>()).sum();
+    let mu = (normal - d * d * lambda) / (2.0 * d);
+    (1e3 * lambda / (2.0 * (lambda + mu))).round() / 1e3
 }
 
 /// Why the linear cells of a body resist it too much.
@@ -55,40 +69,58 @@ pub enum TooStiff {
     Locks(Locking),
     /// The body bends under some load, or where it vibrates, and is about one cell across.
     Bends,
-    /// The body bends under some load, is more cells across, and these are long beside its thickness.
-    Slender,
+    /// The body is more cells across, and these are so large for how it bends under some load that they lack a marked share of its energy.
+    Coarse,
 }
 
+/// The share of a body's energy that its cells lack, from which on they are too stiff: displacements under forces are about so much too small.
+pub const LACKING: f64 = 0.15;
+
 impl TooStiff {
-    /// Finds why the cells of a body resist too much, as it bends under some load or not. The lowest vibrations of most bodies bend them.
-    pub fn of(mesh: &Mesh, material: &MaterialMap, has_bent: bool) -> Option<TooStiff> {
-        let locks = Locking::of_body(mesh, material).map(TooStiff::Locks);
-        let across = || match is_one_cell_across(mesh) {
+    /// Finds why the cells of a body resist too much, from what they lack under the loads that bend it, see [`lacking`].
+    pub fn of(mesh: &Mesh, material: &MaterialMap, lacking: &[Option<f64>]) -> Option<TooStiff> {
+        let has_bent = lacking.iter().any(Option::is_some);
+        Locking::of_body(mesh, material).map(TooStiff::Locks).or_else(|| match has_bent && is_one_cell_across(mesh) {
             true => Some(TooStiff::Bends),
-            false => is_slender(mesh).then_some(TooStiff::Slender),
-        };
+            false => lacking.iter().flatten().any(|share| *share >= LACKING).then_some(TooStiff::Coarse),
+        })
+    }
+
+    /// Finds why the cells of a body resist too much in its lowest vibrations, which bend most bodies.
+    pub fn of_vibrations(mesh: &Mesh, material: &MaterialMap) -> Option<TooStiff> {
         // The boundary of a large mesh is not looked for where nothing asks for it.
-        locks.or_else(|| if has_bent && is_linear(mesh) { across() } else { None })
+        Locking::of_body(mesh, material).map(TooStiff::Locks).or_else(|| match is_linear(mesh) {
+            true if is_one_cell_across(mesh) => Some(TooStiff::Bends),
+            true => is_slender(mesh).then_some(TooStiff::Coarse),
+            false => None,
+        })
     }
 
     /// The largest Poisson's ratio of the cells that lock.
     pub fn locks_at(&self) -> Option<f64> {
         match self {
             TooStiff::Locks(locking) => Some(locking.poisson),
-            TooStiff::Bends | TooStiff::Slender => None,
+            TooStiff::Bends | TooStiff::Coarse => None,
         }
     }
+}
+
+/// The share of its energy that a body of linear cells lacks under a load that bends it; `None` where the jumps of strains do not tell, because cells
+/// lock, have functions of their own, or are too many. Strains are Green's if `is_large`.
+pub fn lacking(mesh: &Mesh, material: &MaterialMap, u: &[f64], is_large: bool) -> Option<f64> {
+    let is_told = is_linear(mesh) && Locking::of_body(mesh, material).is_none();
+    is_told.then(|| lacking_energy(mesh, material, u, is_large))
 }
 
 /// The largest mesh whose boundary is looked at: the search takes a tenth of a second.
 const MOST_CELLS: usize = 100_000;
 
-/// Whether all cells of a body are linear and few enough to be looked at. `false` of surfaces and curves in space, which do not bend, and of meshes of
-/// more than 100 000 cells.
+/// Whether all cells of a body are linear and few enough to be looked at. `false` of surfaces and curves in space, which do not bend, of cells with
+/// functions that bend beside those of the nodes, and of meshes of more than 100 000 cells.
 fn is_linear(mesh: &Mesh) -> bool {
     mesh.cell_dimension() == mesh.dimension
         && count(mesh) <= MOST_CELLS
-        && mesh.body_blocks().all(|(_, block)| block.element.has_corners_alone())
+        && mesh.body_blocks().all(|(_, block)| block.element.has_corners_alone() && block.element.modes() == 0)
 }
 
 fn count(mesh: &Mesh) -> usize {
@@ -106,13 +138,17 @@ fn is_one_cell_across(mesh: &Mesh) -> bool {
 /// Cells of this length beside the thickness of the body are too long. Of n cells across, each a times as long as it is thick, the shear that a
 /// linear cell has where it should bend makes the body stiffer by about the share `(1 − ν)/2 (a/n)²`, whatever n is: by a fifth here.
 const LONG: f64 = 0.75;
+/// So many triangles or tetrahedra across are too few, however short they are: strains of bending that are constant in a cell have `2/n²` more energy.
+const FEW: usize = 3;
 /// More cells across are not counted.
 const MOST_ACROSS: usize = 32;
 
-/// Whether at least half of the cells are long beside the thickness of the body.
+/// Whether at least half of the cells are long beside the thickness of the body, or all are simplices and few across.
 fn is_slender(mesh: &Mesh) -> bool {
-    let across = mesh.cells_across(MOST_ACROSS);
-    across.is_some_and(|across| 2 * mesh.long_cells(LONG * across as f64) >= count(mesh))
+    let are_simplices = mesh.body_blocks().all(|(_, block)| block.element.cell.is_simplex());
+    mesh.cells_across(MOST_ACROSS).is_some_and(|across| {
+        are_simplices && across <= FEW || 2 * mesh.long_cells(LONG * across as f64) >= count(mesh)
+    })
 }
 
 /// Rotations that exceed the largest strain by more than this factor are of bending or twisting: in shear both are alike.

@@ -77,7 +77,7 @@ pub use fits::{
 pub use fitting::{fit_mesh, fit_without_errors, matrix_errors};
 pub use forecast::{ExpectedStage, Forecast};
 pub use learning::{LearningPoint, learning_curve};
-pub use locking::{Locking, TooStiff, bends};
+pub use locking::{LACKING, Locking, TooStiff, bends};
 pub use masses::{PointMasses, point_masses};
 pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use outcome::{

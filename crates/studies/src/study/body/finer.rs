@@ -11,7 +11,7 @@ use crate::solve::{Equations, KnownEquations, KnownPatterns, StaticSolver};
 use crate::study::progress::{Event, Progress};
 
 /// The answer of the finite elements of a finer mesh to one load.
-pub(super) struct FinerAnswer {
+pub struct FinerAnswer {
     /// `[points · dimension]`, m.
     pub displacement: Vec<f64>,
     /// J; see [`Case::work`].

@@ -48,7 +48,7 @@ pub fn judge_by_truth(
     // Notes of the report say that errors are relative to cells that bend too little.
     let (locks, is_told) = match too_stiff {
         TooStiff::Locks(locking) => (format!("at nu = {} linear cells lock", locking.poisson), false),
-        TooStiff::Bends | TooStiff::Slender => {
+        TooStiff::Bends | TooStiff::Coarse => {
             ("the body is about one cell across and bends, where linear cells are too stiff".to_string(), true)
         }
     };
@@ -188,6 +188,16 @@ fn work(mesh: &Mesh, models: usize, loads: usize, networks: usize) -> f64 {
     let Ok(factor) = factor_cost(mesh) else { return f64::INFINITY };
     let solutions = COMPARISONS * networks as f64 + REFINEMENTS * (models * loads) as f64;
     models as f64 * (factor.operations + PER_SORTED * entries(mesh)) + PER_ENTRY * solutions * factor.entries
+}
+
+/// Quadratic elements on the cells of a mesh, and their answers to the loads of a scene.
+///
+/// # Errors
+/// The cells have no quadratic element, or a load has no answer there.
+pub fn quadratic_answers(scene: &Scene, mesh: &Mesh, progress: &mut Progress) -> Result<(Mesh, Vec<FinerAnswer>)> {
+    let finer = mesh.elevated()?;
+    let level = Level::solve(scene, &finer, Standard::Quadratic, "quadratic elements", progress)?;
+    Ok((finer, level.answers))
 }
 
 impl Level {

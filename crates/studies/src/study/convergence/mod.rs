@@ -3,6 +3,7 @@
 mod levels;
 mod limit;
 mod outcome;
+mod quadratic;
 mod quantities;
 mod reference;
 mod run;

@@ -2,6 +2,7 @@
 
 use super::levels::plan;
 use super::outcome::{Convergence, Level, LoadConvergence, ModelConvergence, Step};
+use super::quadratic::Quadratic;
 use super::quantities::Quantities;
 use super::reference::same_problem;
 use crate::analysis::metrics::{displacement_error, product, square};
@@ -62,16 +63,17 @@ pub fn converge_with(
     progress: &mut Progress,
 ) -> Result<Convergence> {
     match reference {
-        None => of_levels(scene, levels, &mut |_| {}, each, progress),
+        None => of_levels(scene, levels, None, each, progress),
         Some(reference) => to_reference(scene, reference, levels, each, progress),
     }
 }
 
-/// Runs the levels; `completed` puts in what is known besides them.
+/// Runs the levels; `completed` puts in a truth that is known besides them. Without it the truth is that of the finite elements, or of quadratic ones
+/// where these lock.
 fn of_levels(
     scene: &Scene,
     levels: Option<usize>,
-    completed: &mut dyn FnMut(&mut Convergence),
+    mut completed: Option<&mut dyn FnMut(&mut Convergence)>,
     each: &mut EachLevel,
     progress: &mut Progress,
 ) -> Result<Convergence> {
@@ -85,6 +87,7 @@ fn of_levels(
     let (law, reference) = (None, None);
     let mut convergence = Convergence { scene: title, extent, law, reference, notes, levels, loads };
     let mut models: Vec<Vec<ModelConvergence>> = Vec::new();
+    let mut quadratic: Option<Quadratic> = None;
     for level in 0..count {
         let number = format!("level {} of {count}", level + 1);
         let start = Instant::now();
@@ -97,6 +100,19 @@ fn of_levels(
         let controls = Controls { announce: true, ..Controls::default() };
         let outcome = run_with(refined, &controls, &mut staged).map_err(in_level)?;
         let (prescribed, steps) = steps(refined, &outcome).map_err(in_level)?;
+        let mut notes = Vec::new();
+        if level == 0 && completed.is_none() {
+            let found = Quadratic::of(&outcome);
+            quadratic = found.map(|(quadratic, note)| {
+                notes.push(note);
+                quadratic
+            });
+        }
+        // On the cells of a level quadratic elements have as many unknowns as linear ones on the next: those of the finest cells would take more than all
+        // levels together. A limit needs two levels at least.
+        if level + 1 < count || count < 3 {
+            notes.extend(quadratic.as_mut().and_then(|quadratic| quadratic.add(refined, &outcome.mesh, &mut staged)));
+        }
         for (load, steps) in steps.into_iter().enumerate() {
             if level == 0 {
                 let names = std::iter::once(BODY).chain(outcome.fits.iter().map(|fit| fit.fit.name.as_str()));
@@ -112,7 +128,6 @@ fn of_levels(
         convergence.levels.push(Level { size, cells, points, unknowns, seconds });
         let counted = if cells == 1 { "1 cell".into() } else { format!("{cells} cells") };
         progress(Event::Note(&format!("{number}: {counted}, {unknowns} unknowns, {seconds:.1} s")));
-        let mut notes = Vec::new();
         if level == 0 {
             convergence.extent = mesh.extent();
             notes.extend(outcome.assumed.iter().chain(&outcome.of_loads).cloned());
@@ -139,7 +154,13 @@ fn of_levels(
             LoadConvergence::new(load.name.clone(), *is_prescribed, models.clone())
         };
         convergence.loads = loads.map(of_load).collect();
-        completed(&mut convergence);
+        if let Some(quadratic) = &quadratic {
+            quadratic.judge(&mut convergence.loads);
+            convergence.reference = quadratic.name();
+        }
+        if let Some(completed) = &mut completed {
+            completed(&mut convergence);
+        }
         each(&convergence)?;
     }
     Ok(convergence)
@@ -222,7 +243,7 @@ fn to_reference(
             convergence.notes.extend(differs.iter().map(|differs| format!("{DIFFERS}: {differs}")));
         }
     };
-    of_levels(scene, levels, &mut completed, each, progress)
+    of_levels(scene, levels, Some(&mut completed), each, progress)
 }
 
 /// The edge of a cube, square or interval with the mean content of the cells, m.

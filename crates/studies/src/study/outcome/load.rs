@@ -35,6 +35,9 @@ pub struct BodyLoad {
     pub deformation: Option<Deformation>,
     /// Whether the body bends or is twisted under the load.
     pub bends: bool,
+    /// The finite elements lack about this share of the body's energy, because their cells are linear; `None` where the body does not bend, or the
+    /// share is not known.
+    pub lacking: Option<f64>,
 }
 
 /// Displacements that the errors under a load are relative to, in place of those of the finite elements of the mesh.

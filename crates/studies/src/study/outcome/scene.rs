@@ -78,7 +78,7 @@ impl Outcome {
         let (dynamic_moduli, damping) = Default::default();
         let (inputs, assumed, of_loads, support, fibres) = Default::default();
         let material = material.into();
-        let too_stiff = TooStiff::of(&mesh, &material, false);
+        let too_stiff = TooStiff::of(&mesh, &material, &[]);
         Outcome {
             source: name.clone(),
             scene: name,

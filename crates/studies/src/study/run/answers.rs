@@ -7,7 +7,7 @@ use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Deformation;
 use crate::study::body::{Case, LargeBody, LinearBody, load_notes};
-use crate::study::locking::{TooStiff, bends};
+use crate::study::locking::{TooStiff, bends, lacking};
 use crate::study::masses::PointMasses;
 use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
 use crate::study::progress::{Event, Progress};
@@ -22,10 +22,7 @@ pub(super) struct Answers {
     followed: Vec<Option<Followed>>,
     /// The works of the loads along the displacements, J; `None` at large deformation.
     works: Vec<Option<f64>>,
-    /// How far the finite elements deform under each load; `None` at large deformation.
-    deformations: Vec<Option<Deformation>>,
-    /// Whether they bend or are twisted under each load.
-    has_bent: Vec<bool>,
+    bent: Bent,
     /// Why the cells of the mesh resist these deformations too much.
     too_stiff: Option<TooStiff>,
     /// The energies of the laws, at large deformation.
@@ -42,51 +39,49 @@ impl Answers {
         let Solved { large, linear, masses, .. } = solved;
         let count = posed.cases.len();
         let vibrates = count == 0 && posed.scene.output().frequencies > 0;
-        let (displacements, works, followed, laws, (deformations, has_bent), too_stiff) = match large {
+        let stiff_cells = |posed: &Posed, lacking: &[Option<f64>]| match vibrates {
+            true => TooStiff::of_vibrations(&posed.mesh, &posed.material),
+            false => TooStiff::of(&posed.mesh, &posed.material, lacking),
+        };
+        let (displacements, works, followed, laws, bent, too_stiff) = match large {
             Some(large) => {
                 let deformed = |u: &Vec<f64>| bends(Deformation::largest(&posed.mesh, u));
                 let has_bent: Vec<bool> = large.displacements.iter().map(deformed).collect();
-                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, vibrates || has_bent.contains(&true));
+                let bent = Bent::of(posed, large.displacements.iter(), vec![None; count], has_bent, true);
+                let too_stiff = stiff_cells(posed, &bent.lacking);
                 if let Some(TooStiff::Locks(locking)) = too_stiff {
                     posed.tell_of_locking(locking);
                 }
                 at_large(posed, &large, fits, progress)?;
                 let followed = large.followed.into_iter().map(Some).collect();
-                let deformations = vec![None; count];
-                (
-                    large.displacements,
-                    vec![None; count],
-                    followed,
-                    Some(large.laws),
-                    (deformations, has_bent),
-                    too_stiff,
-                )
+                (large.displacements, vec![None; count], followed, Some(large.laws), bent, too_stiff)
             }
             None => {
                 let body = linear.map_or_else(|| solve_linear(posed, progress), Ok)?;
                 let deformed = |u: &Vec<f64>| Some(Deformation::largest(&posed.mesh, u));
                 let deformations: Vec<_> = body.displacements().map(deformed).collect();
                 let has_bent: Vec<bool> = deformations.iter().map(|found| found.is_some_and(bends)).collect();
-                let too_stiff = TooStiff::of(&posed.mesh, &posed.material, vibrates || has_bent.contains(&true));
+                let bent = Bent::of(posed, body.displacements(), deformations, has_bent, false);
+                let too_stiff = stiff_cells(posed, &bent.lacking);
                 // After the fits, which are to the finite elements of the mesh.
-                if let Some(too_stiff) = too_stiff.filter(|cells| *cells != TooStiff::Slender) {
-                    posed.judge_by_truth(too_stiff, &deformations, progress);
+                if let Some(too_stiff) = too_stiff.filter(|cells| *cells != TooStiff::Coarse) {
+                    posed.judge_by_truth(too_stiff, &bent.deformations, progress);
                 }
                 posed.judge_sheet(body.displacements(), progress);
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;
                 let (displacements, works) = body.into_answers();
-                (displacements, works, vec![None; count], None, (deformations, has_bent), too_stiff)
+                (displacements, works, vec![None; count], None, bent, too_stiff)
             }
         };
         if let Some(gauged) = &posed.gauged {
             fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
         }
-        Ok(Answers { displacements, works, deformations, has_bent, too_stiff, followed, laws, masses })
+        Ok(Answers { displacements, works, bent, too_stiff, followed, laws, masses })
     }
 
     /// All that was found, without what happens over time; with the plan of that, and the laws that it needs.
     pub fn outcome(self, posed: Posed, fits: Vec<FitOutcome>) -> (Outcome, TimePlan, Option<EnergyMap>) {
-        let Answers { displacements, works, deformations, has_bent, too_stiff, followed, laws, masses } = self;
+        let Answers { displacements, works, bent, too_stiff, followed, laws, masses } = self;
         let Posed { scene, mesh, material, support, cases, gauged, plan, of_reference, .. } = posed;
         let answers = cases.iter().zip(displacements.into_iter().zip(works)).zip(followed).enumerate();
         let loads = answers.map(|(i, ((case, (fem, work)), followed))| {
@@ -100,8 +95,9 @@ impl Answers {
                 gravity,
                 gauge: gauged.as_ref().map(|gauged| gauged.body(&mesh, i, &fem, followed.as_ref())),
                 measured: case.measured(&mesh, &fem, work),
-                deformation: deformations[i],
-                bends: has_bent[i],
+                deformation: bent.deformations[i],
+                bends: bent.has_bent[i],
+                lacking: bent.lacking[i],
                 followed,
                 fem,
             }
@@ -133,6 +129,33 @@ impl Answers {
             damping: scene.measured_damping(),
         };
         (outcome, plan, laws)
+    }
+}
+
+/// How each load deforms the finite elements.
+struct Bent {
+    /// How far they deform; `None` at large deformation.
+    deformations: Vec<Option<Deformation>>,
+    /// Whether they bend or are twisted.
+    has_bent: Vec<bool>,
+    /// What cells lack where they bend, see [`lacking`].
+    lacking: Vec<Option<f64>>,
+}
+
+impl Bent {
+    fn of<'b>(
+        posed: &Posed,
+        displacements: impl Iterator<Item = &'b Vec<f64>>,
+        deformations: Vec<Option<Deformation>>,
+        has_bent: Vec<bool>,
+        is_large: bool,
+    ) -> Bent {
+        let of_load = |(u, bends): (&Vec<f64>, &bool)| match bends {
+            true => lacking(&posed.mesh, &posed.material, u, is_large),
+            false => None,
+        };
+        let lacking = displacements.zip(&has_bent).map(of_load).collect();
+        Bent { deformations, has_bent, lacking }
     }
 }
 

@@ -44,6 +44,11 @@ impl ExactOutcome {
         }
     }
 
+    /// Whether the network answers as the finite elements of the mesh do.
+    pub fn is_finite_elements(&self) -> bool {
+        (self.shear, self.volume) == (ShearSprings::Cells, VolumeSprings::Points) && self.positive.is_none()
+    }
+
     /// The fit that has the same tangent at rest.
     pub fn at_rest(&self) -> ExactFit {
         ExactFit { energy: self.energy, shear: self.shear, volume: self.volume, large: false }
@@ -60,7 +65,7 @@ impl ExactOutcome {
         let locking = self.locking.map(|(poisson, remedy)| {
             format!(
                 "at nu = {poisson} linear cells lock: the finite elements are too stiff, and this network with them; {remedy} \
-                 reduces it, and `springfit converge` measures it"
+                 does not lock, but may be as far off on a coarse mesh: its errors under these loads say so, and `springfit converge` measures both"
             )
         });
         let volume = match self.volume {
