@@ -561,6 +561,13 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
                 assert!(network.abs() < 0.8 * body.abs(), "{element} {poisson}: {body} {network}");
             }
             assert!(network[3].unwrap().abs() < 2.0, "{network:?}");
+            // Without a reference the truth is that of quadratic elements on the same cells.
+            let own = converge(&cantilever(element, poisson, &fit), Some(4), &mut |_| {}).unwrap();
+            let (found, right) = (own.loads[0].truth.unwrap(), load.truth.unwrap());
+            let apart = (found.value - right.value).abs();
+            println!("{element} {poisson}: truth {:e}, {:e}", found.value, right.value);
+            assert!(apart <= found.uncertainty + right.uncertainty + 0.005 * right.value, "{found:?} {right:?}");
+            assert!(own.reference.as_deref() == Some("quadratic elements") && own.notes[0].contains("linear cells lock"));
         }
     }
     let other = scene(

@@ -781,3 +781,58 @@ fn a_grid_that_does_not_fit_together_is_not_written() {
     assert_eq!(problem(|grid| grid.ends[0] = 9), "expected 2 rising ends up to 6");
     assert!(!path.exists());
 }
+
+/// Cells of groups that take turns in a file stay in its order, so that values of cells from elsewhere are those of the same cells: of VTK, Gmsh 2.2 and
+/// 4.1, and Abaqus.
+#[test]
+fn cells_stay_in_the_order_of_their_file() {
+    use std::fmt::Write;
+    let count = 9;
+    let mark = |cell: usize| [1, 2, 1, 3, 2, 2, 1, 3, 1][cell];
+    let lines = |of: &dyn Fn(usize) -> String| (0..count).map(of).collect::<String>();
+    // A strip of squares; each begins at the corner with the least number.
+    let corners = |cell: usize| [2 * cell, 2 * cell + 2, 2 * cell + 3, 2 * cell + 1];
+    let nodes = |cell: usize, first: usize, between: &str| {
+        corners(cell).map(|corner| (corner + first).to_string()).join(between)
+    };
+    let points = |begin: &dyn Fn(usize) -> String, between: &str, end: &str| {
+        let place = |p: usize| format!("{}{}{between}{}{end}\n", begin(p), p / 2, p % 2);
+        (0..2 * count + 2).map(place).collect::<String>()
+    };
+    let all = 2 * count + 2;
+    let vtk = format!(
+        "# vtk DataFile Version 3.0\nstrip\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {all} double\n{}CELLS {count} {}\n{}CELL_TYPES {count}\n{}\
+         CELL_DATA {count}\nSCALARS part int 1\nLOOKUP_TABLE default\n{}",
+        points(&|_| String::new(), " ", " 0"),
+        5 * count,
+        lines(&|cell| format!("4 {}\n", nodes(cell, 0, " "))),
+        lines(&|_| "9\n".into()),
+        lines(&|cell| format!("{}\n", mark(cell))),
+    );
+    let gmsh = format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{all}\n{}$EndNodes\n$Elements\n{count}\n{}$EndElements\n",
+        points(&|p| format!("{} ", p + 1), " ", " 0"),
+        lines(&|cell| format!("{} 3 2 {m} {m} {}\n", cell + 1, nodes(cell, 1, " "), m = mark(cell))),
+    );
+    let mut deck = format!("*NODE\n{}*ELEMENT, TYPE=CPS4\n", points(&|p| format!("{}, ", p + 1), ", ", ""));
+    deck += &lines(&|cell| format!("{}, {}\n", cell + 1, nodes(cell, 1, ", ")));
+    for part in 1..=3 {
+        let own: Vec<String> = (0..count).filter(|cell| mark(*cell) == part).map(|cell| (cell + 1).to_string()).collect();
+        writeln!(deck, "*ELSET, ELSET=P{part}\n{}", own.join(", ")).unwrap();
+    }
+    let folder = tempfile::TempDir::new().unwrap();
+    for (name, text) in [("strip.vtk", vtk), ("strip.msh", gmsh), ("strip.inp", deck)] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let mesh = Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap();
+        let firsts: Vec<usize> = mesh.blocks[0].cells().map(|nodes| *nodes.iter().min().unwrap()).collect();
+        assert_eq!(firsts, (0..count).map(|cell| 2 * cell).collect::<Vec<usize>>(), "{name}");
+        // The cells of each group are still those with its mark.
+        let mut marks = vec![0; count];
+        for (group, part) in mesh.groups.values().filter(|group| !group.cells.is_empty()).zip(1..) {
+            assert!(group.cells.is_sorted_by_key(|at| at.cell), "{name}");
+            group.cells.iter().for_each(|at| marks[at.cell] = part);
+        }
+        assert_eq!(marks, (0..count).map(mark).collect::<Vec<usize>>(), "{name}");
+    }
+}

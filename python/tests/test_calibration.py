@@ -308,3 +308,19 @@ def test_measurements_of_what_is_held_are_compared_with_the_support(noise):
     alone = np.where(on[:, None], moved, np.nan)
     with pytest.raises(sf.SpringfitError, match="those of what is held alone"):
         sf.calibrate(mesh, sf.Material(1e4, 0.0), {"pull": alone}, **given)
+
+
+def test_the_law_of_a_material_is_that_of_the_search():
+    mesh = sf.Mesh.box("hex8", size=[1, 1, 2], cells=[2, 2, 4])
+    fix = [{"group": "zmin", "axes": ["z"]}, {"where": "x < 1e-6", "axes": ["x"]}, {"where": "y < 1e-6", "axes": ["y"]}]
+    loads = {"pull": {"group": "zmax", "traction": [0, 0, 5000]}}
+    scene = {"mesh": mesh, "material": {"young": 1e4, "poisson": 0.3, "law": "neo-hookean"}, "fix": fix, "fit": [{"objective": "exact"}]}
+    seen = sf.run({**scene, "load": [{"name": "pull", **loads["pull"]}]}).displacements["pull"][""]
+    material = sf.Material(2e4, 0.3, law="neo-hookean")
+    found = sf.calibrate(mesh, material, {"pull": seen}, noise=1e-4, fix=fix, loads=loads)
+    assert float(next(iter(found.regions.values())).young) == pytest.approx(1e4, rel=1e-3)
+    with pytest.raises(sf.SpringfitError, match="law"):
+        sf.calibrate(mesh, material, {"pull": seen}, noise=1e-4, fix=fix, loads=loads, law="saint-venant-kirchhoff")
+    by_cell = sf.Material(np.full(16, 2e4), 0.3)
+    with pytest.raises(sf.SpringfitError, match="array by cell"):
+        sf.calibrate(mesh, by_cell, {"pull": seen}, noise=1e-4, fix=fix, loads=loads)

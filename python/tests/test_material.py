@@ -190,3 +190,26 @@ def test_orthotropic_constants_are_in_the_order_that_help_names():
     # The content of the cell is one factor of all entries.
     volume = found[0, 0] / wanted[0, 0]
     assert np.abs(found / volume - wanted).max() < 1e-9 * np.abs(wanted).max()
+
+
+def test_materials_and_supports_do_not_change_with_what_they_are_made_of():
+    mesh = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1])
+    stiffness, axes = 1e4 * np.eye(6), [np.tile([0, 0, 1.0], (6, 1))]
+    along = {"young": [5e4, 1e4], "poisson": [0.3, 0.3], "shear": 4e3}
+    materials = sf.Material(stiffness=stiffness), sf.Material(transversely_isotropic=along, axes=axes)
+    before = [abs(sf.stiffness(mesh, material)) for material in materials]
+    stiffness *= 3
+    axes[0][:] = [1, 0, 0]
+    along["young"][0] = 1e4
+    assert all(np.array_equal(abs(sf.stiffness(mesh, material)), own) for material, own in zip(materials, before))
+    net = sf.fit(mesh, sf.Material(1e4, 0.3))
+    flags = np.zeros(len(mesh.points), dtype=bool)
+    flags[mesh.groups["xmin"]] = True
+    statics = sf.Statics(net, flags)
+    flags[:] = False
+    flags[mesh.groups["zmin"]] = True
+    forces = np.zeros(mesh.points.shape)
+    forces[-1] = [0, 0, 1]
+    assert np.allclose(statics(net.points, statics.values, forces=forces).displacement, net.solve("xmin", forces), rtol=1e-9, atol=0)
+    with pytest.raises(sf.SpringfitError, match="displacement"):
+        net.solve("xmin", np.zeros((3, *forces.shape)), np.zeros((2, *forces.shape)))

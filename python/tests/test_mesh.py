@@ -1,5 +1,7 @@
 """Meshes from arrays, files and other packages, and what is refused."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -514,3 +516,43 @@ def test_lengths_with_units_are_taken_as_in_scenes(tmp_path):
         sf.Mesh.fill((points, triangles), cell="4 kPa", scale="mm")
     with pytest.raises(sf.SpringfitError, match="^scale: expected the length of one mesh unit"):
         sf.Mesh.fill((points, triangles), cell=4, scale="inches")
+
+
+def test_cells_of_files_keep_their_order(tmp_path):
+    meshio = pytest.importorskip("meshio", reason="not run: meshio is not installed; .ci/python runs this")
+    box = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[2, 2, 2])
+    cells = box.cells["tet4"]
+    marks = np.random.default_rng(0).integers(1, 4, len(cells))
+    path = tmp_path / "marked.vtu"
+    meshio.write(path, meshio.Mesh(np.array(box.points), [("tetra", np.array(cells))], cell_data={"part": [marks]}))
+    read = sf.Mesh.read(path)
+    assert np.array_equal(read.cells["tet4"], cells)
+    assert all(np.array_equal(places, np.flatnonzero(marks == int(name.split("=")[1]))) for name, places in read.cell_groups.items())
+
+
+def test_middle_nodes_in_another_order_are_warned_of():
+    box = sf.Mesh.box("tri6", size=[1, 1], cells=[3, 3])
+    cells = np.array(box.cells["tri6"])
+    with pytest.warns(UserWarning, match="another order"):
+        sf.Mesh(np.array(box.points), {"tri6": cells[:, [0, 1, 2, 4, 5, 3]]})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sf.Mesh(np.array(box.points), {"tri6": cells})
+
+
+def test_what_a_format_does_not_keep_is_refused(tmp_path):
+    pytest.importorskip("meshio", reason="not run: meshio is not installed; .ci/python runs this")
+    box = sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1])
+    for ending in ("stl", "ply", "off"):
+        path = tmp_path / f"cells.{ending}"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with pytest.raises(sf.SpringfitError, match="path"):
+                box.save(path)
+        assert not path.exists()
+    twice = sf.Mesh(np.array(box.points), box.cells, {"A": [0, 1], "a": [2]})
+    with pytest.raises(sf.SpringfitError, match="capital"):
+        twice.save(tmp_path / "groups.inp")
+    for element in ("wedge15", "pyramid13"):
+        with pytest.raises(sf.SpringfitError, match=element):
+            sf.Mesh.box(element, size=[1, 1, 1], cells=[1, 1, 1]).to_meshio()
