@@ -120,7 +120,7 @@ fn largest(outcome: &Outcome) -> Option<String> {
     let size = outcome.mesh.longest_side();
     let moved = |load: &BodyLoad| {
         let most = load.largest_displacement(&outcome.mesh);
-        let known = load.measured.and_then(|measured| Some((measured.standard, measured.largest?)));
+        let known = load.measured.as_ref().and_then(|measured| Some((measured.standard, measured.largest?)));
         let known = known.map_or(String::new(), |(standard, most)| {
             let of = if standard == Standard::Measurement { "measured" } else { standard.words() };
             format!("; {most:.3e} m {of}")

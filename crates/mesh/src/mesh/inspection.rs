@@ -45,9 +45,9 @@ impl Mesh {
             self.remove(&poor)?;
             return self.pass(gate);
         }
-        self.quality.worst = named;
         self.quality.folding = (!folding.is_empty()).then(|| (folding.len(), self.named(&folding)));
-        (self.quality.poor, self.quality.least) = (poor.len(), gate.least);
+        (self.quality.poor, self.quality.least) = (named.as_ref().map(|_| poor.len()), gate.least);
+        (self.quality.worst, self.quality.worst_cell) = named.map(|worst| (worst.quality, worst.cell)).unzip();
         Ok(())
     }
 
