@@ -5,8 +5,8 @@ use super::fit_record::FitRecord;
 use super::linear_theory::DeformationRecord;
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::notes::notes;
-use super::region_record::RegionRecord;
 use super::verdict::finite_elements_verdict;
+use crate::material::RegionMaterial;
 use crate::mesh::Quality;
 use crate::study::{
     BodyLoad, DynamicModuliOutcome, Followed, FrequencyOutcome, GaugeResult, Measured, MeasuredDamping, ModelTimes,
@@ -57,7 +57,7 @@ pub struct Report {
     /// Poisson's ratio of the material is null if it differs from cell to cell.
     pub poisson: Option<f64>,
     /// Each region has a material; a body without regions has one entry.
-    pub materials: Vec<RegionRecord>,
+    pub materials: Vec<RegionMaterial>,
     /// The material's law has this title.
     pub law: Option<String>,
     /// Each entry says how far the finite elements followed a load; the list is empty at small deformation.
@@ -116,8 +116,8 @@ impl Report {
     /// The report of a run, without the files that it writes.
     pub fn of(outcome: &Outcome) -> Report {
         let mesh = &outcome.mesh;
-        let materials = RegionRecord::all(outcome);
-        let same = |of: fn(&RegionRecord) -> [Option<f64>; 2]| {
+        let materials = outcome.material.by_region(mesh.cell_count());
+        let same = |of: fn(&RegionMaterial) -> [Option<f64>; 2]| {
             let first = materials.first().and_then(|region| of(region)[0]);
             first.filter(|_| materials.iter().all(|region| of(region) == [first; 2]))
         };

@@ -32,6 +32,7 @@ mod names;
 mod network;
 mod note;
 mod notes;
+mod object;
 mod outline;
 mod outputs;
 mod overview;
@@ -41,7 +42,6 @@ mod pictures;
 mod plots;
 mod quality;
 mod referee;
-mod region_record;
 mod run_tables;
 mod sampled;
 mod series;
@@ -74,7 +74,7 @@ pub use figure::{
 };
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
-pub use groups::{CellsRecord, GroupRecord, MeshRecord};
+pub use groups::NamedMesh;
 pub use json::{Report, VERSION, report, schema};
 pub use key_tables::{KeyTable, default_words, key_tables, key_tables_text};
 pub use lattice::lattice_text;
@@ -94,7 +94,6 @@ pub use referee::{
     EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
     referee_tables, referee_text, write_referee,
 };
-pub use region_record::RegionRecord;
 pub use sampled::{shapes_csv, starts_csv};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};
