@@ -168,12 +168,12 @@ displacement = ["free", 0.01]
             let ratio = lem.dot(&(&network * &lem)) / fem.dot(&(&body * &fem));
             // The softer body does more work under forces, and less under the same displacements.
             let energy = 100.0 * (if load.name == "shift" { 1.0 / ratio } else { ratio } - 1.0);
-            assert!((record.e_energy.unwrap() - energy).abs() < 1e-6, "{}: {record:?} {energy}", load.name);
+            assert!((record.work_error.unwrap() - energy).abs() < 1e-6, "{}: {record:?} {energy}", load.name);
             let size = |u: &nalgebra::DVector<f64>, p: usize| (u[2 * p].powi(2) + u[2 * p + 1].powi(2)).sqrt();
             let tip = (0..points / 2).max_by(|a, b| size(&fem, *a).total_cmp(&size(&fem, *b))).unwrap();
             let expected = 100.0 * size(&(&lem - &fem), tip) / size(&fem, tip);
-            assert!((record.e_tip.unwrap() - expected).abs() < 1e-9, "{record:?} {expected}");
-            assert!(record.e_tip <= record.e_max);
+            assert!((record.error.unwrap().tip - expected).abs() < 1e-9, "{record:?} {expected}");
+            assert!(record.error.unwrap().tip <= record.error.unwrap().max);
             assert!(text.contains(&format!("{expected:.2} / {energy:+.2}")) || fit.fit.name == "exact", "{text}");
             assert_eq!(fit.fit.name == "exact", energy.abs() < 1e-6 && expected < 1e-6, "{energy} {expected}");
         }

@@ -145,10 +145,10 @@ fn reports_say_null_of_what_was_not_looked_for() {
     let file = format!("file = \"{}\"", path.display());
     let quality = |mesh: &str| serde_json::from_str::<Report>(&report(&outcome(mesh))).unwrap().quality;
     let plain = quality(&file);
-    assert_eq!((plain.poor_elements, plain.coincident_nodes, plain.hanging_nodes), (Some(0), Some(0), Some(0)));
+    assert_eq!((plain.poor, plain.coincident, plain.hanging), (Some(0), Some(0), Some(0)));
     assert_eq!(plain.pieces, Some(1));
     let generated = quality("box = { element = \"tri3\", size = [1, 1], cells = [1, 1] }");
-    assert_eq!((generated.poor_elements, generated.coincident_nodes, generated.hanging_nodes), (None, Some(0), None));
+    assert_eq!((generated.poor, generated.coincident, generated.hanging), (None, Some(0), None));
 }
 
 /// Springs along the sides of squares leave shears free: the loosest points are named as in the files, by the numbers of the mesh file or from 0.

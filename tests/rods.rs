@@ -345,7 +345,7 @@ fn scene(folder: &Path, material: &str, rest: &str) -> springfit::error::Result<
 fn answer(material: &str, rest: &str) -> springfit::error::Result<Vec<f64>> {
     let folder = TempDir::new().unwrap();
     let outcome = run(&scene(folder.path(), material, rest)?, &mut |_| {})?;
-    Ok(outcome.fits[0].loads[0].displacement.clone().unwrap())
+    Ok(outcome.fits[0].loads[0].displacement.as_deref().cloned().unwrap())
 }
 
 const CLAMPED: &str = "[[fix]]\nwhere = \"x < 0.01\"\nclamp = true\n";

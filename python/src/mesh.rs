@@ -293,10 +293,11 @@ impl Mesh {
     #[getter]
     fn quality<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (quality, record) = (&self.mesh.quality, PyDict::new(py));
-        let worst = quality.worst.clone().or_else(|| self.mesh.worst_cell());
-        record.set_item("worst", worst.as_ref().map(|worst| worst.quality))?;
-        record.set_item("worst_cell", worst.as_ref().map(|worst| &worst.cell))?;
-        record.set_item("poor", quality.poor)?;
+        let known = quality.worst.zip(quality.worst_cell.clone());
+        let worst = known.or_else(|| self.mesh.worst_cell().map(|worst| (worst.quality, worst.cell)));
+        record.set_item("worst", worst.as_ref().map(|(quality, _)| quality))?;
+        record.set_item("worst_cell", worst.as_ref().map(|(_, cell)| cell))?;
+        record.set_item("poor", quality.poor.unwrap_or(0))?;
         record.set_item("skipped", quality.skipped)?;
         record.set_item("duplicates", quality.duplicates)?;
         record.set_item("folded", quality.folded)?;

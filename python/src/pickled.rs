@@ -40,7 +40,9 @@ pub fn restore(py: Python, mesh: &mut Mesh, numbers: Option<ReadNumbers>, counts
     let (least, [skipped, duplicates, folded, turned, unused], tests, has_worst, which) = counts;
     mesh.quality.least = least;
     [mesh.quality.coincident, mesh.quality.hanging, mesh.quality.pieces] = tests;
-    mesh.quality.worst = mesh.quality.worst.take().filter(|_| has_worst);
+    if !has_worst {
+        (mesh.quality.worst, mesh.quality.worst_cell, mesh.quality.poor) = (None, None, None);
+    }
     (mesh.quality.skipped, mesh.quality.duplicates, mesh.quality.folded) = (skipped, duplicates, folded);
     (mesh.reversed, mesh.unused_points, mesh.quality.turned) = (turned, unused, which);
     mesh.numbering = match numbers {

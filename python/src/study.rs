@@ -152,7 +152,7 @@ fn displacements<'py>(
         let body = load.is_reached().then(|| (String::new(), matrix(py, load.fem.clone(), d)));
         let mut models = BTreeMap::from_iter(body);
         for fit in &outcome.fits {
-            let answer = fit.loads.get(place).and_then(|load| load.displacement.clone());
+            let answer = fit.loads.get(place).and_then(|load| load.displacement.as_deref().cloned());
             models.extend(answer.map(|u| (fit.fit.name.clone(), matrix(py, u, d))));
         }
         (load.name.clone(), models)

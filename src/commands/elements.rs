@@ -6,7 +6,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::element::{Cell, Element, Outline, SHIPPED};
 use springfit::error::Result;
-use springfit::report::{self, ElementRecord};
+use springfit::report;
 use springfit::study::Event;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -54,8 +54,7 @@ impl Elements {
             terminal.print(shipped_text(SHIPPED.iter().map(|file| (file.name, file.text)), name)?)?;
             return Ok(ExitCode::SUCCESS);
         }
-        let record = |file| Ok(ElementRecord::of(&Outline::shipped(file)?, file));
-        let elements = SHIPPED.iter().map(record).collect::<Result<Vec<_>>>()?;
+        let elements = SHIPPED.iter().map(Outline::shipped).collect::<Result<Vec<_>>>()?;
         let tables = || vec![report::elements_table(&elements)];
         self.output.print(terminal, || &elements, tables, || report::elements_table(&elements).text())?;
         Ok(ExitCode::SUCCESS)

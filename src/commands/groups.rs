@@ -7,7 +7,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
 use springfit::mesh::listed_endings;
-use springfit::report::MeshRecord;
+use springfit::report::NamedMesh;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -45,8 +45,8 @@ impl Groups {
             self.options.unit_note(&mesh).iter().for_each(|words| terminal.note(words));
             (self.mesh.display().to_string(), mesh)
         };
-        let record = MeshRecord::of(name, &mesh);
-        self.output.print(terminal, || &record, || vec![record.table()], || record.text())?;
+        let named = NamedMesh { name, mesh };
+        self.output.print(terminal, || &named, || vec![named.table()], || named.text())?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -6,7 +6,7 @@ use crate::terminal::Terminal;
 use clap::Args;
 use springfit::error::Result;
 use springfit::material::{Energy, SHIPPED};
-use springfit::report::{self, MaterialRecord};
+use springfit::report;
 use std::process::ExitCode;
 
 /// List the shipped hyperelastic materials, which "law" names, or print the file of one
@@ -35,7 +35,7 @@ impl Materials {
             terminal.print(shipped_text(SHIPPED.iter().copied(), name)?)?;
             return Ok(ExitCode::SUCCESS);
         }
-        let materials: Vec<MaterialRecord> = Energy::shipped()?.iter().map(MaterialRecord::from).collect();
+        let materials = Energy::shipped()?;
         let tables = || vec![report::materials_table(&materials)];
         self.output.print(terminal, || &materials, tables, || report::materials_table(&materials).text())?;
         Ok(ExitCode::SUCCESS)

@@ -109,7 +109,7 @@ fn standard_body(
     for (i, load) in outcome.loads.iter().enumerate() {
         let limit = limits.iter().find(|limit| limit.name == load.name).and_then(|limit| limit.truth);
         let limit = limit.ok_or_else(|| missing("limit"))?;
-        let networks = outcome.fits.iter().map(|fit| fit.loads[i].displacement.clone());
+        let networks = outcome.fits.iter().map(|fit| fit.loads[i].displacement.as_deref().cloned());
         let networks: Option<Vec<Vec<f64>>> = networks.collect();
         cases.push(Case {
             load: load.name.clone(),

@@ -32,7 +32,7 @@ impl Comparison {
     pub fn of_scene(outcome: &Outcome) -> Comparison {
         let mut columns = vec![Column::words("fit"), Column::numbers("time").unit("µs/element")];
         for load in &outcome.loads {
-            let standard = load.measured.map_or("", |measured| measured.standard.heading());
+            let standard = load.measured.as_ref().map_or("", |measured| measured.standard.heading());
             let group = format!("{}{standard}", load.name);
             columns.extend(["e_rms", "e_max"].map(|error| Column::numbers(error).unit("%").group(&*group)));
         }

@@ -28,10 +28,10 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     for name in fits {
         let fit = outcome.fits.iter().find(|fit| fit.fit.name == **name);
         let found =
-            fit.and_then(|fit| fit.loads.get(place)).and_then(|l| Some((*name, l.displacement.as_ref()?, l.error)));
+            fit.and_then(|fit| fit.loads.get(place)).and_then(|l| Some((*name, l.displacement.as_deref()?, l.error)));
         panels.extend(found.filter(|_| panels.iter().all(|(known, ..)| known != name)));
     }
-    let standard = outcome.loads[place].measured.map_or("", |measured| measured.standard.heading());
+    let standard = outcome.loads[place].measured.as_ref().map_or("", |measured| measured.standard.heading());
     let largest = fem.chunks_exact(d).map(norm).fold(0.0, f64::max);
     // The scale of the displacements would divide by zero.
     if panels.is_empty() || largest == 0.0 {

@@ -1,13 +1,12 @@
 //! Fits in `report.json`.
 
-use super::load_record::LoadRecord;
 use super::verdict::verdict;
 use crate::fit::Spread;
 use crate::fit::published::Unmet;
 use crate::number::finite;
 use crate::positive::PositiveOutcome;
 use crate::study::{
-    EngineOutcome, FitOutcome, FitTimes, KindRecord, ModelTimes, NetworkMaterial, Outcome, SampledOutcome,
+    EngineOutcome, FitOutcome, FitTimes, KindRecord, LoadOutcome, ModelTimes, NetworkMaterial, Outcome, SampledOutcome,
     TensionOutcome, WholeOutcome,
 };
 use schemars::JsonSchema;
@@ -82,7 +81,7 @@ pub struct FitRecord {
     /// The whole network has Zener's ratio of anisotropy, if the scene asks for `moduli`.
     pub zener: Option<f64>,
     /// Each entry has the errors under a load.
-    pub loads: Vec<LoadRecord>,
+    pub loads: Vec<LoadOutcome>,
     /// `engine` has what the network answers in the engine that its constants are for; it is null where equations are solved to the end.
     pub engine: Option<EngineOutcome>,
     /// `unmet` has the assumptions of a published formula that the body violates; it is null with others.
@@ -143,7 +142,7 @@ impl FitRecord {
             effective_young: moduli.and_then(|moduli| finite(moduli.young / thickness?)),
             effective_poisson: moduli.and_then(|moduli| finite(moduli.poisson)),
             zener: moduli.and_then(|moduli| finite(moduli.zener)),
-            loads: outcome.loads.iter().map(|load| LoadRecord::of(load, &run.mesh)).collect(),
+            loads: outcome.loads.clone(),
             engine: outcome.engine.clone(),
             unmet: outcome.kind.published().map(|published| published.unmet),
             whole: outcome.kind.whole().cloned(),

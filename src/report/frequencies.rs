@@ -68,8 +68,10 @@ pub(super) fn frequency_notes(outcome: &Outcome) -> Vec<Note> {
     };
     let is_compared = !outcome.frequencies.is_empty();
     let has_quadratic = outcome.frequencies.iter().any(|model| model.name == QUADRATIC);
-    let has_finer =
-        outcome.loads.iter().any(|load| load.measured.is_some_and(|measured| measured.standard == Standard::FinerBody));
+    let has_finer = outcome
+        .loads
+        .iter()
+        .any(|load| load.measured.as_ref().is_some_and(|measured| measured.standard == Standard::FinerBody));
     let words = "natural frequencies are compared with those of the finite elements of the mesh, not with those of the finer body";
     let compared = (has_finer && !has_quadratic && outcome.frequencies.len() > 1).then(|| words.to_string());
     let locking = (is_compared && !has_quadratic).then(|| outcome.locks_at()).flatten().map(|poisson| {

@@ -3,16 +3,14 @@
 use super::agreement::{Agreement, agreements};
 use super::fit_record::FitRecord;
 use super::linear_theory::DeformationRecord;
-use super::load_record::MeasuredRecord;
 use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::notes::notes;
-use super::region_record::RegionRecord;
 use super::verdict::finite_elements_verdict;
-use crate::mesh::Mesh;
-use crate::number::finite;
+use crate::material::RegionMaterial;
+use crate::mesh::Quality;
 use crate::study::{
-    BodyLoad, DynamicModuliOutcome, Followed, FrequencyOutcome, GaugeResult, MeasuredDamping, ModelTimes, Outcome,
-    Reading,
+    BodyLoad, DynamicModuliOutcome, Followed, FrequencyOutcome, GaugeResult, Measured, MeasuredDamping, ModelTimes,
+    Outcome, Reading,
 };
 use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Serialize};
@@ -51,7 +49,7 @@ pub struct Report {
     /// This number of points of the file belongs to no element.
     pub unused_nodes: usize,
     /// `quality` has what is known of the shapes of the cells.
-    pub quality: QualityRecord,
+    pub quality: Quality,
     /// The largest network has this number of springs.
     pub springs: Option<usize>,
     /// Young's modulus of the material is in Pa; it is null if it differs from cell to cell.
@@ -59,7 +57,7 @@ pub struct Report {
     /// Poisson's ratio of the material is null if it differs from cell to cell.
     pub poisson: Option<f64>,
     /// Each region has a material; a body without regions has one entry.
-    pub materials: Vec<RegionRecord>,
+    pub materials: Vec<RegionMaterial>,
     /// The material's law has this title.
     pub law: Option<String>,
     /// Each entry says how far the finite elements followed a load; the list is empty at small deformation.
@@ -69,7 +67,7 @@ pub struct Report {
     /// The scene did not ask for these stages; each entry has the reason.
     pub left_out: Vec<String>,
     /// Each entry is a load whose errors are not relative to the finite elements of the mesh, but to a measurement or to a finer solution.
-    pub measured: Vec<MeasuredRecord>,
+    pub measured: Vec<Measured>,
     /// Each entry has what the tension test of the finite elements gives under a load; the list is empty without `[gauge]`.
     pub gauge: Vec<Option<Reading>>,
     /// Each entry says whether whole-object fits that differ in their start alone agree.
@@ -99,30 +97,6 @@ pub struct Report {
     pub files: Vec<String>,
 }
 
-/// The quality of the mesh.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct QualityRecord {
-    /// The least quality of an element is from 0 for flat to 1 for right angles.
-    pub worst: Option<f64>,
-    /// The element and number of the cell say where the least quality is.
-    pub worst_cell: Option<String>,
-    /// This number of elements is below the limit; it is null if quality was not measured, as for a generated mesh.
-    pub poor_elements: Option<usize>,
-    /// This number of elements was left out because they are poor, flat or tangled.
-    pub skipped_elements: usize,
-    /// This number of elements was left out because another has the same nodes.
-    pub duplicate_elements: usize,
-    /// This number of elements was left out because they are folded over their neighbours.
-    pub folded_elements: usize,
-    /// This number of nodes is at the place of another; it is null if coordinates are too coarse to tell.
-    pub coincident_nodes: Option<usize>,
-    /// This number of nodes is on edges or faces that do not have them. It is null if coordinates are too coarse to tell, or if the mesh
-    /// was generated or divided.
-    pub hanging_nodes: Option<usize>,
-    /// The mesh has this number of parts that share no node; it is null if they were not counted.
-    pub pieces: Option<usize>,
-}
-
 /// The JSON Schema of reports.
 pub fn schema() -> serde_json::Value {
     schema_for!(Report).to_value()
@@ -142,8 +116,8 @@ impl Report {
     /// The report of a run, without the files that it writes.
     pub fn of(outcome: &Outcome) -> Report {
         let mesh = &outcome.mesh;
-        let materials = RegionRecord::all(outcome);
-        let same = |of: fn(&RegionRecord) -> [Option<f64>; 2]| {
+        let materials = outcome.material.by_region(mesh.cell_count());
+        let same = |of: fn(&RegionMaterial) -> [Option<f64>; 2]| {
             let first = materials.first().and_then(|region| of(region)[0]);
             first.filter(|_| materials.iter().all(|region| of(region) == [first; 2]))
         };
@@ -162,7 +136,7 @@ impl Report {
             finite_elements_verdict: finite_elements_verdict(outcome),
             turned_elements: mesh.reversed,
             unused_nodes: mesh.unused_points,
-            quality: QualityRecord::of(mesh),
+            quality: mesh.quality.clone(),
             springs: outcome.fits.iter().map(|fit| fit.network.len()).max(),
             young: same(|region| region.young),
             poisson: same(|region| region.poisson),
@@ -171,7 +145,7 @@ impl Report {
             loads_followed: outcome.loads.iter().filter_map(|load| load.followed).collect(),
             deformations: DeformationRecord::all(outcome),
             left_out: outcome.left_out.clone(),
-            measured: outcome.loads.iter().filter_map(MeasuredRecord::of).collect(),
+            measured: outcome.loads.iter().filter_map(|load| load.measured.clone()).collect(),
             gauge: outcome.loads.iter().filter_map(gauge).collect(),
             starts: agreements(outcome),
             frequencies: outcome.frequencies.clone(),
@@ -183,23 +157,6 @@ impl Report {
             fits: outcome.fits.iter().map(fit).collect(),
             notes: notes(outcome),
             files: Vec::new(),
-        }
-    }
-}
-
-impl QualityRecord {
-    fn of(mesh: &Mesh) -> QualityRecord {
-        let quality = &mesh.quality;
-        QualityRecord {
-            worst: quality.worst.as_ref().and_then(|worst| finite(worst.quality)),
-            worst_cell: quality.worst.as_ref().map(|worst| worst.cell.to_string()),
-            poor_elements: quality.worst.as_ref().map(|_| quality.poor),
-            skipped_elements: quality.skipped,
-            duplicate_elements: quality.duplicates,
-            folded_elements: quality.folded,
-            coincident_nodes: quality.coincident,
-            hanging_nodes: quality.hanging,
-            pieces: quality.pieces,
         }
     }
 }

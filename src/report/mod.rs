@@ -24,7 +24,6 @@ mod key_tables;
 mod key_types;
 mod lattice;
 mod linear_theory;
-mod load_record;
 mod materials;
 mod measured;
 mod motion;
@@ -33,6 +32,7 @@ mod names;
 mod network;
 mod note;
 mod notes;
+mod object;
 mod outline;
 mod outputs;
 mod overview;
@@ -42,7 +42,6 @@ mod pictures;
 mod plots;
 mod quality;
 mod referee;
-mod region_record;
 mod run_tables;
 mod sampled;
 mod series;
@@ -59,7 +58,7 @@ mod tables_page;
 mod verdict;
 
 pub use calibration::{CALIBRATION_FILES, calibration_tables, calibration_text, write_calibration};
-pub use catalogue::{ElementRecord, MaterialRecord, SpringGroupRecord, elements_table, materials_table};
+pub use catalogue::{elements_table, materials_table};
 pub use check::{check_table, check_text};
 pub use compare::{
     CASES, COMPARE_FILES, Summary, compare_tables, compare_text, comparison_values, summarized, write_comparison,
@@ -75,12 +74,11 @@ pub use figure::{
 };
 pub use fit_record::FitRecord;
 pub use forecast::forecast_text;
-pub use groups::{CellsRecord, GroupRecord, MeshRecord};
-pub use json::{QualityRecord, Report, VERSION, report, schema};
+pub use groups::NamedMesh;
+pub use json::{Report, VERSION, report, schema};
 pub use key_tables::{KeyTable, default_words, key_tables, key_tables_text};
 pub use lattice::lattice_text;
 pub use linear_theory::{DeformationRecord, beyond_linear};
-pub use load_record::{LoadRecord, MeasuredRecord};
 pub use measured::{measured_tables, measured_text};
 pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
@@ -96,7 +94,6 @@ pub use referee::{
     EngineRecord, Factor, FoundRow, REFEREE_FILES, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg,
     referee_tables, referee_text, write_referee,
 };
-pub use region_record::RegionRecord;
 pub use sampled::{shapes_csv, starts_csv};
 pub use series::write_series;
 pub use stability::{STABILITY_FILES, stability_table, stability_text, write_stability};

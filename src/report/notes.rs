@@ -66,11 +66,12 @@ fn all(outcome: &Outcome) -> Vec<Note> {
 /// What errors are relative to, where that is not the finite elements of the mesh.
 fn measured(outcome: &Outcome) -> Vec<Note> {
     let note = |load: &BodyLoad| {
-        let measured = load.measured.filter(|measured| measured.points > 0)?;
-        let error = measured.error.map_or("-".into(), |e| format!("e_rms / e_max {:.2} / {:.2} %", e.rms, e.max));
-        let own = measured
-            .uncertainty
-            .map_or(String::new(), |e| format!(", which themselves are right to about {:.2} / {:.2} %", e.rms, e.max));
+        let measured = load.measured.as_ref().filter(|measured| measured.points > 0)?;
+        let error = measured.fem_e_rms.zip(measured.fem_e_max);
+        let error = error.map_or("-".into(), |(rms, max)| format!("e_rms / e_max {rms:.2} / {max:.2} %"));
+        let own = measured.uncertainty_rms.zip(measured.uncertainty_max);
+        let own = own
+            .map_or(String::new(), |(rms, max)| format!(", which themselves are right to about {rms:.2} / {max:.2} %"));
         let words =
             format!(" are relative to the displacements {} at {} points", measured.standard.words(), measured.points);
         let note = Note::of_load(Weight::Reference, "errors under ", &load.name, words);

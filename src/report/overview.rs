@@ -2,13 +2,12 @@
 
 use super::fit_record::FitRecord;
 use super::json::Report;
-use super::load_record::{LoadRecord, MeasuredRecord};
 use super::table::Digits::{Fixed, Significant};
 use super::table::Priority::First;
 use super::table::{Cell, Column, Table};
 use super::verdict::{LOCKS, TOO_STIFF};
 use crate::study::statistics::median;
-use crate::study::{BODY, Times};
+use crate::study::{BODY, LoadOutcome, Measured, Times};
 
 /// More loads are summed up.
 const MOST_LOADS: usize = 5;
@@ -71,12 +70,12 @@ pub(super) fn overview(report: &Report) -> Table {
 }
 
 /// The loads of each fit.
-pub(super) fn loads(report: &Report) -> &[LoadRecord] {
+pub(super) fn loads(report: &Report) -> &[LoadOutcome] {
     report.fits.first().map_or(&[], |fit| &fit.loads)
 }
 
 /// What errors under a load are relative to, unless it is the finite elements of the mesh.
-pub(super) fn measured<'a>(report: &'a Report, load: &str) -> Option<&'a MeasuredRecord> {
+pub(super) fn measured<'a>(report: &'a Report, load: &str) -> Option<&'a Measured> {
     report.measured.iter().find(|known| known.load == load)
 }
 
@@ -91,17 +90,17 @@ fn error_of_body(report: &Report, load: &str) -> Option<f64> {
     measured(report, load).map_or(Some(0.0), |known| known.fem_e_max)
 }
 
-fn of_load<'a>(report: &'a Report, place: usize, load: &LoadRecord) -> Shown<'a> {
+fn of_load<'a>(report: &'a Report, place: usize, load: &LoadOutcome) -> Shown<'a> {
     let standard = standard(report, &load.name);
     let column = Column::numbers("e_max").unit("%").group(format!("{}{standard}", load.name));
-    let error = move |fit: &FitRecord| fit.loads.get(place).and_then(|load| load.e_max);
+    let error = move |fit: &FitRecord| fit.loads.get(place).and_then(|load| load.error.map(|e| e.max));
     Shown::new(column, move |fit| Cell::number(error(fit), Fixed(2)))
         .body(Cell::number(error_of_body(report, &load.name), Fixed(2)))
 }
 
 /// The median and the largest error under many loads.
 fn of_many(report: &Report, count: usize) -> Vec<Shown<'_>> {
-    let known = |loads: &[LoadRecord], error: &dyn Fn(&LoadRecord) -> Option<f64>| {
+    let known = |loads: &[LoadOutcome], error: &dyn Fn(&LoadOutcome) -> Option<f64>| {
         // An error that is not known is no small one.
         loads.iter().map(error).collect::<Option<Vec<f64>>>()
     };
@@ -110,7 +109,7 @@ fn of_many(report: &Report, count: usize) -> Vec<Shown<'_>> {
         let worst = known.and_then(|known| known.into_iter().reduce(f64::max));
         [middle, worst].map(|error| Cell::number(error, Fixed(2)))
     };
-    let of_fit = move |fit: &FitRecord| cells(known(&fit.loads, &|load| load.e_max));
+    let of_fit = move |fit: &FitRecord| cells(known(&fit.loads, &|load| load.error.map(|e| e.max)));
     let of_body = cells(known(loads(report), &|load| error_of_body(report, &load.name)));
     let group = format!("e_max of {count} loads");
     let columns = ["median", "worst"].map(|title| Column::numbers(title).unit("%").group(group.as_str()));

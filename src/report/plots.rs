@@ -144,7 +144,7 @@ fn load_place<'a>(report: &'a Report, load: Option<&str>) -> Result<(usize, &'a 
 /// The fits without an error under the load.
 fn without_error(report: &Report, load: Option<&str>) -> Result<Vec<String>> {
     let (place, name) = load_place(report, load)?;
-    let is_without = |fit: &&FitRecord| fit.loads.get(place).is_none_or(|load| load.e_rms.is_none());
+    let is_without = |fit: &&FitRecord| fit.loads.get(place).is_none_or(|load| load.error.is_none());
     let words =
         |fit: &FitRecord| format!("{} is not shown: it is {}, without an error under {name}", fit.name, fit.status);
     Ok(report.fits.iter().filter(is_without).map(words).collect())
@@ -165,7 +165,7 @@ fn compared(run: &RunFolder, drawn: Drawn, of: Option<&str>) -> Result<Chart> {
 fn precision(run: &RunFolder, load: Option<&str>, cost: Cost) -> Result<Chart> {
     let report = &run.report()?;
     let (place, name) = load_place(report, load)?;
-    let error = |fit: &FitRecord| fit.loads.get(place)?.e_rms;
+    let error = |fit: &FitRecord| fit.loads.get(place)?.error.map(|e| e.rms);
     let seconds = |fit: &FitRecord| match cost {
         Cost::Fit => Some(fit.seconds_per_element),
         _ => cost.of_model(fit.model_times.as_ref()?),

@@ -52,13 +52,11 @@ pub(super) fn quality_lines(quality: &Quality) -> Vec<String> {
             counted(*count, "curved cell")
         ));
     }
-    if let Some(worst) = quality.worst.as_ref().filter(|_| quality.poor > 0) {
+    if let (Some(worst), Some(cell), Some(poor @ 1..)) = (quality.worst, &quality.worst_cell, quality.poor) {
         lines.push(format!(
-            "{} with a quality below {:e}, the worst {:.1e} ({}): such spring constants lose accuracy in proportion",
-            counted(quality.poor, "cell"),
+            "{} with a quality below {:e}, the worst {worst:.1e} ({cell}): such spring constants lose accuracy in proportion",
+            counted(poor, "cell"),
             quality.least,
-            worst.quality,
-            worst.cell
         ));
     }
     if let Some(count) = quality.coincident.filter(|count| *count > 0) {

@@ -5,13 +5,12 @@ use super::fit_record::FitRecord;
 use super::frequencies::frequencies;
 use super::held_out::held_out;
 use super::json::Report;
-use super::load_record::LoadRecord;
 use super::motion::motions;
 use super::overview::{loads, measured, overview, standard};
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::Third;
 use super::table::{Cell, Column, Table};
-use crate::study::{BODY, FitTimes, ModelTimes, Reading, SampledOutcome, Times};
+use crate::study::{BODY, FitTimes, LoadOutcome, ModelTimes, Reading, SampledOutcome, Times};
 
 impl Table {
     /// All tables for which the report has results.
@@ -95,8 +94,11 @@ fn errors(report: &Report) -> Table {
         let error = |error| Cell::number(error, Fixed(2));
         vec![error(rms), error(max), error(tip), Cell::number(energy, Signed(2)), Cell::number(moves, Significant(4))]
     };
-    let cells = |(i, load): (usize, &LoadRecord)| {
-        let mut cells = errors([load.e_rms, load.e_max, load.e_tip, load.e_energy], load.largest_displacement);
+    let cells = |(i, load): (usize, &LoadOutcome)| {
+        let mut cells = errors(
+            [load.error.map(|e| e.rms), load.error.map(|e| e.max), load.error.map(|e| e.tip), load.work_error],
+            load.largest_displacement,
+        );
         if is_read(i) {
             let reading = |of: fn(Reading) -> f64| load.gauge.map(of);
             cells.push(Cell::number(reading(|reading| reading.young), Significant(5)));
@@ -109,7 +111,7 @@ fn errors(report: &Report) -> Table {
     };
     let mut rows: Vec<Vec<Cell>> = if loads.is_empty() { Vec::new() } else { report.fits.iter().map(row).collect() };
     if !report.measured.is_empty() && !rows.is_empty() {
-        let of_body = |(i, load): (usize, &LoadRecord)| {
+        let of_body = |(i, load): (usize, &LoadOutcome)| {
             let known = measured(report, &load.name);
             let mut cells = known.map_or_else(
                 || errors([Some(0.0); 4], None),
@@ -219,8 +221,8 @@ fn times(report: &Report) -> Table {
         Column::numbers("residual"),
     ];
     let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
-    let row = |fit: &FitRecord, load: &LoadRecord| {
-        let solver = load.solver_lem.as_ref();
+    let row = |fit: &FitRecord, load: &LoadOutcome| {
+        let solver = load.solved_lem.as_ref();
         let known = |value: Option<usize>| Cell::number(value.map(|value| value as f64), Fixed(0));
         let followed = load.followed.as_ref();
         vec![
@@ -283,14 +285,14 @@ fn costs(report: &Report) -> Table {
 }
 
 /// All loads of all fits.
-fn all_loads(report: &Report) -> impl Iterator<Item = &LoadRecord> {
+fn all_loads(report: &Report) -> impl Iterator<Item = &LoadOutcome> {
     report.fits.iter().flat_map(|fit| &fit.loads)
 }
 
 /// The mean times of a load.
 fn means(report: &Report) -> Option<String> {
     let count = all_loads(report).count();
-    let mean = |seconds: fn(&LoadRecord) -> f64| {
+    let mean = |seconds: fn(&LoadOutcome) -> f64| {
         let mean = all_loads(report).map(seconds).sum::<f64>() / count as f64;
         if mean < 1.0 { format!("{:.2} ms", 1e3 * mean) } else { format!("{mean:.2} s") }
     };
@@ -302,7 +304,7 @@ fn means(report: &Report) -> Option<String> {
 
 /// How iterations went, where there were any: the most of all loads and models, and the largest residual.
 fn iterations(report: &Report) -> Option<String> {
-    let solved = all_loads(report).flat_map(|load| load.solver_fem.iter().chain(&load.solver_lem));
+    let solved = all_loads(report).flat_map(|load| load.solved_fem.iter().chain(&load.solved_lem));
     let iterated: Vec<_> = solved.filter(|solved| solved.iterations.is_some()).collect();
     let most = iterated.iter().max_by_key(|solved| solved.iterations)?;
     Some(format!(

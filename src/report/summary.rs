@@ -4,8 +4,8 @@ use super::json::Report;
 use super::linear_theory::distrust;
 use super::motion::motion_distrust;
 use super::quality::{changes, counted, quality_lines};
-use super::region_record::RegionRecord;
 use super::table::{Table, run_text};
+use crate::material::RegionMaterial;
 use crate::study::{BodyLoad, Followed, Outcome, Reading, Standard};
 use crate::text::printable;
 use std::fmt::Write;
@@ -26,9 +26,38 @@ pub(super) fn summary_line(outcome: &Outcome) -> String {
 
 /// The material, or the number of regions with their own.
 fn material_words(outcome: &Outcome) -> String {
-    match &RegionRecord::all(outcome)[..] {
-        [one] => one.words(),
+    match &outcome.material.by_region(outcome.mesh.cell_count())[..] {
+        [one] => region_words(one),
         regions => format!("{} materials", regions.len()),
+    }
+}
+
+/// The material of a region in words, such as `E = 1000 to 5000 Pa, nu = 0.3`.
+fn region_words(region: &RegionMaterial) -> String {
+    let words = |[least, largest]: [Option<f64>; 2]| match (least, largest) {
+        (Some(least), Some(largest)) if least == largest => format!("{least}"),
+        (Some(least), Some(largest)) => format!("{} to {}", short(least), short(largest)),
+        _ => "-".into(),
+    };
+    match region.young {
+        [None, None] => "anisotropic".into(),
+        _ => format!("E = {} Pa, nu = {}", words(region.young), words(region.poisson)),
+    }
+}
+
+/// Four digits: ends of a range are seldom round numbers.
+fn short(value: f64) -> String {
+    let exponent = value.abs().log10().floor();
+    match value {
+        0.0 => "0".into(),
+        _ if (-3.0..6.0).contains(&exponent) => {
+            let text = format!("{value:.*}", (3.0 - exponent).max(0.0) as usize);
+            match text.contains('.') {
+                true => text.trim_end_matches('0').trim_end_matches('.').into(),
+                false => text,
+            }
+        }
+        _ => format!("{value:.3e}"),
     }
 }
 
@@ -51,10 +80,11 @@ pub fn summary(outcome: &Outcome) -> String {
         )
         .expect("a String grows");
     }
-    for region in RegionRecord::all(outcome) {
+    for region in outcome.material.by_region(mesh.cell_count()) {
         if let Some(name) = &region.region {
             let cells = counted(region.cells, "cell");
-            writeln!(text, "material of {}: {}, {cells}", printable(name), region.words()).expect("a String grows");
+            writeln!(text, "material of {}: {}, {cells}", printable(name), region_words(&region))
+                .expect("a String grows");
         }
     }
     for line in quality_lines(&mesh.quality) {
@@ -120,7 +150,7 @@ fn largest(outcome: &Outcome) -> Option<String> {
     let size = outcome.mesh.longest_side();
     let moved = |load: &BodyLoad| {
         let most = load.largest_displacement(&outcome.mesh);
-        let known = load.measured.and_then(|measured| Some((measured.standard, measured.largest?)));
+        let known = load.measured.as_ref().and_then(|measured| Some((measured.standard, measured.largest?)));
         let known = known.map_or(String::new(), |(standard, most)| {
             let of = if standard == Standard::Measurement { "measured" } else { standard.words() };
             format!("; {most:.3e} m {of}")

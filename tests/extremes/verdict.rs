@@ -106,7 +106,7 @@ pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
                 return Err(format!("displacements under {} are not finite", load.name));
             }
             let moves = body.fem.iter().any(|u| *u != 0.0);
-            match (load.error, body.measured) {
+            match (load.error, &body.measured) {
                 (None, None) if moves && is_trusted => {
                     return Err(format!("no error under {} though the body moves", load.name));
                 }

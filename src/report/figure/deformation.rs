@@ -60,7 +60,7 @@ impl Deformation {
                 })?),
             };
         let load = found.ok_or_else(|| Error::new("the run has no loads, so there are no displacements to draw"))?;
-        if load.e_rms.is_none() {
+        if load.error.is_none() {
             let why = format!("{} has no displacements under {}: it is {}", fit.name, load.name, fit.status);
             return Err(Error::new(format!("{why}; another fit of the run may have some")));
         }
@@ -83,7 +83,7 @@ impl Deformation {
         Ok(Deformation {
             title: format!("{} under {}: at rest, finite elements and {}", report.scene, load.name, fit.name),
             fit: fit.name.clone(),
-            error: load.e_rms,
+            error: load.error.map(|e| e.rms),
             held: held.iter().map(|held| held.point).collect(),
             forces: nodal.map_or(Vec::new(), |n| n.forces.iter().map(|f| (f.point, f.force.clone())).collect()),
             mesh,

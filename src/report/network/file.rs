@@ -12,9 +12,8 @@ use crate::network::{
 };
 use crate::number::finite;
 use crate::report::fit_record::FitRecord;
-use crate::report::load_record::LoadRecord;
 use crate::report::notes::notes;
-use crate::study::{BodyLoad, DampingRecipe, FitOutcome, MotionOutcome, Outcome};
+use crate::study::{BodyLoad, DampingRecipe, FitOutcome, LoadOutcome, MotionOutcome, Outcome};
 use crate::text::printable;
 use std::collections::BTreeMap;
 
@@ -322,9 +321,12 @@ fn summary(fit: &FitRecord) -> FitSummaryRecord {
         settings.and_then(|value| Some(value.as_object()?.clone())).into_iter().flatten().collect();
     let objective = settings.get("objective").and_then(|name| name.as_str()).unwrap_or_default();
     let frobenius = &fit.relative_frobenius;
-    let load_errors = |load: &LoadRecord| {
-        let LoadRecord { name, e_rms, e_max, e_tip, e_energy, .. } = load.clone();
-        LoadErrorsRecord { name, e_rms, e_max, e_tip, e_energy }
+    let load_errors = |load: &LoadOutcome| LoadErrorsRecord {
+        name: load.name.clone(),
+        e_rms: load.error.map(|e| e.rms),
+        e_max: load.error.map(|e| e.max),
+        e_tip: load.error.map(|e| e.tip),
+        e_energy: load.work_error,
     };
     FitSummaryRecord {
         name: fit.name.clone(),

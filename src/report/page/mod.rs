@@ -7,18 +7,17 @@ mod record;
 
 pub use array::{Floats, Places};
 pub(super) use histogram::constants_of;
-pub use record::{
-    HistogramRecord, LoadViewRecord, ModelViewRecord, MotionViewRecord, NetworkViewRecord, PageRecord,
-    SpringMeshRecord, ViewRecord,
-};
+pub use record::{HistogramRecord, NetworkViewRecord, PageRecord, SpringMeshRecord, ViewRecord};
 
 use super::json::Report;
 use super::notes::groups;
+use super::object::Object;
 use super::table::Table;
 use crate::material::State;
-use crate::study::{MotionOutcome, Outcome};
+use crate::study::{ModelMotion, MotionOutcome, Outcome};
 use crate::text::printable;
 use drawing::{Drawing, spread};
+use serde_json::json;
 use std::io::{self, Write};
 
 /// States of a motion that are played.
@@ -77,7 +76,7 @@ impl ViewRecord {
                 Some(followed) => format!("{}, {:.3} of the load", load.name, followed.load),
                 None => load.name.clone(),
             };
-            view.loads.push(LoadViewRecord { name, displacement });
+            view.loads.push(Object(vec![("name", json!(name)), ("displacement", json!(displacement))]));
         }
         for (fit, springs) in outcome.fits.iter().zip(&drawing.springs) {
             let own = drawing.spring_mesh(&fit.network, springs);
@@ -95,29 +94,25 @@ impl ViewRecord {
                 histograms: HistogramRecord::all(&fit.network),
             });
         }
-        view.motion = outcome.motion.as_ref().and_then(|motion| MotionViewRecord::of(motion, &drawing));
-        if let Some(motion) = &view.motion {
-            let all = outcome.motion.iter().flat_map(|m| &m.models).map(|model| model.states.len()).max().unwrap_or(0);
-            if motion.times.len() < all {
-                view.left_out.push(format!("Played are {} of {all} states of the motion.", motion.times.len()));
-            }
-        }
+        view.motion = outcome.motion.as_ref().and_then(|motion| played(motion, &drawing, &mut view.left_out));
         view
     }
 }
 
-impl MotionViewRecord {
-    /// `None` if no states were kept.
-    fn of(motion: &MotionOutcome, drawing: &Drawing) -> Option<MotionViewRecord> {
-        let longest = motion.models.iter().max_by_key(|model| model.states.len())?;
-        let models = || motion.models.iter().filter(|model| !model.states.is_empty());
-        let room = MOST_MOTION / (3 * drawing.count() * models().count()).max(1);
-        let played = spread((0..longest.states.len()).collect(), room.clamp(2, MOST_STATES));
-        let model = |model: &crate::study::ModelMotion| ModelViewRecord {
-            network: model.fit,
-            states: played.iter().filter_map(|&i| Some(drawing.vectors(model.states.get(i)?))).collect(),
-        };
-        let times: Vec<f64> = played.iter().filter_map(|&i| Some(longest.records.get(i)?.account.time)).collect();
-        (!times.is_empty()).then(|| MotionViewRecord { times, models: models().map(model).collect() })
+/// The states of a motion that are played, and in `left_out` how many are not; `None` if no states were kept.
+fn played(motion: &MotionOutcome, drawing: &Drawing, left_out: &mut Vec<String>) -> Option<Object> {
+    let longest = motion.models.iter().max_by_key(|model| model.states.len())?;
+    let models = || motion.models.iter().filter(|model| !model.states.is_empty());
+    let room = MOST_MOTION / (3 * drawing.count() * models().count()).max(1);
+    let all = longest.states.len();
+    let played = spread((0..all).collect(), room.clamp(2, MOST_STATES));
+    let model = |model: &ModelMotion| {
+        let states = played.iter().filter_map(|&i| Some(drawing.vectors(model.states.get(i)?)));
+        json!({ "network": model.fit, "states": states.collect::<Vec<_>>() })
+    };
+    let times: Vec<f64> = played.iter().filter_map(|&i| Some(longest.records.get(i)?.account.time)).collect();
+    if !times.is_empty() && times.len() < all {
+        left_out.push(format!("Played are {} of {all} states of the motion.", times.len()));
     }
+    (!times.is_empty()).then(|| Object(vec![("times", json!(times)), ("models", models().map(model).collect())]))
 }

@@ -2,6 +2,7 @@
 
 use super::array::{Floats, Places};
 use crate::report::json::Report;
+use crate::report::object::Object;
 use crate::report::table::Table;
 use serde::Serialize;
 
@@ -39,25 +40,18 @@ pub struct ViewRecord {
     pub edges: Places,
     /// The surface, `[triangles × 3]`.
     pub triangles: Places,
-    /// The loads, with the finite elements' displacements.
-    pub loads: Vec<LoadViewRecord>,
+    /// The loads of the body: each has its name, with the share of it that the finite elements reached if that is not all, and their
+    /// displacements, `[points × 3]`, m.
+    pub loads: Vec<Object>,
     /// Springs between two points, which networks may have in common.
     pub meshes: Vec<SpringMeshRecord>,
     /// The networks in the order of the fits.
     pub networks: Vec<NetworkViewRecord>,
-    /// The motion.
-    pub motion: Option<MotionViewRecord>,
+    /// The motion of the models that have states: the times, s, `[states]`, and of each model the place of its network, null of the finite
+    /// elements, with its displacements in each state, `[points × 3]`, m; fewer than times where the motion broke off.
+    pub motion: Option<Object>,
     /// What is not drawn, one sentence each.
     pub left_out: Vec<String>,
-}
-
-/// A load of the body.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LoadViewRecord {
-    /// Its name, with the share of it that the finite elements reached if that is not all.
-    pub name: String,
-    /// The displacements of the finite elements, `[points × 3]`, m.
-    pub displacement: Floats,
 }
 
 /// Springs between two points.
@@ -103,22 +97,4 @@ pub struct HistogramRecord {
     pub counts: Vec<usize>,
     /// Springs below and above all intervals.
     pub outside: [usize; 2],
-}
-
-/// The motion of the models that have states.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MotionViewRecord {
-    /// s, `[states]`.
-    pub times: Vec<f64>,
-    /// The models.
-    pub models: Vec<ModelViewRecord>,
-}
-
-/// The motion of a model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelViewRecord {
-    /// The place of the network; null of the finite elements.
-    pub network: Option<usize>,
-    /// For each state the displacements, `[points × 3]`, m; fewer than times where the motion broke off.
-    pub states: Vec<Floats>,
 }

@@ -140,7 +140,7 @@ pub fn programs() -> String {
                 let logarithms: f64 = errors.iter().map(|error| error.ln()).sum();
                 format!("{:.2}", (logarithms / errors.len() as f64).exp())
             };
-            let body = found.loads.iter().map(|load| load.measured.unwrap().error.unwrap().rms).collect();
+            let body = found.loads.iter().map(|load| load.measured.as_ref().unwrap().fem_e_rms.unwrap()).collect();
             let mut column = vec![mean(body)];
             for i in 0..PROGRAMS.len() {
                 let fit = found.fits.iter().find(|fit| fit.fit.name == i.to_string());

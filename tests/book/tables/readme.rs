@@ -15,7 +15,7 @@ fn judged(name: &str, poisson: &str) -> Scene {
 /// The largest error under any load of a fit, and that of the finite elements.
 fn worst(outcome: &Outcome) -> (Vec<f64>, f64) {
     let fits = outcome.fits.iter().map(|fit| fit.loads.iter().map(|load| load.error.unwrap().max).fold(0.0, f64::max));
-    let body = outcome.loads.iter().map(|load| load.measured.unwrap().error.unwrap().max).fold(0.0, f64::max);
+    let body = outcome.loads.iter().map(|load| load.measured.as_ref().unwrap().fem_e_max.unwrap()).fold(0.0, f64::max);
     (fits.collect(), body)
 }
 

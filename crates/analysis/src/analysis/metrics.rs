@@ -2,6 +2,8 @@
 
 use crate::model::Entries;
 use crate::scalar::{Sum, scaled_norm};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The largest relative residual of a solution. A factor of a nearly singular matrix gives numbers that do not solve
 /// the equations.
@@ -9,16 +11,35 @@ pub const SOLVED: f64 = 1e-6;
 
 /// The distances of the points of the network from those of the finite elements, in percent of the largest
 /// displacement.
-#[derive(Debug, Clone, Copy, PartialEq)]
+///
+/// `e_rms = 100 √(mean_i |u_i^FEM − u_i^LEM|²)/max_i |u_i^FEM|` over all points, `e_max = 100 max_i |u_i^FEM − u_i^LEM|/max_i |u_i^FEM|`, and
+/// `e_tip = 100 |u_t^FEM − u_t^LEM|/|u_t^FEM|` at the point t with the largest displacement of the finite elements.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct DisplacementError {
-    /// The root mean square `100 √(mean_i |u_i^FEM − u_i^LEM|²)/max_i |u_i^FEM|`, over all points.
+    /// The root mean square error is in percent of the largest displacement.
+    #[serde(rename = "e_rms")]
+    #[schemars(with = "Option<f64>")]
     pub rms: f64,
-    /// The maximum `100 max_i |u_i^FEM − u_i^LEM|/max_i |u_i^FEM|`.
+    /// The largest error is in percent of the largest displacement.
+    #[serde(rename = "e_max")]
+    #[schemars(with = "Option<f64>")]
     pub max: f64,
-    /// The error `100 |u_t^FEM − u_t^LEM|/|u_t^FEM|` at the point t with the largest displacement of the finite
-    /// elements.
+    /// The error at the point that moves most in the finite elements is in percent of the largest displacement.
+    #[serde(rename = "e_tip")]
+    #[schemars(with = "Option<f64>")]
     pub tip: f64,
+}
+
+impl DisplacementError {
+    /// Writes the keys of an error into those of what has it; they are null where it is not known.
+    ///
+    /// # Errors
+    /// The writer fails.
+    pub fn or_null<S: Serializer>(error: &Option<DisplacementError>, to: S) -> Result<S::Ok, S::Error> {
+        const UNKNOWN: DisplacementError = DisplacementError { rms: f64::NAN, max: f64::NAN, tip: f64::NAN };
+        error.unwrap_or(UNKNOWN).serialize(to)
+    }
 }
 
 /// The errors defined by Natsupakpong and Çavuşoğlu (2010), section 3. `fem` and `lem` are `[points × dimension]`, m.

@@ -8,20 +8,24 @@ use super::kind::{Kind, SpringKind, Symmetry};
 use super::symmetry::permutations;
 use crate::error::{Error, Result};
 use crate::symbolic::{Expr, Scope};
+use serde::{Serialize, Serializer};
 use std::collections::{BTreeMap, HashSet};
 
 /// Springs that the symmetry of the cell maps onto each other, and that a fit may tie to one constant.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SpringGroup {
     /// The name of the group in files and options.
     pub name: String,
     /// The name in the element file, which the classes of one entry share.
+    #[serde(skip)]
     pub entry: String,
     /// What its springs measure.
     pub kind: SpringKind,
-    /// The nodes of each spring, `[springs][nodes of a spring]`; empty if the whole cell is measured.
+    /// The nodes of each spring, `[springs][nodes of a spring]`; empty if the whole cell is measured. JSON has their number.
+    #[serde(rename = "springs", serialize_with = "count")]
     pub nodes: Vec<Vec<usize>>,
     /// For the kind `measure`: what is measured, as a function of the coordinates of the nodes of one spring.
+    #[serde(skip)]
     pub measure: Option<Expr>,
     /// Whether the group is used only by fits that name it.
     pub optional: bool,
@@ -32,6 +36,11 @@ impl SpringGroup {
     pub fn is_content(&self) -> bool {
         self.nodes.is_empty()
     }
+}
+
+/// Writes how many springs a cell has; one where the whole cell is measured.
+fn count<S: Serializer>(nodes: &[Vec<usize>], to: S) -> std::result::Result<S::Ok, S::Error> {
+    nodes.len().max(1).serialize(to)
 }
 
 /// The groups of a file, with node positions `[nodes × dimension]`.

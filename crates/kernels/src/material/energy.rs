@@ -9,7 +9,8 @@ use crate::named::unknown;
 use crate::symbolic::{Expr, Program, Scope};
 use nalgebra::Vector3;
 use schemars::{JsonSchema, schema_for};
-use serde::Deserialize;
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
 use springfit_shipped::MATERIALS;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -72,6 +73,19 @@ pub(super) struct Formula {
     /// The derivatives in the invariants.
     pub(super) slopes: Vec<Program>,
     pub(super) by_stretches: bool,
+}
+
+impl Serialize for Energy {
+    /// Writes what a list of energies tells of one.
+    fn serialize<S: Serializer>(&self, to: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut keys = to.serialize_struct("Energy", 5)?;
+        keys.serialize_field("name", self.name())?;
+        keys.serialize_field("title", self.title())?;
+        keys.serialize_field("parameters", &self.parameters().collect::<BTreeMap<_, _>>())?;
+        keys.serialize_field("fibres", &self.has_fibres())?;
+        keys.serialize_field("source", &self.source())?;
+        keys.end()
+    }
 }
 
 /// The values of [`MODULI`].

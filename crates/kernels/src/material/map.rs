@@ -256,34 +256,6 @@ impl MaterialMap {
         &self.region
     }
 
-    /// The number of cells of each region, of a body with so many.
-    pub fn cells_by_region(&self, cells: usize) -> Vec<usize> {
-        let mut counts = vec![0; self.regions.len()];
-        match &self.region {
-            CellMap::Uniform(region) => counts[*region] = cells,
-            CellMap::Each(blocks) => blocks.iter().flatten().for_each(|region| counts[*region] += 1),
-        }
-        counts
-    }
-
-    /// The least and the largest of some values over the cells of each region. What is not a number is left out.
-    pub fn ranges_by_region(&self, values: &CellMap<f64>) -> Vec<[f64; 2]> {
-        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.regions.len()];
-        match &self.region {
-            CellMap::Uniform(region) => ranges[*region] = values.range(),
-            CellMap::Each(blocks) => {
-                for (block, regions) in blocks.iter().enumerate() {
-                    for (cell, region) in regions.iter().enumerate() {
-                        let value = *values.at(block, cell);
-                        let [least, largest] = &mut ranges[*region];
-                        (*least, *largest) = (least.min(value), largest.max(value));
-                    }
-                }
-            }
-        }
-        ranges
-    }
-
     /// The materials of some of the cells, which are given by block.
     pub fn of_some(&self, cells: &[Vec<usize>]) -> MaterialMap {
         MaterialMap {

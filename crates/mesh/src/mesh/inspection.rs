@@ -46,9 +46,9 @@ impl Mesh {
             // The cells that are left have the quality that they had, so that the second pass removes none and ends.
             return self.pass(gate);
         }
-        self.quality.worst = named;
         self.quality.folding = (!folding.is_empty()).then(|| (folding.len(), self.named(&folding)));
-        (self.quality.poor, self.quality.least) = (poor.len(), gate.least);
+        (self.quality.poor, self.quality.least) = (named.as_ref().map(|_| poor.len()), gate.least);
+        (self.quality.worst, self.quality.worst_cell) = named.map(|worst| (worst.quality, worst.cell)).unzip();
         Ok(())
     }
 

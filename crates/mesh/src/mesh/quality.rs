@@ -3,6 +3,8 @@
 use super::fill::Filled;
 use crate::error::{Error, Result};
 use crate::named::unknown;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// What happens to cells below the least quality.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -61,41 +63,56 @@ impl Gate {
     }
 }
 
-/// The quality of the cells of a mesh.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// The quality of the mesh.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "QualityRecord")]
 #[non_exhaustive]
 pub struct Quality {
-    /// The worst of all cells.
-    pub worst: Option<Worst>,
-    /// The number of cells below the least quality that were kept.
-    pub poor: usize,
+    /// The least quality of an element is from 0 for flat to 1 for right angles.
+    pub worst: Option<f64>,
+    /// The element and number of the cell say where the least quality is.
+    pub worst_cell: Option<String>,
+    /// This number of elements is below the limit; it is null if quality was not measured, as for a generated mesh.
+    #[serde(rename = "poor_elements")]
+    pub poor: Option<usize>,
     /// The least quality that was required.
+    #[serde(skip)]
     pub least: f64,
     /// The curved cells that were kept and fold between their quadrature points, in words, and their number.
+    #[serde(skip)]
     pub folding: Option<(usize, String)>,
-    /// The number of cells removed for poor quality, or because they are flat or tangled.
+    /// This number of elements was left out because they are poor, flat or tangled.
+    #[serde(rename = "skipped_elements")]
     pub skipped: usize,
-    /// The number of cells removed because they have the nodes of another cell.
+    /// This number of elements was left out because another has the same nodes.
+    #[serde(rename = "duplicate_elements")]
     pub duplicates: usize,
-    /// The number of cells removed because they are folded over their neighbours.
+    /// This number of elements was left out because they are folded over their neighbours.
+    #[serde(rename = "folded_elements")]
     pub folded: usize,
     /// The cells that were reversed, in words, if they are not all.
+    #[serde(skip)]
     pub turned: Option<String>,
-    /// The number of points at the position of another point; `None` if this was not tested, or if the coordinates are
-    /// too coarse.
+    /// This number of nodes is at the place of another; it is null if coordinates are too coarse to tell.
+    #[serde(rename = "coincident_nodes")]
     pub coincident: Option<usize>,
-    /// The number of points on an edge or a face of a cell that does not have them; `None` as for `coincident`, and for
-    /// meshes that are generated or divided.
+    /// This number of nodes is on edges or faces that do not have them. It is null if coordinates are too coarse to tell, or if the mesh
+    /// was generated or divided.
+    #[serde(rename = "hanging_nodes")]
     pub hanging: Option<usize>,
     /// The number of cells that lie over others on the same side of an edge or a face that they share.
+    #[serde(skip)]
     pub overlapping: usize,
     /// The number of cells that have points or middles of cells of another piece of the mesh inside them.
+    #[serde(skip)]
     pub crossing: usize,
     /// The fill of a surface, beside it.
+    #[serde(skip)]
     pub filled: Option<Filled>,
     /// Whether most cells of a surface in space share no node with another, though they have corners at the same places or on the same edges.
+    #[serde(skip)]
     pub unwelded: bool,
-    /// Parts of the mesh that share no node, see [`Mesh::pieces`](super::Mesh::pieces); `None` where they were not counted.
+    /// The mesh has this number of parts that share no node; it is null if they were not counted.
     pub pieces: Option<usize>,
 }
 

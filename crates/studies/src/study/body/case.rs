@@ -98,13 +98,19 @@ impl Case {
         let at_points = || self.measured.iter().flat_map(|field| field.displacements.chunks_exact(mesh.dimension));
         let points = self.measured.as_ref().map(|_| at_points().filter(known).count())?;
         let size = |point: &[Option<f64>]| norm(&point.iter().map(|u| u.unwrap_or(0.0)).collect::<Vec<_>>());
+        let error = self.error(mesh, fem, fem);
+        let uncertainty = self.finer.and_then(|finer| finer.uncertainty);
         Some(Measured {
-            points,
+            load: self.name.clone(),
             standard: self.finer.map_or(Standard::Measurement, |finer| finer.standard),
+            points,
             largest: at_points().filter(known).map(size).reduce(f64::max),
-            error: self.error(mesh, fem, fem),
-            work_error: self.work_error(work, work),
-            uncertainty: self.finer.and_then(|finer| finer.uncertainty),
+            fem_e_rms: error.map(|error| error.rms),
+            fem_e_max: error.map(|error| error.max),
+            fem_e_tip: error.map(|error| error.tip),
+            fem_e_energy: self.work_error(work, work),
+            uncertainty_rms: uncertainty.map(|error| error.rms),
+            uncertainty_max: uncertainty.map(|error| error.max),
         })
     }
 }

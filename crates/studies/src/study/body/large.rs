@@ -8,9 +8,11 @@ use crate::material::EnergyMap;
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::Network;
 use crate::model::{Body, Elastic, check_body, displaced};
+use crate::number::finite;
 use crate::solve::{Ending, Equilibrium, Newton, System};
 use crate::study::outcome::{Followed, LoadOutcome};
 use crate::study::progress::{Event, Progress};
+use std::sync::Arc;
 
 /// The finite element solutions of a scene whose material has a law.
 pub struct LargeBody {
@@ -113,8 +115,9 @@ impl LargeBody {
             loads.push(LoadOutcome {
                 name: case.name.clone(),
                 error: compared.and_then(|u| case.error(mesh, &self.displacements[i], u)),
+                largest_displacement: displacement.as_ref().and_then(|u| finite(mesh.largest_motion(u))),
                 work_error: case.work_error(self.works[i], own),
-                displacement,
+                displacement: displacement.map(Arc::new),
                 seconds_fem: self.seconds[i],
                 seconds_lem,
                 solved_fem: None,

@@ -9,9 +9,11 @@ use crate::error::{ErrorKind, Result};
 use crate::material::{CellMap, Hooke};
 use crate::mesh::Mesh;
 use crate::model::{Network, Support};
+use crate::number::finite;
 use crate::solve::{Equations, Stability, Standing, StaticMethod, StaticSolver};
 use crate::study::outcome::LoadOutcome;
 use crate::study::progress::{Event, Progress};
+use std::sync::Arc;
 
 /// The finite element solutions, and the parts of them that the comparison with a network reuses.
 pub struct LinearBody {
@@ -198,8 +200,9 @@ fn outcome(mesh: &Mesh, (body, network): (&BodyAnswer, NetworkAnswer), case: &Ca
     LoadOutcome {
         name: case.name.clone(),
         error: displacement.as_ref().and_then(|u| case.error(mesh, &body.displacement, u)),
+        largest_displacement: displacement.as_ref().and_then(|u| finite(mesh.largest_motion(u))),
         work_error: case.work_error(body.work, work),
-        displacement,
+        displacement: displacement.map(Arc::new),
         seconds_fem: body.seconds,
         seconds_lem: seconds,
         solved_fem: Some(body.solved.clone()),

@@ -10,7 +10,7 @@ use crate::number::finite;
 use crate::study::checkpoint::Controls;
 use crate::study::fits::NamedFit;
 use crate::study::jobs::{apart, each_of};
-use crate::study::outcome::{FitOutcome, Outcome};
+use crate::study::outcome::{FitOutcome, Measured, Outcome};
 use crate::study::own_name::BODY;
 use crate::study::progress::Progress;
 use crate::study::run::run_with;
@@ -191,11 +191,11 @@ fn of_scene(record: MethodRecord, found: &FitOutcome, outcome: &Outcome) -> Meth
 
 /// The finite elements of the mesh, with their errors where these are known.
 fn of_body(outcome: &Outcome) -> MethodRecord {
-    let known = |load: &crate::study::BodyLoad| load.measured.and_then(|measured| measured.error);
-    let error = |of: fn(&crate::study::DisplacementError) -> f64| -> Vec<Option<f64>> {
-        outcome.loads.iter().map(|load| known(load).as_ref().map(of).and_then(finite)).collect()
+    let error = |of: fn(&Measured) -> Option<f64>| -> Vec<Option<f64>> {
+        outcome.loads.iter().map(|load| load.measured.as_ref().and_then(of)).collect()
     };
-    let values = [("e_rms", error(|e| e.rms)), ("e_max", error(|e| e.max)), ("e_tip", error(|e| e.tip))];
+    let values =
+        [("e_rms", error(|e| e.fem_e_rms)), ("e_max", error(|e| e.fem_e_max)), ("e_tip", error(|e| e.fem_e_tip))];
     let model = outcome.model_times.as_ref();
     // Linear finite elements do not turn: their matrix is factorised once, that of springs in each step.
     let turns = outcome.law.is_some();

@@ -291,7 +291,7 @@ fn steps(scene: &Scene, outcome: &Outcome) -> Result<(Vec<bool>, Vec<Vec<Step>>)
         let network_stiffness = stiffness(&|| fit.network.stiffness(&mesh.points));
         let large = energy.as_ref().map(|_| &fit.network as &dyn Elastic);
         for (i, (load, quantity)) in fit.loads.iter().zip(&quantities).enumerate() {
-            let u = load.displacement.as_ref();
+            let u = load.displacement.as_deref();
             let body = &outcome.loads[i].fem;
             let against =
                 |u: &Vec<f64>| steps[i][0].compliance.and_then(|_| displacement_error(body, u, mesh.dimension));

@@ -8,6 +8,7 @@ use crate::number::or_nan;
 use crate::solve::{Ending, Solved};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A load of a scene, and the response of the finite elements.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,22 +41,38 @@ pub struct BodyLoad {
     pub lacking: Option<f64>,
 }
 
-/// Displacements that the errors under a load are relative to, in place of those of the finite elements of the mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A load whose errors are not relative to the finite elements of the mesh.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "MeasuredRecord")]
 #[non_exhaustive]
 pub struct Measured {
-    /// The number of points at which at least one component is known; 0 if nothing is known of the answer of the body.
-    pub points: usize,
-    /// Where they are from.
+    /// The load has this name.
+    pub load: String,
+    /// Errors are relative to displacements from there.
+    #[serde(default)]
     pub standard: Standard,
-    /// The largest of them, m; `None` if nothing is known.
+    /// This number of points has a known displacement; 0 says that the errors are not known.
+    pub points: usize,
+    /// The largest known displacement is this, m.
+    #[serde(default)]
     pub largest: Option<f64>,
-    /// The error of the finite elements; `None` if no measured point moves.
-    pub error: Option<DisplacementError>,
-    /// By how many percent the compliance of the finite elements exceeds theirs, as for a network; `None` of a measurement.
-    pub work_error: Option<f64>,
-    /// Their own error, estimated by the difference of two levels; `None` if it is not known.
-    pub uncertainty: Option<DisplacementError>,
+    /// The finite elements have this root mean square distance from the known displacements, percent of the largest.
+    pub fem_e_rms: Option<f64>,
+    /// The finite elements have this largest distance from the known displacements, percent of the largest.
+    pub fem_e_max: Option<f64>,
+    /// The finite elements have this error at the point that moves most, percent of the largest displacement.
+    #[serde(default)]
+    pub fem_e_tip: Option<f64>,
+    /// The finite elements have this error of the compliance, percent; it is null where displacements were measured.
+    #[serde(default)]
+    pub fem_e_energy: Option<f64>,
+    /// The known displacements are themselves right to about this root mean square distance, percent of the largest; it is null where that
+    /// is not known.
+    #[serde(default)]
+    pub uncertainty_rms: Option<f64>,
+    /// The known displacements are themselves right to about this largest distance, percent of the largest.
+    #[serde(default)]
+    pub uncertainty_max: Option<f64>,
 }
 
 /// What gives the displacements that errors are relative to.
@@ -95,34 +112,43 @@ impl Standard {
     }
 }
 
-/// A load, and the response of a network.
-#[derive(Debug, Clone, PartialEq)]
+/// The answer of a network to a load.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "LoadRecord")]
 #[non_exhaustive]
 pub struct LoadOutcome {
-    /// The name of the load.
+    /// The load has this name.
     pub name: String,
-    /// The displacements of the network, `[points · dimension]`, m; `None` if it is not stable.
-    pub displacement: Option<Vec<f64>>,
+    /// The displacements of the network, `[points · dimension]`, m, which copies share; `None` if it is not stable.
+    #[serde(skip)]
+    pub displacement: Option<Arc<Vec<f64>>>,
     /// The error relative to the finite elements or the measurement; `None` if the network is not stable or nothing
     /// moves.
+    #[serde(flatten, serialize_with = "DisplacementError::or_null")]
     pub error: Option<DisplacementError>,
-    /// By how many percent the compliance under the load exceeds that of the finite elements, from the work `w = f·u` of the
-    /// forces: `100 (w/w_FEM − 1)`, or `100 (w_FEM/w − 1)` with the forces that hold prescribed displacements. Positive means that
-    /// the network is too soft. `None` also if displacements were measured.
+    /// The network moves by at most this, m; it is null where it has no equilibrium.
+    #[serde(default)]
+    pub largest_displacement: Option<f64>,
+    /// The network is softer than the finite elements by this error of the compliance, percent. With the work w of the load it is `w/w_FEM
+    /// − 1`; where displacements are prescribed, with the work of the forces that hold them, `w_FEM/w − 1`.
+    #[serde(rename = "e_energy")]
     pub work_error: Option<f64>,
-    /// The time to assemble, factorise and solve the finite elements, as if this were the only load, s.
+    /// The finite elements took this processor time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_fem: f64,
-    /// The time to assemble, factorise and solve the network, as if this were the only load, s.
+    /// The network took this processor time in s to assemble, factorise and solve, as if this were the only load.
     pub seconds_lem: f64,
-    /// How the equations were solved; at large deformation they are many.
+    /// `solver_fem` says how the equations of the finite elements were solved; it is null at large deformation.
+    #[serde(rename = "solver_fem")]
     pub solved_fem: Option<Solved>,
-    /// How the equations of the network were solved; at large deformation they are many.
+    /// `solver_lem` says how the equations of the network were solved; it is null at large deformation or without an answer.
+    #[serde(rename = "solver_lem")]
     pub solved_lem: Option<Solved>,
     /// Why there are no displacements of a network that is not stable, if they were sought.
+    #[serde(skip)]
     pub unsolved: Option<String>,
-    /// At large deformation, how the load was applied to the network.
+    /// `followed` says how far the network followed the load at large deformation; it is null at small deformation.
     pub followed: Option<Followed>,
-    /// The gauge's reading of the network.
+    /// `gauge` has what the tension test of the network gives; it is null without `[gauge]`.
     pub gauge: Option<Reading>,
 }
 

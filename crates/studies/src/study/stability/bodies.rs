@@ -207,7 +207,7 @@ fn mesh_row(case: &str, source: &MeshSource, hold: bool) -> StabilityRow {
     say(mesh.unused_points, "nodes left out");
     say(mesh.quality.coincident.unwrap_or(0), "nodes at the place of another");
     say(mesh.quality.hanging.unwrap_or(0), "nodes that hang");
-    say(mesh.quality.poor, "cells of poor quality");
+    say(mesh.quality.poor.unwrap_or(0), "cells of poor quality");
     let mut support = Support::free(&mesh);
     if hold {
         let left: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
