@@ -84,6 +84,7 @@ pub use motion::motion_csv;
 pub use motion_record::{MotionOptionsRecord, MotionRecord};
 pub use network::*;
 pub use notes::{groups_beside_summary, notes, notes_beside_summary, of_locking};
+pub use object::Object;
 pub use outputs::{open_outputs, open_scene_outputs};
 pub use page::page_html;
 pub use paper::{PAPER_FILES, paper_table, write_paper};
