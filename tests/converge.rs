@@ -567,7 +567,9 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
             let apart = (found.value - right.value).abs();
             println!("{element} {poisson}: truth {:e}, {:e}", found.value, right.value);
             assert!(apart <= found.uncertainty + right.uncertainty + 0.005 * right.value, "{found:?} {right:?}");
-            assert!(own.reference.as_deref() == Some("quadratic elements") && own.notes[0].contains("linear cells lock"));
+            assert!(
+                own.reference.as_deref() == Some("quadratic elements") && own.notes[0].contains("linear cells lock")
+            );
         }
     }
     let other = scene(

@@ -817,7 +817,8 @@ fn cells_stay_in_the_order_of_their_file() {
     let mut deck = format!("*NODE\n{}*ELEMENT, TYPE=CPS4\n", points(&|p| format!("{}, ", p + 1), ", ", ""));
     deck += &lines(&|cell| format!("{}, {}\n", cell + 1, nodes(cell, 1, ", ")));
     for part in 1..=3 {
-        let own: Vec<String> = (0..count).filter(|cell| mark(*cell) == part).map(|cell| (cell + 1).to_string()).collect();
+        let own: Vec<String> =
+            (0..count).filter(|cell| mark(*cell) == part).map(|cell| (cell + 1).to_string()).collect();
         writeln!(deck, "*ELSET, ELSET=P{part}\n{}", own.join(", ")).unwrap();
     }
     let folder = tempfile::TempDir::new().unwrap();

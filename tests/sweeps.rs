@@ -386,6 +386,17 @@ fn a_sweep_is_drawn_over_its_key() {
     let words = refused(folder, "plot o --figure sweep --of material.thickness");
     assert!(words.contains("--of: expected a key with several numbers: material.poisson, material.young"), "{words}");
     assert!(refused(folder, "plot . --figure sweep").contains("has no studies"));
+    // A fit that is right to rounding is below the others, with its name.
+    let scene = read(folder, "s.toml").replace("\"spectral\"", "\"exact\"");
+    fs::write(folder.join("s.toml"), scene).unwrap();
+    done(folder, "sweep s.toml --out exact");
+    let svg = done(folder, "plot exact --figure sweep --of material.poisson");
+    assert!(svg.contains("frobenius") && svg.contains("exact (at most "), "{svg}");
+    // A sweep of fewer values tells of the studies that the folder has besides.
+    let scene = read(folder, "s.toml").replace("[0.0, 0.2, 0.4]", "[0.0, 0.4]");
+    fs::write(folder.join("s.toml"), scene).unwrap();
+    let told = String::from_utf8(springfit(folder, "sweep s.toml --out exact --resume").stderr).unwrap();
+    assert!(told.contains("the folder has 2 studies of other values"), "{told}");
 }
 
 /// The page has the figure and the table, and one of others is not replaced.

@@ -42,7 +42,8 @@ def fit(
         objective: "exact" (the default: the network is the finite element), "frobenius", "offdiag", "modal", "spectral",
             "divergence", "sampled", or a published method.
         springs: Names of spring groups, or a word for several such as "all + volume"; all that are not optional, if None.
-        fix: What is held in a fit to the whole object, as in :meth:`Network.solve`; such fits alone have it.
+        fix: What is held, as in :meth:`Network.solve`, of fits to the whole object, and of exact networks with ``volume="patches"``, whose held points
+            have no patches; other fits do not depend on it.
         progress: True shows a bar (by ``tqdm`` where it is installed); or a function of (stage, done, total).
         **keys: The other keys of a ``[[fit]]`` in a scene, such as ``nonnegative=True`` or ``volume="patches"``.
 
@@ -54,8 +55,11 @@ def fit(
     """
     check_body(mesh, material)
     entry: "dict[str, Any]" = {"objective": objective, "springs": springs, **keys}
-    if fix is not None and objective != "whole":
-        raise failure("fix", 'what is held with the objective "whole" alone', f'it with "{objective}"')
+    has_patches = objective == "exact" and keys.get("volume") == "patches"
+    if fix is not None and objective != "whole" and not has_patches:
+        raise failure("fix", 'what is held with the objective "whole" or volume = "patches" alone', f'it with "{objective}"')
+    if fix is None and has_patches:
+        warn("no point is held: patches of points that will be held lock as cells do; fix says what is held")
     held = None if fix is None else held_flags(mesh.points.shape, mesh.groups, fix)
     entry, functions = separated(entry)
     if functions is not None and functions["energy"] is not None:

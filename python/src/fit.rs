@@ -70,7 +70,11 @@ pub fn fit(
             (Some(_), None) => return Err(Error::expected("fix", "what is held, for whole-object fits", "nothing")),
             (None, _) => None,
         };
-        let reference = Reference { whole: whole.as_ref(), ..Reference::default() };
+        // Points that are held in all directions belong to no patch.
+        let d = body.dimension;
+        let is_held = |point: usize| support.as_ref().is_some_and(|own| (0..d).all(|k| own.is_fixed(point * d + k)));
+        let held: Vec<bool> = (0..body.point_count()).map(is_held).collect();
+        let reference = Reference { whole: whole.as_ref(), held: &held, ..Reference::default() };
         let (fit, cells) = fit_without_errors(&body, &map, &reference, &named, told)?;
         let assumed = stated.assumption(&body);
         let outcome = Outcome::of_fit(String::new(), body.into_owned(), map, masses, fit);

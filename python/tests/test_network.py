@@ -298,3 +298,20 @@ def test_sheets_that_bend_are_pickled():
         assert len(again) == len(net) and again.points.shape == net.points.shape
         moved = net.points + 1e-3 * np.sin(7 * net.points[:, [1, 2, 0]])
         assert again.energy(moved[None]) == pytest.approx(net.energy(moved[None]), rel=1e-12)
+
+
+def test_patches_know_what_is_held():
+    mesh = sf.Mesh.box("tri3", size=[2.0, 1.0], cells=[8, 4])
+    keys = {"shear": "edges", "volume": "patches"}
+    material = {"young": 1e4, "poisson": 0.4999, "thickness": 0.01, "plane": "strain"}
+    load = {"name": "lift", "group": "xmax", "force": [0, 0.1]}
+    scene = {"mesh": mesh, "material": material, "fix": [{"group": "xmin"}], "load": [load], "fit": [{"objective": "exact", **keys}]}
+    known = next(u for name, u in sf.run(scene).displacements["lift"].items() if name)
+    net = sf.fit(mesh, sf.Material(**material), fix="xmin", **keys)
+    found = net.solve("xmin", {"xmax": [0, 0.1]})
+    assert np.abs(found - known).max() <= 1e-9 * np.abs(known).max()
+    with pytest.warns(UserWarning, match="no point is held"):
+        stiffer = sf.fit(mesh, sf.Material(**material), **keys).solve("xmin", {"xmax": [0, 0.1]})
+    assert np.abs(stiffer).max() < 0.95 * np.abs(known).max()
+    with pytest.raises(sf.SpringfitError, match="fix"):
+        sf.fit(mesh, sf.Material(**material), "frobenius", fix="xmin")

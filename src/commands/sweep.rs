@@ -83,8 +83,7 @@ impl Sweep {
             StudyTable::of(sweep.keys(), sweep.studies(), of_shard)
         };
         let path = folder.join(name);
-        let all: HashSet<&str> = marks.iter().map(String::as_str).collect();
-        let beyond = lines.beyond(&all);
+        let beyond = lines.beyond();
         if beyond > 0 {
             terminal.note(&format!(
                 "the folder has {beyond} studies of other values: the table leaves them out, and figures of the folder have them as well"

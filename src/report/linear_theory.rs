@@ -18,15 +18,20 @@ pub struct DeformationRecord {
     pub rotation: Option<f64>,
     /// The deformation is beyond the linear theory: 10 % of strain or 0.1 rad.
     pub beyond_linear: bool,
+    /// The finite elements lack about this share of the body's energy, because their cells are linear; it is null where the body does not bend, and where
+    /// the share is not known.
+    #[serde(default)]
+    pub lacking_energy: Option<f64>,
 }
 
 impl DeformationRecord {
-    fn new(load: Option<&str>, deformation: Deformation) -> DeformationRecord {
+    fn new(load: Option<&str>, deformation: Deformation, lacking: Option<f64>) -> DeformationRecord {
         DeformationRecord {
             load: load.map(str::to_string),
             strain: finite(deformation.strain),
             rotation: finite(deformation.rotation),
             beyond_linear: deformation.exceeds(Deformation::LINEAR),
+            lacking_energy: lacking.and_then(finite),
         }
     }
 
@@ -35,8 +40,8 @@ impl DeformationRecord {
         let loads = outcome.loads.iter().filter_map(of_load);
         let motion = moved(outcome).and_then(|body| body.deformation);
         loads
-            .map(|(load, deformation)| DeformationRecord::new(Some(&load.name), deformation))
-            .chain(motion.map(|deformation| DeformationRecord::new(None, deformation)))
+            .map(|(load, deformation)| DeformationRecord::new(Some(&load.name), deformation, load.lacking))
+            .chain(motion.map(|deformation| DeformationRecord::new(None, deformation, None)))
             .collect()
     }
 }

@@ -17,6 +17,11 @@ pub(super) fn is_material(outcome: &Outcome, fit: &FitOutcome) -> bool {
     if outcome.mesh.is_mixed() && !m.distance.is_finite() {
         return true;
     }
+    // The tensor of several materials is compared with that of finite elements. Where these lock, networks that do not are rightly another.
+    let is_unlocked = fit.kind.exact().is_some_and(|exact| !exact.is_finite_elements());
+    if is_unlocked && outcome.locks_at().is_some() && outcome.material.uniform().is_none() {
+        return true;
+    }
     // Near the incompressible the tensor is nearly that of changes of volume: E says what it does not.
     let is_near = |(young, asked): (f64, f64)| (young / asked - 1.0).abs() <= FAR;
     m.distance <= FAR && m.young.zip(m.asked_young).is_some_and(is_near)

@@ -11,7 +11,7 @@ use super::sheets::sheet_notes;
 use crate::mesh::{CellBlock, Filled};
 use crate::model::{Lumping, is_balanced};
 use crate::solve::{Ending, Standing};
-use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, spurious_modes};
+use crate::study::{BODY, BodyLoad, FitOutcome, Followed, GaugeResult, Outcome, Standard, spurious_modes};
 
 /// What a reader must know before trusting a row, one sentence for each model or load, the dearest first.
 pub fn notes(outcome: &Outcome) -> Vec<String> {
@@ -70,8 +70,12 @@ fn measured(outcome: &Outcome) -> Vec<Note> {
         let error = measured.fem_e_rms.zip(measured.fem_e_max);
         let error = error.map_or("-".into(), |(rms, max)| format!("e_rms / e_max {rms:.2} / {max:.2} %"));
         let own = measured.uncertainty_rms.zip(measured.uncertainty_max);
-        let own = own
-            .map_or(String::new(), |(rms, max)| format!(", which themselves are right to about {rms:.2} / {max:.2} %"));
+        let is_alone = own.is_none() && measured.standard == Standard::Quadratic;
+        let own = match own {
+            Some((rms, max)) => format!(", which themselves are right to about {rms:.2} / {max:.2} %"),
+            None if is_alone => ", whose own error is not known without halved cells".into(),
+            None => String::new(),
+        };
         let words =
             format!(" are relative to the displacements {} at {} points", measured.standard.words(), measured.points);
         let note = Note::of_load(Weight::Reference, "errors under ", &load.name, words);

@@ -96,6 +96,8 @@ pub struct StudyLines<R> {
     path: PathBuf,
     /// By [`Line::mark`].
     records: HashMap<String, R>,
+    /// The marks of studies that are not asked for.
+    beyond: HashSet<String>,
 }
 
 impl StudyLines<CaseRecord> {
@@ -166,7 +168,7 @@ impl<R: Line> StudyLines<R> {
             );
             return Err(Error::new(words).in_file(&path));
         }
-        let mut lines = StudyLines { file, path, records: HashMap::new() };
+        let mut lines = StudyLines { file, path, records: HashMap::new(), beyond: HashSet::new() };
         let own = lines.path.clone();
         for other in others.iter().filter(|other| **other != own) {
             let text = read_text(other)?;
@@ -195,7 +197,10 @@ impl<R: Line> StudyLines<R> {
             }
             let mark = record.mark();
             // Studies that are no longer asked for stay in the file.
-            let Some(sum) = expected(&mark) else { continue };
+            let Some(sum) = expected(&mark) else {
+                self.beyond.insert(mark);
+                continue;
+            };
             if record.inputs() != sum {
                 let found = match changed(record.inputs(), &sum) {
                     Some(names) => format!("one with another {names}"),
@@ -210,9 +215,9 @@ impl<R: Line> StudyLines<R> {
         Ok(())
     }
 
-    /// The number of studies whose marks are none of these.
-    pub fn beyond(&self, marks: &HashSet<&str>) -> usize {
-        self.records.keys().filter(|mark| !marks.contains(mark.as_str())).count()
+    /// The number of studies in the files that are not asked for.
+    pub fn beyond(&self) -> usize {
+        self.beyond.len()
     }
 
     /// The record of the study of these values.

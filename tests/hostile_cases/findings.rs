@@ -326,3 +326,53 @@ fn the_stress_of_a_pulled_lattice_is_a_tension() {
     let stress: Vec<f64> = found["tension"]["stress"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).collect();
     assert!((stress[0] - 10.0).abs() < 1e-9 && (stress[1] - 10.0).abs() < 1e-9 && stress[2].abs() < 1e-9, "{stress:?}");
 }
+
+/// Cells lock where a change of volume is much stiffer than one of shape, whatever constants say so, and networks that do not lock are not called another
+/// material because of elements that do.
+#[test]
+fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
+    let text = |material: &str, fits: &str| {
+        format!(
+            "[mesh]\nbox = {{ element = \"hex8\", size = [0.1, 0.02, 0.02], cells = [10, 3, 3] }}\n{material}{fits}[[fix]]\ngroup = \"xmin\"\n[[load]]\n\
+             name = \"l\"\ngroup = \"xmax\"\ntraction = [0, 0, 5]\n"
+        )
+    };
+    let run = |text: String| -> serde_json::Value {
+        let folder = folder_with(&[("s.toml", text)]);
+        prints(folder.path(), &["run", "s.toml", "--out", "out"]);
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap()
+    };
+    let frobenius = "[[fit]]\nobjective = \"frobenius\"\n";
+    let isotropic = run(text("[material]\nyoung = 1e4\npoisson = 0.4999\n", frobenius));
+    // The same numbers: λ + 2μ, λ and μ.
+    let (mu, lambda): (f64, f64) = (1e4 / (2.0 * 1.4999), 1e4 * 0.4999 / (1.4999 * 0.0002));
+    let cubic = format!("[material.cubic]\nc11 = {:?}\nc12 = {lambda:?}\nc44 = {mu:?}\n", lambda + 2.0 * mu);
+    let cubic = run(text(&cubic, frobenius));
+    for key in ["finite_elements_verdict", "measured"] {
+        assert!(isotropic[key] == cubic[key] || key == "measured", "{key}: {} {}", isotropic[key], cubic[key]);
+    }
+    assert_eq!(cubic["finite_elements_verdict"], "locks");
+    let off = |report: &serde_json::Value| report["measured"][0]["fem_e_max"].as_f64().unwrap();
+    assert!((off(&cubic) / off(&isotropic) - 1.0).abs() < 1e-6, "{} {}", off(&cubic), off(&isotropic));
+    // Muscle: stiff along its fibres, and nearly incompressible. Wood is not, though its shear is soft.
+    let fibres = |young: &str, poisson: &str, shear: f64| {
+        format!("[material.transversely-isotropic]\nyoung = {young}\npoisson = {poisson}\nshear = {shear}\n[material]\naxes = [[1, 0, 0]]\n")
+            .replace("[material.transversely-isotropic]\n", "[material]\ntransversely-isotropic = { ")
+            .replace("\npoisson", ", poisson")
+            .replace("\nshear", ", shear")
+            .replace("\n[material]\n", " }\n")
+    };
+    let muscle = run(text(&fibres("[5e4, 1e4]", "[0.495, 0.89]", 4e3), frobenius));
+    assert_eq!(muscle["finite_elements_verdict"], "locks");
+    let wood = run(text(&fibres("[1e7, 5e5]", "[0.37, 0.4]", 6e5), frobenius));
+    assert_ne!(wood["finite_elements_verdict"], "locks");
+    // Half of the bar is nearly incompressible.
+    let regions = "[[material]]\nwhere = \"x < 0.025\"\nyoung = 1e4\npoisson = 0.4999\n[[material]]\nyoung = 1e4\npoisson = 0.3\n";
+    let both = "[[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"exact\"\nvolume = \"cells\"\n";
+    let report = run(text(regions, both));
+    let verdicts = ["exact", "exact cells"].map(|name| {
+        let fits = report["fits"].as_array().unwrap().iter();
+        fits.clone().find(|fit| fit["name"] == name).unwrap()["verdict"].as_str().unwrap().to_string()
+    });
+    assert_eq!(verdicts, ["locks", "stable"]);
+}

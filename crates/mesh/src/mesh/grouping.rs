@@ -59,7 +59,16 @@ impl<K: Clone + Eq + Hash> Gather<K> {
     }
 
     /// The keys that have cells, with their connectivity.
-    pub fn into_lists(self) -> impl Iterator<Item = Gathered<K>> {
+    pub fn into_lists(mut self) -> impl Iterator<Item = Gathered<K>> {
+        // A key that was asked for may have got no nodes. Without such runs turns depend on the cells alone.
+        for list in &mut self.lists {
+            let ends: Vec<usize> = list.runs.iter().skip(1).map(|run| run.start).chain([list.nodes.len()]).collect();
+            let mut ends = ends.into_iter();
+            list.runs.retain(|run| ends.next() != Some(run.start));
+        }
+        let mut turns: Vec<&mut Run> = self.lists.iter_mut().flat_map(|list| &mut list.runs).collect();
+        turns.sort_unstable_by_key(|run| run.turn);
+        turns.into_iter().enumerate().for_each(|(turn, run)| run.turn = turn);
         self.lists.into_iter().filter(|list| !list.nodes.is_empty())
     }
 }

@@ -26,6 +26,8 @@ const POLYHEDRON: &str = "the body keeps the straight edges of the coarsest mesh
 const FACETS: &str = "the surface keeps the flat cells of the coarsest mesh on all levels";
 /// The note for a scene whose body is not that of its reference.
 const DIFFERS: &str = "the bodies differ by more than rounding";
+/// So many points quadratic elements on the finest level may have, which is some seconds.
+const FINEST: usize = 60_000;
 /// A level that takes longer is announced, s.
 const LONG: f64 = 10.0;
 /// A fit that takes longer on that level is named, s.
@@ -108,9 +110,10 @@ fn of_levels(
                 quadratic
             });
         }
-        // On the cells of a level quadratic elements have as many unknowns as linear ones on the next: those of the finest cells would take more than all
-        // levels together. A limit needs two levels at least.
-        if level + 1 < count || count < 3 {
+        // On the cells of a level quadratic elements have as many unknowns as linear ones on the next: those of the finest cells of many levels would take
+        // more than all levels together. A limit is extrapolated from three levels.
+        let growth = 1 << outcome.mesh.cell_dimension();
+        if level + 1 < count || level < 3 && growth * outcome.mesh.point_count() <= FINEST {
             notes.extend(quadratic.as_mut().and_then(|quadratic| quadratic.add(refined, &outcome.mesh, &mut staged)));
         }
         for (load, steps) in steps.into_iter().enumerate() {
