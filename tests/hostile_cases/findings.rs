@@ -375,4 +375,16 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
         fits.clone().find(|fit| fit["name"] == name).unwrap()["verdict"].as_str().unwrap().to_string()
     });
     assert_eq!(verdicts, ["locks", "stable"]);
+    // Quadratic cells are too stiff there as well where they are few, and only finer ones tell by how much.
+    for (poisson, more, is_told) in
+        [("0.4999", "", true), ("0.45", "", false), ("0.4999", "[reference]\nrefine = 1\n", false)]
+    {
+        let material = format!("[material]\nyoung = 1e4\npoisson = {poisson}\n");
+        let text = text(&material, "[[fit]]\nobjective = \"exact\"\n")
+            .replace("hex8", "hex20")
+            .replace("[10, 3, 3]", "[3, 1, 1]");
+        let report = run(text + more);
+        let is_noted = report["notes"].to_string().contains("cells of higher order are too stiff on coarse meshes");
+        assert_eq!(is_noted, is_told, "{poisson} {more}: {}", report["notes"]);
+    }
 }

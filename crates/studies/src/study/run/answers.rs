@@ -73,6 +73,9 @@ impl Answers {
                 (displacements, works, vec![None; count], None, bent, too_stiff)
             }
         };
+        if count > 0 {
+            posed.tell_of_higher_order();
+        }
         if let Some(gauged) = &posed.gauged {
             fits.iter_mut().for_each(|fit| gauged.measure(&posed.mesh, &mut fit.loads));
         }

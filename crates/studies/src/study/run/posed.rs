@@ -84,6 +84,17 @@ impl<'a> Posed<'a> {
         }
     }
 
+    /// Says that cells of higher order may be too stiff as well, where nothing finer says by how much.
+    pub fn tell_of_higher_order(&mut self) {
+        let found = Locking::of_higher_order(&self.mesh, &self.material).filter(|_| self.scene.reference().is_none());
+        if let Some(Locking { poisson, .. }) = found {
+            self.of_reference.push(format!(
+                "at nu = {poisson} cells of higher order are too stiff on coarse meshes as well, and errors are relative to them: [reference] with refine = 1 \
+                 compares with halved cells"
+            ));
+        }
+    }
+
     /// Says that the triangles of a sheet that bends are too large for its loads.
     pub fn judge_sheet<'b>(&mut self, displacements: impl Iterator<Item = &'b Vec<f64>>, progress: &mut Progress) {
         self.of_reference.extend(judge_sheet(self.scene, &self.mesh, &self.cases, displacements, progress));
