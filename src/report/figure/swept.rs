@@ -12,6 +12,8 @@ use serde_json::Value;
 
 /// The errors at each value of a key.
 type Errors = Vec<(f64, Vec<f64>)>;
+/// A fit with its median error at each value of the key.
+type Medians = (String, Vec<(f64, f64)>);
 
 /// A curve for each fit: the median over all studies and loads of the error e_rms at each value of the key, which is the first one with
 /// several numbers unless it is named.
@@ -66,17 +68,17 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
             }
         }
     }
-    let medians = |(name, mut points): (String, Errors)| {
+    let medians = |(name, mut points): (String, Errors)| -> Medians {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let points = points.iter().filter(|(_, errors)| !errors.is_empty()).map(|(at, errors)| (*at, median(errors)));
-        (name, points.collect::<Vec<(f64, f64)>>())
+        (name, points.collect())
     };
-    let curves: Vec<(String, Vec<(f64, f64)>)> = curves.into_iter().map(medians).collect();
+    let curves: Vec<Medians> = curves.into_iter().map(medians).collect();
     let errors = || curves.iter().flat_map(|(_, points)| points).map(|(_, error)| *error);
     // Errors that are rounding, in percent, have no place on a logarithmic axis.
     let is_shown = |error: &f64| *error > 1e-9;
     let least = errors().filter(is_shown).fold(f64::INFINITY, f64::min);
-    let curve = |(place, (name, points)): (usize, &(String, Vec<(f64, f64)>))| {
+    let curve = |(place, (name, points)): (usize, &Medians)| {
         let largest = points.iter().map(|(_, error)| *error).fold(0.0, f64::max);
         // A fit that is rounding at all values is below the others, with its largest number in the legend.
         let is_below = least.is_finite() && !is_shown(&largest);

@@ -91,7 +91,7 @@ pub enum TooStiff {
 pub const LACKING: f64 = 0.15;
 
 impl TooStiff {
-    /// Finds why the cells of a body resist too much, from what they lack under the loads that bend it, see [`lacking`].
+    /// Finds why the cells of a body resist too much, from what they lack under the loads that bend it.
     pub fn of(mesh: &Mesh, material: &MaterialMap, lacking: &[Option<f64>]) -> Option<TooStiff> {
         let has_bent = lacking.iter().any(Option::is_some);
         Locking::of_body(mesh, material).map(TooStiff::Locks).or_else(|| match has_bent && is_one_cell_across(mesh) {
