@@ -233,6 +233,9 @@ def measure(
         "engine": None if settings is None else json.dumps(dict(settings)),
     }
     vectors = None if cell is None else matrix("cell", cell, np.float64)
+    for key, value in {"periodic": periodic, "table": table}.items():
+        if value is not None and not is_file:
+            raise failure(key, "nothing beside arrays or a network: it belongs to a file", shown(value))
     if is_file or of_network:
         given = {"springs": springs, "constants": constants, "rest": rest, "contents": contents, "mesh": mesh, "masses": masses, "fix": fix}
         for key, value in given.items():

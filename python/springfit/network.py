@@ -123,7 +123,7 @@ def whole(mesh: Mesh, material: MaterialLike, fix: Any, **keys: Any) -> "Network
     Args:
         fix: What is held: the name of a group, places of points, a flag for each point, or for each component (points, dimension). Points
             are numbered as in :attr:`Mesh.points`, without those that belong to no cell.
-        **keys: The other keys of a ``[[fit]]`` with the objective "whole", such as ``unknowns="groups"``; and the options of :func:`fit`.
+        **keys: The other keys of a ``[[fit]]`` with the objective "whole", such as ``unknowns="group"``; and the options of :func:`fit`.
 
     Raises:
         SpringfitError: A key or a value is wrong, or nothing holds a piece of the mesh.

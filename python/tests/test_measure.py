@@ -309,3 +309,12 @@ def test_bad_matrices_are_named(tmp_path):
     (tmp_path / "bad.mtx").write_text("%%MatrixMarket matrix coordinate real general\n2 2 1\n3 1 5\n")
     with pytest.raises(sf.SpringfitError, match="a place from 1 to 2"):
         sf.fit_matrix(tmp_path / "bad.mtx", cube.points)
+
+
+def test_what_belongs_to_files_is_refused_beside_arrays():
+    net = sf.fit(sf.Mesh.box("tet4", size=[1, 1, 1], cells=[1, 1, 1]), sf.Material(1e4, 0.3))
+    for keys in ({"periodic": True}, {"table": "points.csv"}):
+        with pytest.raises(sf.SpringfitError, match=next(iter(keys))):
+            sf.measure(net, **keys)
+        with pytest.raises(sf.SpringfitError, match=next(iter(keys))):
+            sf.measure(net.points, net.springs, net.constants, volumes=1.0, **keys)
