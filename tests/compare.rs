@@ -64,8 +64,8 @@ fn cases_are_all_combinations_and_fits_too() {
     let mut found = found.fit_names();
     found.sort_unstable_by_key(|name| name.contains("free"));
     assert_eq!(found, names);
-    // Entries of their own are told apart alike, by the keys in which they differ, and these keys are columns. Without the key a fit has the
-    // plain name.
+    // Separate entries of one name have the keys in which they differ in their names and as columns. An entry without these keys keeps the plain
+    // name.
     let norms = laws.replace("shapes = { count = [10, 20] }\nname = \"mine\"\n", "");
     let other = "[[compare.fit]]\nobjective = \"sampled\"\nnorm = \"1\"\nweight = \"none\"\n";
     let found = comparing(&format!("{norms}{other}{}", other.replace("\"1\"", "\"max\""))).unwrap();

@@ -9,7 +9,7 @@ use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
-/// A mesh whose groups are told.
+/// A mesh with the name of its file or scene, whose groups are listed.
 #[derive(Debug, Clone)]
 pub struct NamedMesh {
     /// The file, or the title of the scene.

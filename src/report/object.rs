@@ -1,4 +1,4 @@
-//! Objects of JSON that are written from what is told, without a structure of their own.
+//! JSON objects whose keys are listed where they are written, without a structure of their own.
 
 use serde::{Serialize, Serializer};
 use serde_json::Value;

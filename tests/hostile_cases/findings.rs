@@ -344,7 +344,7 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
     };
     let frobenius = "[[fit]]\nobjective = \"frobenius\"\n";
     let isotropic = run(text("[material]\nyoung = 1e4\npoisson = 0.4999\n", frobenius));
-    // The same numbers: λ + 2μ, λ and μ.
+    // The cubic material has the same numbers: λ + 2μ, λ and μ.
     let (mu, lambda): (f64, f64) = (1e4 / (2.0 * 1.4999), 1e4 * 0.4999 / (1.4999 * 0.0002));
     let cubic = format!("[material.cubic]\nc11 = {:?}\nc12 = {lambda:?}\nc44 = {mu:?}\n", lambda + 2.0 * mu);
     let cubic = run(text(&cubic, frobenius));

@@ -60,9 +60,9 @@ struct Recovery<'a> {
 struct CellStrains<'a> {
     /// `N_a` at the quadrature points, `[points × nodes]`.
     values: &'a DMatrix<f64>,
-    /// Those at the quadrature points, `[points × strains]`.
+    /// The strains at the quadrature points, `[points × strains]`.
     at_points: DMatrix<f64>,
-    /// Those at the nodes, `[nodes × strains]`: the shape functions carry them nearest to those at the points.
+    /// The strains at the nodes, `[nodes × strains]`, from which the shape functions come nearest to those at the points.
     corners: DMatrix<f64>,
     /// The contents of the points.
     volumes: Vec<f64>,

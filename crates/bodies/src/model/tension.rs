@@ -25,7 +25,7 @@ pub struct RestTension {
 
 /// Forces at rest balance each other where what is left of them is below this share: files of networks have six digits and more.
 const BALANCED: f64 = 1e-5;
-/// Whether forces of which this share of the largest is left balance each other. A share that is not a number is none of a balance.
+/// Says whether forces balance each other, if this share of the largest one is left at some point. NaN is no balance.
 pub fn is_balanced(left: f64) -> bool {
     left <= BALANCED
 }

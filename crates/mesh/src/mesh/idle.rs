@@ -23,7 +23,7 @@ impl MeshSource {
         let mut source = self.clone();
         for (block, kept) in source.blocks.iter_mut().zip(kept) {
             block.connectivity = kept.map_or_else(|| std::mem::take(&mut block.connectivity), |kept| kept.list);
-            // Those that are left out have moved the others.
+            // The faces that are left out have moved the others, so that runs are no longer where they were.
             block.runs.clear();
         }
         // A file of such faces alone is refused by what it has.

@@ -70,7 +70,7 @@ impl Locking {
 fn nearest_poisson(hooke: &Hooke, dimension: usize) -> f64 {
     let (entries, lambda) = hooke.entries(dimension);
     let (s, d) = (strains(dimension), dimension as f64);
-    // Of the isotropic projection `C_iijj = d² λ + 2 d μ`.
+    // The isotropic projection has `C_iijj = d² λ + 2 d μ`.
     let normal: f64 = (0..dimension).map(|i| entries[i * s..i * s + dimension].iter().sum::<f64>()).sum();
     let mu = (normal - d * d * lambda) / (2.0 * d);
     (1e3 * lambda / (2.0 * (lambda + mu))).round() / 1e3

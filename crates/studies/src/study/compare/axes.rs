@@ -139,9 +139,9 @@ type Values = BTreeMap<String, serde_json::Value>;
 #[derive(Clone, Default)]
 struct Combination {
     table: Table,
-    /// Those of the keys that have lists of values.
+    /// The values of the keys that have lists.
     varied: Values,
-    /// Those of all keys.
+    /// The values of all keys.
     keys: Values,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Quadratic {
 }
 
 impl Quadratic {
-    /// Those on no level, if the cells of the first level lock, with what must be said of it.
+    /// Begins without a level, if the cells of the first one lock. The text says what the truth is.
     pub fn of(outcome: &Outcome) -> Option<(Quadratic, String)> {
         let locking = Locking::of_body(&outcome.mesh, &outcome.material)?;
         let locks = format!(
@@ -33,7 +33,7 @@ impl Quadratic {
         };
         let truth = match loads {
             Some(_) => "it is that of quadratic elements on the same cells",
-            None => "of a law at large deformation none is known without --reference",
+            None => "of a law at large deformation none is known without --truth",
         };
         Some((Quadratic { locking, loads }, format!("{locks}: {truth}")))
     }
