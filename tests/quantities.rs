@@ -101,7 +101,18 @@ fn a_thickness_is_not_assumed_in_silence() {
     let noted = springfit(folder.path(), &["run", "flat.toml"]);
     assert!(noted.status.success() && said(&noted).contains("assumed to be 1 m"), "{}", said(&noted));
     let report = fs::read_to_string(folder.path().join("out/flat/report.json")).unwrap();
-    assert!(report.contains("\"assumed\": \"the thickness"), "{report}");
+    assert!(report.contains("\"assumed\": \"the thickness of the plane body"), "{report}");
+    // Where one of several materials gives a thickness, the others do not have it.
+    let part = scene
+        .replace("roof", "flat")
+        .replace("poisson = 0.3\n", "poisson = 0.3\nthickness = 0.01\nwhere = \"x < 50\"\n");
+    let part = part
+        .replace("[material]", "[[material]]")
+        .replace("[[fit]]", "[[material]]\nyoung = 1\npoisson = 0.3\n[[fit]]");
+    fs::write(folder.path().join("part.toml"), part).unwrap();
+    let noted = springfit(folder.path(), &["run", "part.toml"]);
+    let words = "the thickness of the cells whose material gives none is assumed to be 1 m, not that of the others";
+    assert!(noted.status.success() && said(&noted).contains(words), "{}", said(&noted));
 }
 
 /// Loads in other units are those of the same numbers in N, N·m and m/s², those over time too; another quantity is refused with its place.

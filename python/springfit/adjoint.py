@@ -138,7 +138,8 @@ class Statics:
     with derivatives in all of them.
 
     Args:
-        springs: A :class:`SpringConstants`; or a :class:`Network` without laws of force, whose numbers :attr:`values` has.
+        springs: A :class:`SpringConstants`; or a :class:`Network`, whose numbers :attr:`values` has. The force of a spring
+            with a law is in proportion to its constant, the slope at rest; the law is an expression.
         fix: What is held: places of points, a flag for each point, or for each component (points, dimension). Groups of a network may be
             named; those of a mesh are ``mesh.groups[name]``.
         large: False for small displacements, ``K u = f`` with the tangent K at rest; True for the equilibrium at any deformation, where

@@ -16,7 +16,6 @@ use springfit::mesh::Mesh;
 use springfit::model::{self, CompressedRows, Elastic, Entries, LengthSpring, MeasureSpring, NetworkNumbers, Support};
 use springfit::report::NetworkFacts;
 use springfit::solve::System;
-use springfit::springs::Measure;
 use std::sync::Arc;
 
 /// A list of numbers of NumPy.
@@ -35,8 +34,8 @@ pub struct SpringBody {
     points: usize,
     dimension: usize,
     pairs: Vec<[usize; 2]>,
-    /// The other measures with their points.
-    others: Vec<(SpringKind, Vec<usize>, Measure)>,
+    /// The springs on other measures; those with a law of force have the constant that its parameters belong to.
+    others: Vec<MeasureSpring>,
 }
 
 /// Springs at an equilibrium, or at rest, with the factor of their tangent there under some supports.
@@ -71,26 +70,33 @@ impl SpringBody {
             let measures = rule.measures();
             for nodes in cells.chunks_exact(rule.element.nodes()) {
                 for (kind, (own, measure)) in kinds.iter().zip(&measures) {
-                    others.push((*kind, own.iter().map(|&a| nodes[a]).collect(), measure.clone()));
+                    others.push(MeasureSpring {
+                        kind: *kind,
+                        points: own.iter().map(|&a| nodes[a]).collect(),
+                        constant: 0.0,
+                        rest: 0.0,
+                        measure: measure.clone(),
+                        law: None,
+                    });
                 }
             }
         }
-        if let Some(place) = ends.iter().chain(others.iter().flat_map(|(_, nodes, _)| nodes)).find(|p| **p >= points) {
+        if let Some(place) = ends.iter().chain(others.iter().flat_map(|spring| &spring.points)).find(|p| **p >= points)
+        {
             return Err(invalid(py, "cells", &format!("places of points below {points}"), place));
         }
         let pairs = ends.as_chunks::<2>().0.to_vec();
         Ok(SpringBody { points, dimension, pairs, others })
     }
 
-    /// Those of a network, whose springs on other measures have no law of force.
+    /// Those of a network, whose laws of force are expressions.
     #[staticmethod]
     fn of_network(py: Python, network: &Network) -> PyResult<SpringBody> {
         let own = network.body.network();
         own.check_sensitivities(false).map_err(|error| raised(py, error))?;
         let [points, dimension] = network.body.shape();
         let pairs = own.lengths.iter().map(|spring| spring.points).collect();
-        let others = own.others.iter().map(|s| (s.kind, s.points.to_vec(), s.measure.clone())).collect();
-        Ok(SpringBody { points, dimension, pairs, others })
+        Ok(SpringBody { points, dimension, pairs, others: own.others.clone() })
     }
 
     /// The springs at rest, whose tangent is that of small displacements.
@@ -192,13 +198,13 @@ impl SpringBody {
             dimension: self.dimension,
             lengths: lengths.map(|(&points, (constant, rest))| LengthSpring { points, constant, rest }).collect(),
             others: others
-                .map(|((kind, points, measure), (constant, rest))| MeasureSpring {
-                    kind: *kind,
-                    points: points.iter().copied().collect(),
-                    constant,
-                    rest,
-                    measure: measure.clone(),
-                    law: None,
+                .map(|(spring, (constant, rest))| {
+                    let mut own = spring.clone();
+                    if own.law.is_some() {
+                        own.scale(constant / spring.constant);
+                    }
+                    (own.constant, own.rest) = (constant, rest);
+                    own
                 })
                 .collect(),
         })

@@ -104,11 +104,16 @@ def test_a_modulus_of_each_cell_has_a_gradient():
             assert found[cell] * young[cell] == pytest.approx(known, rel=1e-7, abs=1e-8 * np.abs(found * young).max())
 
 
+SAMPLED = {"law": "neo-hookean", "shapes": {"count": 40}}
+
+
 @pytest.mark.filterwarnings("ignore:.*beyond the linear theory")
 @pytest.mark.parametrize("large", [False, True])
-def test_a_network_has_gradients(large):
+@pytest.mark.parametrize("keys", [{}, {"energy": "neo-hookean"}, {**SAMPLED, "force": "k1*s + k2*s^2"}], ids=str)
+def test_a_network_has_gradients(keys, large):
     mesh = sf.Mesh.box("hex8", size=[1.0, 0.5, 0.5], cells=[2, 1, 1])
-    net = sf.fit(mesh, sf.Material(1e4, 0.3))
+    net = (sf.sampled if "law" in keys else sf.fit)(mesh, sf.Material(1e4, 0.3), **keys)
+    assert any("law" in springs for springs in net.contents) == bool(keys), [sorted(springs) for springs in net.contents]
     statics = sf.Statics(net, "xmin", large=large)
     forces = np.zeros(mesh.points.shape)
     forces[mesh.groups["xmax"], 2] = 5.0
@@ -123,9 +128,22 @@ def test_a_network_has_gradients(large):
         change = value * np.random.default_rng(4).normal(size=value.shape)
         moved = lambda h: np.sum(forces * statics(
             mesh.points, statics.values._replace(**{key: value + h * change}), forces=forces).displacement)
-        assert own @ change == pytest.approx(slope(moved, 1e-3), rel=1e-7)
-    with pytest.raises(sf.SpringfitError, match="law"):
-        sf.Statics(sf.fit(mesh, sf.Material(1e4, 0.3), energy="neo-hookean"), "xmin")(mesh.points, statics.values)
+        # Terms of both signs are left where springs with and without a rest measure balance.
+        size = np.abs(own * change).sum()
+        assert own @ change == pytest.approx(slope(moved, 1e-3), rel=1e-7, abs=1e-8 * size)
+    change = np.random.default_rng(5).normal(size=mesh.points.shape)
+    moved = lambda h: np.sum(forces * statics(mesh.points + h * change, statics.values, forces=forces).displacement)
+    points = solution.gradient(forces).points
+    assert np.sum(points * change) == pytest.approx(slope(moved, 1e-4), rel=1e-7, abs=1e-8 * np.abs(points * change).sum())
+
+
+@pytest.mark.filterwarnings("ignore:.*beyond the linear theory")
+def test_laws_without_derivatives_are_refused():
+    mesh = sf.Mesh.box("hex8", size=[1.0, 0.5, 0.5], cells=[2, 1, 1])
+    for force, word in ((lambda s, k: k * s, "expressions"), ("k*s^3", "slope at rest")):
+        net = sf.sampled(mesh, sf.Material(1e4, 0.3), force=force, **SAMPLED)
+        with pytest.raises(sf.SpringfitError, match=word):
+            sf.Statics(net, "xmin")(mesh.points, sf.Statics(net, "xmin").values)
 
 
 def test_a_gradient_costs_less_than_a_solution():

@@ -18,8 +18,8 @@ use springfit::quantity::Quantity;
 use springfit::range;
 use springfit::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
 use springfit::study::{
-    BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Recipe, Reference, WholeBody, assumed,
-    fit_mesh, fit_some, fit_without_errors, point_masses,
+    BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Recipe, Reference, Stated, WholeBody,
+    assumed, fit_mesh, fit_some, fit_without_errors, point_masses,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -153,7 +153,8 @@ impl Fit {
         }
         let mesh = self.options.mesh(&self.mesh)?;
         let material = constants.material(&mesh).map_err(Error::of_option)?;
-        let assumed = assumed(&mesh, constants.thickness, constants.area).or_else(|| self.options.unit_note(&mesh));
+        let (thickness, area) = (Stated::once(constants.thickness), Stated::once(constants.area));
+        let assumed = assumed(&mesh, thickness, area).or_else(|| self.options.unit_note(&mesh));
         let support = (!self.fix.is_empty()).then(|| self.support(&mesh)).transpose()?;
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {

@@ -4,10 +4,10 @@
 //!
 //! Theory: page *Gradients of spring constants* of the book.
 
-use super::network::{LengthSpring, MeasureSpring, Network};
+use super::network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::springs::Measure;
+use crate::springs::{LawJet, Measure};
 use crate::stiffness::gather;
 
 /// One number for each number of a network.
@@ -30,13 +30,17 @@ struct Edge {
 
 impl Edge {
     fn of(spring: &LengthSpring, x: &[f64], d: usize) -> Edge {
-        let [i, j] = spring.points;
+        Edge::between(spring.points, x, d)
+    }
+
+    fn between(ends: [usize; 2], x: &[f64], d: usize) -> Edge {
+        let [i, j] = ends;
         let mut n = [0.0; 3];
         n.iter_mut().zip(&x[j * d..(j + 1) * d]).zip(&x[i * d..(i + 1) * d]).for_each(|((n, b), a)| *n = b - a);
         let length = dot(&n, &n).sqrt();
         // A spring without a rest length has no direction where its ends meet, and needs none.
         n.iter_mut().for_each(|n| *n = if length > 0.0 { *n / length } else { 0.0 });
-        Edge { ends: spring.points, length, n }
+        Edge { ends, length, n }
     }
 
     /// The difference of two vectors of the points.
@@ -67,17 +71,25 @@ impl Network {
     /// Checks that the derivatives of the springs in their numbers are known.
     ///
     /// # Errors
-    /// A spring has a law of force, or, `of_points`, measures something else than a length or a content in a cell that fills its space; the
-    /// kind is `Unsupported`.
+    /// A spring has a law of force that is a function, or that its constant does not scale, or, `of_points`, measures something else than a length
+    /// or a content in a cell that fills its space; the kind is `Unsupported`.
     pub fn check_sensitivities(&self, of_points: bool) -> Result<()> {
         let refuse = |expected: &str, found: &str| {
             Err(Error::expected("network", expected, found).of_kind(ErrorKind::Unsupported))
         };
         for spring in &self.others {
-            if spring.law.is_some() {
-                return refuse("springs whose force is k (c - rest)", "a law of force");
+            if let Some(SpringLaw { law, .. }) = spring.law.as_deref() {
+                if law.is_function() {
+                    return refuse("laws of force that are expressions, whose derivatives are known", &law.text);
+                }
+                // The force is in proportion to the constant: `T/k` would be 0/0, or not the derivative.
+                if spring.constant == 0.0 || !law.outer().contains(&true) {
+                    let expected = "laws of force with a slope at rest, in proportion to some of their parameters";
+                    return refuse(expected, &format!("\"{}\" with the slope {:e}", law.text, spring.constant));
+                }
             }
-            if of_points && degree(spring, self.dimension).is_none() {
+            let is_length = matches!(spring.measure, Measure::Length);
+            if of_points && !is_length && degree(spring, self.dimension).is_none() {
                 // The third derivatives of other measures are not known in closed form.
                 return refuse("springs on lengths and on contents of cells that fill their space", spring.kind.name());
             }
@@ -87,7 +99,8 @@ impl Network {
 
     /// The gradient of `aᵀ F(x)`, with the slopes F of the energy at positions x, in constants and rest measures; the points have none.
     ///
-    /// `∂F/∂k = (c − c₀) g`, `∂F/∂c₀ = −k g`
+    /// With the force T of a spring, `∂F/∂k = (T/k) g` and `∂F/∂c₀ = (∂T/∂c₀) g`. The force of a law is in proportion to its constant, the
+    /// slope at rest.
     pub fn force_sensitivities(&self, x: &[f64], a: &[f64]) -> NetworkNumbers {
         let d = self.dimension;
         let mut found = self.nothing(0);
@@ -99,8 +112,9 @@ impl Network {
         }
         self.each_other(x, |s, spring, x| {
             let along = dot(&spring.measure.gradient(x, d), &here(spring, a, d));
-            found.constants[s] = (spring.measure.value(x, d) - spring.rest) * along;
-            found.rests[s] = -spring.constant * along;
+            let pull = Pull::of(spring, spring.measure.value(x, d));
+            found.constants[s] = pull.by_constant * along;
+            found.rests[s] = pull.jet.by_rest * along;
         });
         found
     }
@@ -115,8 +129,8 @@ impl Network {
             edge.add(edge.n.map(|n| pull * n), &mut force, d);
         }
         self.each_other(x, |s, spring, x| {
-            let past = spring.measure.value(x, d) - spring.rest;
-            let pull = change.constants[s] * past - spring.constant * change.rests[s];
+            let of = Pull::of(spring, spring.measure.value(x, d));
+            let pull = change.constants[s] * of.by_constant + of.jet.by_rest * change.rests[s];
             add(spring, spring.measure.gradient(x, d).iter().map(|g| pull * g), &mut force, d);
         });
         force
@@ -124,8 +138,8 @@ impl Network {
 
     /// The gradient of `aᵀ K(x) u`, with the tangent K at positions x, in constants, rest measures and x.
     ///
-    /// A length with the edge d = ℓ n has `K = k ((1 − L/ℓ) I + (L/ℓ) n nᵀ)`; another measure `K = k (g gᵀ + (c − c₀) H)`, whose third
-    /// derivatives are known of contents.
+    /// A length with the edge d = ℓ n has `K = k ((1 − L/ℓ) I + (L/ℓ) n nᵀ)`; another measure `K = T' g gᵀ + T H` with its force T, which is
+    /// `k (c − c₀)` or a law; its third derivatives are known of lengths and contents.
     pub fn stiffness_sensitivities(&self, x: &[f64], a: &[f64], u: &[f64]) -> NetworkNumbers {
         let d = self.dimension;
         let mut found = self.nothing(x.len());
@@ -147,17 +161,23 @@ impl Network {
         }
         let (mut points, mut constants, mut rests) = (found.points, found.constants, found.rests);
         self.each_other(x, |s, spring, x| {
-            let (jet, k) = (spring.measure.jet(x, d), spring.constant);
+            let jet = spring.measure.jet(x, d);
+            let pull = Pull::of(spring, jet.value);
+            let LawJet { force, slope, curvature, by_rest, slope_by_rest } = pull.jet;
             let (a, u) = (here(spring, a, d), here(spring, u, d));
             let (ga, gu) = (dot(&jet.gradient, &a), dot(&jet.gradient, &u));
             let (ha, hu) = (product(&jet.hessian, &a), product(&jet.hessian, &u));
-            let (past, bent) = (jet.value - spring.rest, dot(&ha, &u));
-            constants[s] = ga * gu + past * bent;
-            rests[s] = -k * bent;
-            let third = third(spring, &a, &u, d);
+            let bent = dot(&ha, &u);
+            constants[s] = pull.slope_by_constant * ga * gu + pull.by_constant * bent;
+            rests[s] = slope_by_rest * ga * gu + by_rest * bent;
+            let third = third(spring, x, &a, &u, d);
             // The product rule: the derivative of g is H, that of c is g, and that of H is the third derivative of c.
-            let slope = |i: usize| k * (ha[i] * gu + hu[i] * ga + jet.gradient[i] * bent + past * third[i]);
-            add(spring, (0..a.len()).map(slope), &mut points, d);
+            let along = |i: usize| {
+                curvature * jet.gradient[i] * ga * gu
+                    + slope * (ha[i] * gu + hu[i] * ga + jet.gradient[i] * bent)
+                    + force * third[i]
+            };
+            add(spring, (0..a.len()).map(along), &mut points, d);
         });
         NetworkNumbers { constants, rests, points }
     }
@@ -185,16 +205,23 @@ impl Network {
             edge.add(std::array::from_fn(along), &mut force, d);
         }
         self.each_other(x, |s, spring, x| {
-            let (jet, k) = (spring.measure.jet(x, d), spring.constant);
+            let jet = spring.measure.jet(x, d);
+            let pull = Pull::of(spring, jet.value);
+            let LawJet { force: tension, slope, curvature, by_rest, slope_by_rest } = pull.jet;
             let (b, u) = (here(spring, &change.points, d), here(spring, u, d));
             let (gb, gu) = (dot(&jet.gradient, &b), dot(&jet.gradient, &u));
             let (hb, hu) = (product(&jet.hessian, &b), product(&jet.hessian, &u));
-            let (past, bent) = (jet.value - spring.rest, dot(&hb, &u));
-            let third = third(spring, &b, &u, d);
-            let (own, of_rest) = (change.constants[s], k * change.rests[s]);
+            let bent = dot(&hb, &u);
+            let third = third(spring, x, &b, &u, d);
+            let (of_constant, of_rest) = (change.constants[s], change.rests[s]);
+            // The changes of the slope and of the force.
+            let steeper = of_constant * pull.slope_by_constant + of_rest * slope_by_rest + curvature * gb;
+            let stronger = of_constant * pull.by_constant + of_rest * by_rest + slope * gb;
             let along = |i: usize| {
-                own * (jet.gradient[i] * gu + past * hu[i]) - of_rest * hu[i]
-                    + k * (hb[i] * gu + hu[i] * gb + jet.gradient[i] * bent + past * third[i])
+                steeper * gu * jet.gradient[i]
+                    + stronger * hu[i]
+                    + slope * (hb[i] * gu + jet.gradient[i] * bent)
+                    + tension * third[i]
             };
             add(spring, (0..b.len()).map(along), &mut force, d);
         });
@@ -229,6 +256,30 @@ fn add(spring: &MeasureSpring, force: impl Iterator<Item = f64>, to: &mut [f64],
     places.zip(force).for_each(|(place, force)| to[place] += force);
 }
 
+/// The force of a spring, and how it depends on its numbers.
+struct Pull {
+    jet: LawJet,
+    /// `∂T/∂k`.
+    by_constant: f64,
+    /// `∂²T/∂c∂k`.
+    slope_by_constant: f64,
+}
+
+impl Pull {
+    /// That of a spring that measures c.
+    fn of(spring: &MeasureSpring, c: f64) -> Pull {
+        let (k, past) = (spring.constant, c - spring.rest);
+        let of_law = |own: &SpringLaw| own.law.jet(c, spring.rest, &own.parameters);
+        match spring.law.as_deref().and_then(of_law) {
+            Some(jet) => Pull { jet, by_constant: jet.force / k, slope_by_constant: jet.slope / k },
+            None => {
+                let jet = LawJet { force: k * past, slope: k, curvature: 0.0, by_rest: -k, slope_by_rest: 0.0 };
+                Pull { jet, by_constant: past, slope_by_constant: 1.0 }
+            }
+        }
+    }
+}
+
 /// The degree of a measure that is a polynomial of the positions.
 fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
     let of = |element: &Element| (element.dimension() == d).then_some(d);
@@ -243,9 +294,19 @@ fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
     }
 }
 
-/// `Σ_jl (∂³c/∂x_i∂x_j∂x_l) a_j u_l`. A content in three dimensions is a homogeneous polynomial of degree three, so that its second derivatives
+/// `Σ_jl (∂³c/∂x_i∂x_j∂x_l) a_j u_l` at the positions x. That of a length is `−((a·u − 3 n·a n·u) n + n·a u + n·u a)/ℓ²`. A content in three dimensions is a homogeneous polynomial of degree three, so that its second derivatives
 /// at a are their changes along a; in less dimensions they do not change.
-fn third(spring: &MeasureSpring, a: &[f64], u: &[f64], d: usize) -> Vec<f64> {
+fn third(spring: &MeasureSpring, x: &[f64], a: &[f64], u: &[f64], d: usize) -> Vec<f64> {
+    if let Measure::Length = spring.measure {
+        let edge = Edge::between([0, 1], x, d);
+        let (a, u) = (edge.change(a, d), edge.change(u, d));
+        let (both, na, nu) = (dot(&a, &u), dot(&edge.n, &a), dot(&edge.n, &u));
+        let along =
+            |i: usize| -((both - 3.0 * na * nu) * edge.n[i] + na * u[i] + nu * a[i]) / (edge.length * edge.length);
+        let mut found = vec![0.0; x.len()];
+        edge.add(std::array::from_fn(along), &mut found, d);
+        return found;
+    }
     match degree(spring, d) {
         // The content at a point is a determinant of sums of positions, a polynomial of degree 3 in space. Its second
         // derivatives are linear in the positions, so that their change along a is their value at a. In the plane they

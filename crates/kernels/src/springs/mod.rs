@@ -18,7 +18,7 @@ mod vector;
 
 pub use content::Content;
 pub(crate) use law::AskedResponse;
-pub use law::{AskedForces, Force, ForceFunction, Law, LawRoom};
+pub use law::{AskedForces, Force, ForceFunction, Law, LawJet, LawRoom};
 pub use measure::{Measure, SpringResponse, linear};
 pub use patch::Patch;
 pub use squares::Squares;

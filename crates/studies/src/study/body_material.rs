@@ -65,13 +65,41 @@ impl BodyConstants {
     }
 }
 
+/// For which cells of a body an input gives a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stated {
+    /// For none.
+    Nowhere,
+    /// For some.
+    Partly,
+    /// For all.
+    Everywhere,
+}
+
+impl Stated {
+    /// Whether it gives the one number that all cells have.
+    pub fn once(number: Option<f64>) -> Stated {
+        if number.is_some() { Stated::Everywhere } else { Stated::Nowhere }
+    }
+}
+
 /// A sentence about what is assumed of the body because no input gives it, if anything is; it has what a deck states.
-pub fn assumed(mesh: &Mesh, thickness: Option<f64>, area: Option<f64>) -> Option<String> {
-    let (words, key, of): (_, _, fn(&Section) -> Option<f64>) = match mesh.cell_dimension() {
-        2 if thickness.is_none() => {
+pub fn assumed(mesh: &Mesh, thickness: Stated, area: Stated) -> Option<String> {
+    let (words, key, of): (_, _, fn(&Section) -> Option<f64>) = match (mesh.cell_dimension(), thickness, area) {
+        (2, Stated::Nowhere, _) => {
             ("the thickness of the plane body is assumed to be 1 m", "thickness", |s| s.thickness)
         }
-        1 if area.is_none() => ("the cross-section of the rods is assumed to be 1 m²", "area", |s| s.area),
+        (2, Stated::Partly, _) => {
+            let words =
+                "the thickness of the cells whose material gives none is assumed to be 1 m, not that of the others";
+            (words, "thickness", |s| s.thickness)
+        }
+        (1, _, Stated::Nowhere) => ("the cross-section of the rods is assumed to be 1 m²", "area", |s| s.area),
+        (1, _, Stated::Partly) => {
+            let words =
+                "the cross-section of the rods whose material gives none is assumed to be 1 m², not that of the others";
+            (words, "area", |s| s.area)
+        }
         _ => return None,
     };
     let stated: Vec<f64> = mesh.annotations.sections.iter().filter_map(of).collect();

@@ -49,7 +49,7 @@ pub use crate::analysis::shapes::random_shapes;
 pub use crate::analysis::statistics;
 pub use crate::analysis::tensor::{NetworkMaterial, SpringOwners, network_material};
 pub use body::{Case, LargeBody};
-pub use body_material::{BodyConstants, assumed};
+pub use body_material::{BodyConstants, Stated, assumed};
 pub use calibration::{
     CalibratedLoad, CalibratedRegion, CalibrationOutcome, MeshStep, Readings, Seen, Value, calibrate, calibrate_with,
 };

@@ -11,6 +11,25 @@ pub struct Formula {
     by_parameter: Vec<Program>,
     /// `∂²T/∂p_i∂p_j` for j ≤ i, row by row.
     by_parameters: Vec<Program>,
+    /// `∂T/∂c₀`.
+    slope_in_rest: Program,
+    /// The second derivatives in s and s, s and c, s and c₀, c and c, c and c₀.
+    seconds: [Program; 5],
+}
+
+/// The force of a law and its derivatives in the measure c and in the measure at rest c₀.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LawJet {
+    /// T.
+    pub force: f64,
+    /// `dT/dc`.
+    pub slope: f64,
+    /// `d²T/dc²`.
+    pub curvature: f64,
+    /// `dT/dc₀`.
+    pub by_rest: f64,
+    /// `d²T/dc dc₀`.
+    pub slope_by_rest: f64,
 }
 
 /// Working memory of [`Law::force_each`](super::Law::force_each).
@@ -29,7 +48,10 @@ impl Formula {
         // Second derivatives are symmetric: the lower triangle is all of them.
         let by_parameters =
             by_parameter.iter().enumerate().flat_map(|(i, slope)| (0..=i).map(move |j| slope.derivative(first + j)));
+        let second = |a: usize, b: usize| Program::of(&force.derivative(a).derivative(b));
         Formula {
+            slope_in_rest: Program::of(&force.derivative(2)),
+            seconds: [second(0, 0), second(0, 1), second(0, 2), second(1, 1), second(1, 2)],
             by_parameters: by_parameters.map(|e| Program::of(&e)).collect(),
             slope_in_strain: Program::of(&force.derivative(0)),
             slope_in_measure: Program::of(&force.derivative(1)),
@@ -77,6 +99,30 @@ impl Formula {
             // There is no strain if the measure at rest is zero.
             let by_strain = if self.slope_in_strain.is_zero() { 0.0 } else { self.slope_in_strain.evaluate(at) / rest };
             by_strain + self.slope_in_measure.evaluate(at)
+        })
+    }
+
+    /// The force with its derivatives in c and c₀, on which the strain `s = c/c₀ − 1` depends as well.
+    pub fn jet(&self, c: f64, rest: f64, parameters: &[f64]) -> LawJet {
+        at(c, rest, parameters, |at| {
+            // A law without the strain has its derivatives at a measure at rest of zero as well, where s has none.
+            let times = |factor: f64, program: &Program| match program.is_zero() {
+                true => 0.0,
+                false => factor * program.evaluate(at),
+            };
+            let (by_c, by_rest) = (1.0 / rest, -c / (rest * rest));
+            let [ss, sc, sr, cc, cr] = &self.seconds;
+            LawJet {
+                force: self.force.evaluate(at),
+                slope: times(by_c, &self.slope_in_strain) + self.slope_in_measure.evaluate(at),
+                curvature: times(by_c * by_c, ss) + times(2.0 * by_c, sc) + cc.evaluate(at),
+                by_rest: times(by_rest, &self.slope_in_strain) + self.slope_in_rest.evaluate(at),
+                slope_by_rest: times(by_rest * by_c, ss)
+                    + times(by_c, sr)
+                    + times(by_rest, sc)
+                    + times(-by_c * by_c, &self.slope_in_strain)
+                    + cr.evaluate(at),
+            }
         })
     }
 

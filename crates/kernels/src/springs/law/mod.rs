@@ -7,7 +7,7 @@ mod energy;
 mod formula;
 mod function;
 
-pub use formula::LawRoom;
+pub use formula::{LawJet, LawRoom};
 pub(crate) use function::AskedResponse;
 pub use function::{AskedForces, ForceFunction};
 
@@ -184,6 +184,14 @@ impl Law {
         match &self.body {
             Body::Formula(formula) => formula.slope(c, rest, parameters),
             Body::Function(function) => function.slope(c, rest, parameters),
+        }
+    }
+
+    /// The force with its derivatives in c and c₀; `None` of a function, whose derivatives are not known.
+    pub fn jet(&self, c: f64, rest: f64, parameters: &[f64]) -> Option<LawJet> {
+        match &self.body {
+            Body::Formula(formula) => Some(formula.jet(c, rest, parameters)),
+            Body::Function(_) => None,
         }
     }
 

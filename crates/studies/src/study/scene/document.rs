@@ -22,7 +22,6 @@ use crate::file;
 use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::Mesh;
 use crate::solve::{Newton, StaticSolver};
-use crate::study::body_material::assumed;
 use crate::study::fits::{NamedFit, RESERVED, law_at};
 use crate::study::sweep::SweepEntry;
 use crate::text::printable;
@@ -352,11 +351,7 @@ impl Scene {
 
     /// A sentence about the defaults on which the results depend, if there are any.
     pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
-        let without = |has: fn(&MaterialEntry) -> bool| self.material.all.iter().find(|entry| !has(entry));
-        // A region of rods in a plane body has a cross-section.
-        let thickness = without(|entry| entry.thickness.is_some() || entry.area.is_some()).is_none().then_some(1.0);
-        let area = without(|entry| entry.area.is_some()).is_none().then_some(1.0);
-        assumed(mesh, thickness, area).or_else(|| self.mesh.unit_assumption(mesh))
+        self.material.assumption(mesh).or_else(|| self.mesh.unit_assumption(mesh))
     }
 
     /// Whether the scene gives a density.

@@ -7,7 +7,6 @@ use crate::error::Result;
 use crate::file;
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
-use crate::study::body_material::assumed;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use std::borrow::Cow;
 use std::path::Path;
@@ -84,12 +83,7 @@ impl Materials {
 
     /// A sentence about what is assumed of the body because no entry gives it, if anything is.
     pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
-        let every = |has: fn(&MaterialEntry) -> bool| self.0.all.iter().all(has).then_some(1.0);
-        assumed(
-            mesh,
-            every(|entry| entry.thickness.is_some() || entry.area.is_some()),
-            every(|entry| entry.area.is_some()),
-        )
+        self.0.assumption(mesh)
     }
 }
 

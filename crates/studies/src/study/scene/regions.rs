@@ -9,11 +9,23 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Anisotropy, CellMap, LinearMaterial, MaterialMap};
 use crate::mesh::{CellIndex, Mesh};
 use crate::range;
-use crate::study::body_material::BodyConstants;
+use crate::study::body_material::{BodyConstants, Stated, assumed};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl MaterialEntries {
+    /// A sentence about what is assumed of the cells of entries that do not give it, if anything is.
+    pub fn assumption(&self, mesh: &Mesh) -> Option<String> {
+        let stated = |has: fn(&MaterialEntry) -> bool| match self.all.iter().filter(|entry| has(entry)).count() {
+            0 => Stated::Nowhere,
+            some if some < self.all.len() => Stated::Partly,
+            _ => Stated::Everywhere,
+        };
+        // A region of rods in a plane body has a cross-section.
+        let thickness = stated(|entry| entry.thickness.is_some() || entry.area.is_some());
+        assumed(mesh, thickness, stated(|entry| entry.area.is_some()))
+    }
+
     /// The materials of a body, with their density if the entries give one; `own` is the file of the mesh, if it is one, and its scale, and
     /// `memory` has what names of files mean before files.
     ///
