@@ -67,6 +67,12 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
                 continue;
             }
             let points: SmallVec<[usize; 4]> = own.iter().map(|&a| nodes[a]).collect();
+            // Those of exact networks have it beside their constants, and need no measure.
+            if let (Force::Exact { .. }, None) = (&fit.force, law) {
+                let rest = parameters.first().map_or(0.0, |slack| slack / constant);
+                all.push(MeasureSpring { kind: *kind, points, constant, rest, measure: measure.clone(), law: None });
+                continue;
+            }
             x.resize(points.len() * d, 0.0);
             gather(&mesh.points, d, &points, &mut x);
             let now = measure.value(&x, d);
@@ -82,7 +88,6 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
             }
             let rest = match &fit.force {
                 Force::FreeRest => parameters[0] / constant,
-                Force::Exact { .. } if law.is_none() => parameters.first().map_or(0.0, |slack| slack / constant),
                 Force::Linear | Force::Laws(_) | Force::Exact { .. } => now,
             };
             let law = law.map(|law| Box::new(SpringLaw::new(law.clone(), parameters)));

@@ -143,7 +143,7 @@ fn merged(mut springs: Vec<([usize; 2], f64)>) -> Vec<LengthSpring> {
         };
         let mut sum = share(&springs[0]);
         springs[1..].iter().for_each(|spring| sum.add(&share(spring)));
-        match sum.spring(0.0, true) {
+        match sum.spring(|| 0.0, true) {
             SharedSpring::Length(spring) => Some(spring),
             // Without slack nothing pulls steadily.
             SharedSpring::None | SharedSpring::Steady(_) => None,

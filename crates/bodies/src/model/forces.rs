@@ -69,6 +69,16 @@ impl Network {
         }
     }
 
+    /// Adds to the gradient what the springs between two points give. The largest of their pulls, and the largest that one would have with its
+    /// whole length, N.
+    pub(super) fn compare_lengths(&self, x: &[f64], force: &mut [f64]) -> [f64; 2] {
+        match self.dimension {
+            1 => pull_and_compare::<1>(&self.lengths, x, force),
+            2 => pull_and_compare::<2>(&self.lengths, x, force),
+            _ => pull_and_compare::<3>(&self.lengths, x, force),
+        }
+    }
+
     /// Adds the forces of some of the other springs; false if one has no force.
     pub(super) fn add_others<'a>(
         &self,
@@ -92,7 +102,7 @@ impl Network {
         mut visit: impl FnMut(&MeasureSpring, f64, &[f64]),
     ) {
         let d = self.dimension;
-        let mut local = Vec::new();
+        let (mut local, mut gradient) = (Vec::new(), Vec::new());
         let springs = springs.into_iter();
         let (all, mut tensions) = (springs.clone(), None);
         for spring in springs {
@@ -100,8 +110,8 @@ impl Network {
             gather(x, d, &spring.points, &mut local);
             let ask = || function_tensions(all.clone(), x, d).into_iter();
             let known = spring.function().and_then(|_| tensions.get_or_insert_with(ask).next());
-            let tension = known.unwrap_or_else(|| spring.tension(spring.measure.value(&local, d)));
-            visit(spring, tension, &spring.measure.gradient(&local, d));
+            let value = spring.measure.both(&local, d, &mut gradient);
+            visit(spring, known.unwrap_or_else(|| spring.tension(value)), &gradient);
         }
     }
 
@@ -187,6 +197,24 @@ fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) 
         }
     }
     sound
+}
+
+/// [`pull`], and the largest `|k (ℓ − L₀)|` and `|k ℓ|`, N.
+fn pull_and_compare<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) -> [f64; 2] {
+    let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
+    let [mut largest, mut whole] = [0.0_f64; 2];
+    for spring in springs {
+        let [i, j] = spring.points;
+        let (r, length) = between(x, spring.points);
+        largest = largest.max(spring.pull(length)[1].abs());
+        whole = whole.max((spring.constant * length).abs());
+        let t = spring.stress(length);
+        for k in 0..D {
+            force[i][k] -= t * r[k];
+            force[j][k] += t * r[k];
+        }
+    }
+    [largest, whole]
 }
 
 /// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`, and writes the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`;

@@ -46,12 +46,18 @@ impl LengthShare {
         self.slack += later.slack;
     }
 
-    /// The spring between points that are `length` apart, m, once all shares are added.
-    pub fn spring(&self, length: f64, is_exact: bool) -> SharedSpring {
+    /// The spring between points whose distance `length` gives, m, once all shares are added.
+    #[inline(always)]
+    pub fn spring(&self, length: impl FnOnce() -> f64, is_exact: bool) -> SharedSpring {
         let LengthShare { points, constant, size, slack } = *self;
         if constant == 0.0 && slack == 0.0 || is_exact && constant.abs() <= ROUNDING * size {
             return SharedSpring::None;
         }
+        // Springs of an exact network have no rest length at all, not one that is nearly zero.
+        if is_exact && slack == 0.0 {
+            return SharedSpring::Length(LengthSpring { points, constant, rest: 0.0 });
+        }
+        let length = length();
         if is_steady(constant, -slack, length) {
             let kind = SpringKind::Length;
             let numbers = [constant, -slack];
@@ -63,7 +69,6 @@ impl LengthShare {
                 numbers,
             ));
         }
-        // Springs of an exact network have no rest length at all, not one that is nearly zero.
         let rest = if is_exact { 0.0 } else { rest_length(length, slack / constant) };
         SharedSpring::Length(LengthSpring { points, constant, rest })
     }
@@ -104,15 +109,22 @@ pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<M
             // All shares of two points are one sum by now: no two are equal.
             shares.sort_unstable_by_key(|share| share.points[1]);
             for share in &*shares {
-                let length = distance(mesh.point(i), mesh.point(share.points[1]));
-                match share.spring(length, is_exact) {
+                match share.spring(|| distance(mesh.point(i), mesh.point(share.points[1])), is_exact) {
                     SharedSpring::None => {}
                     SharedSpring::Length(spring) => all.0.push(spring),
                     SharedSpring::Steady(spring) => all.1.push(spring),
                 }
             }
         };
+    let mut visited = 0;
     each_point(mesh, fits, visit, |part: (Vec<_>, Vec<_>)| {
+        visited += CHUNK;
+        let found = springs.len() + part.0.len();
+        if found > springs.capacity() {
+            // A list that grows is copied: how many springs all points have is told by those that were visited.
+            let all = found.max(found.saturating_mul(mesh.point_count()) / visited);
+            springs.reserve_exact(all + all / 16 - springs.len());
+        }
         springs.extend(part.0);
         others.extend(part.1);
     });

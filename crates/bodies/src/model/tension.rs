@@ -50,15 +50,9 @@ impl Network {
     /// The share [`RestTension::unbalanced`] with the points at `points`, `[points × dimension]`, m.
     pub fn unbalanced(&self, points: &[f64]) -> f64 {
         let d = self.dimension;
-        // The largest pull of a spring between two points, and the largest of one that pulls with its whole length.
-        let [mut largest, mut whole] = [0.0_f64; 2];
-        for spring in &self.lengths {
-            let length = self.distance(points, spring.points);
-            largest = largest.max(spring.pull(length)[1].abs());
-            whole = whole.max((spring.constant * length).abs());
-        }
         let mut force = vec![0.0; points.len()];
-        self.pull_lengths(points, &mut force);
+        // The largest pull of a spring between two points, and the largest of one that pulls with its whole length.
+        let [mut largest, whole] = self.compare_lengths(points, &mut force);
         self.each_tension(&self.others, points, |spring, tension, gradient| {
             // What a spring on another measure pulls has another unit; its largest force on a point is in N.
             largest = largest.max(tension.abs() * longest(gradient, d));

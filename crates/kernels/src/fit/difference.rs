@@ -149,8 +149,28 @@ impl<'a, T: Packed> Differences<'a, T> {
         constants
     }
 
-    /// The tension of spring s at rest, where it has these measures.
-    fn tensions(&self, first: usize, count: usize, s: usize, rest: &T) -> T {
+    /// The tension of spring s with these constants at rest, where it has these measures.
+    #[inline(always)]
+    fn tensions(&self, first: usize, count: usize, s: usize, constants: &T, rest: &T) -> T {
+        let Force::Exact { content } = &self.fits.force else { return self.tensions_singly(first, count, s, rest) };
+        let from = self.places[s];
+        // Lengths and areas have no rest measure, and no parameter.
+        if from == self.places[s + 1] {
+            return constants.clone() * rest;
+        }
+        if content.is_some() {
+            return self.tensions_singly(first, count, s, rest);
+        }
+        let all = self.places[self.fits.springs.len()];
+        let mut slack = rest.zero();
+        for lane in 0..count {
+            slack.as_mut_slice()[lane] = self.fits.parameters[(first + lane) * all + from];
+        }
+        constants.clone() * rest - &slack
+    }
+
+    /// [`Differences::tensions`] for any force.
+    fn tensions_singly(&self, first: usize, count: usize, s: usize, rest: &T) -> T {
         let mut tensions = rest.zero();
         for lane in 0..count {
             tensions.as_mut_slice()[lane] = self.tension(first + lane, s, rest.as_slice()[lane]);
@@ -194,10 +214,10 @@ impl<'a, T: Packed> Differences<'a, T> {
             let (x, k) = (self.packing.x.as_chunks::<D>().0, self.constants(first, count, s));
             let d = difference(&x[j], &x[i]);
             let square = dot(&d, &d);
-            let (mut along, mut across) = (k / &square, zero.clone());
+            let (mut along, mut across) = (k.clone() / &square, zero.clone());
             if pulls {
                 let length = square.clone().sqrt();
-                across = self.tensions(first, count, s, &length) / &length;
+                across = self.tensions(first, count, s, &k, &length) / &length;
                 along = along - &(across.clone() / &square);
             }
             // along d dᵀ + across I
@@ -245,7 +265,7 @@ impl<'a, T: Packed> Differences<'a, T> {
             let k = self.constants(first, count, s);
             subtract_product(&mut self.left, &g, &k);
             if pulls {
-                let tension = self.tensions(first, count, s, &content);
+                let tension = self.tensions(first, count, s, &k, &content);
                 for q in points {
                     let pull = tension.clone() * &volume(q);
                     subtract_turns(

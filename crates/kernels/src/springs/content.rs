@@ -57,16 +57,27 @@ impl<'a> Content<'a> {
 
     /// The gradient of the content in the positions, `[nodes × space]`.
     pub fn gradient(&self) -> Vec<f64> {
-        let (d, size) = (self.table.dimension, self.x.len());
-        let mut gradient = vec![0.0; size];
+        let mut gradient = vec![0.0; self.x.len()];
+        self.both(&mut gradient);
+        gradient
+    }
+
+    /// The content, and its gradient, which is written into memory for it.
+    pub fn both(&self, gradient: &mut [f64]) -> f64 {
+        let (d, mut total) = (self.table.dimension, 0.0);
+        gradient.fill(0.0);
         self.each_point(|dn, w| {
             if self.is_embedded() {
                 let (normal, turns) = self.normal(dn);
-                let unit = scaled(normal, 1.0 / norm(&normal));
+                let size = norm(&normal);
+                let unit = scaled(normal, 1.0 / size);
                 gradient.iter_mut().zip(&turns).for_each(|(entry, turn)| *entry += w * dot(&unit, turn));
+                total += w * size;
                 return;
             }
             let j = self.rows(dn);
+            let [a, b, c] = j;
+            total += w * triple(a, b, c);
             // det = J_k · (J_k+1 × J_k+2) for every k.
             // Rows of the identity stand for missing dimensions, so that one formula serves lengths, areas and volumes.
             let beside: [[f64; 3]; 3] = std::array::from_fn(|k| cross(j[(k + 1) % 3], j[(k + 2) % 3]));
@@ -75,7 +86,7 @@ impl<'a> Content<'a> {
                 entries.iter_mut().zip(&beside).for_each(|(entry, beside)| *entry += w * dot(&dn, beside));
             }
         });
-        gradient
+        total
     }
 
     /// The content with its first and second derivatives in the positions.

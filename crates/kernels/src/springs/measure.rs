@@ -129,6 +129,21 @@ impl Measure {
         }
     }
 
+    /// c and its gradient at the positions `x`, as [`Measure::value`] and [`Measure::gradient`] give them; the gradient is written into the list,
+    /// whose memory serves many springs.
+    pub fn both(&self, x: &[f64], dimension: usize, gradient: &mut Vec<f64>) -> f64 {
+        gradient.resize(x.len(), 0.0);
+        match self {
+            Measure::Content(element) => Content::of_cell(&element.tabulation, x).both(gradient),
+            Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).both(gradient),
+            Measure::Span(table) => Content::of_point(table, 0, x).both(gradient),
+            Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Squares(_) | Measure::Function(_) => {
+                *gradient = self.gradient(x, dimension);
+                self.value(x, dimension)
+            }
+        }
+    }
+
     /// The response of a linear spring with this constant and rest measure at the positions `x`,
     /// `[points × dimension]`, m.
     pub fn respond(&self, constant: f64, rest: f64, x: &[f64], dimension: usize) -> SpringResponse {

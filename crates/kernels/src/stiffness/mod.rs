@@ -8,6 +8,7 @@ mod fault;
 mod hyperelastic;
 mod large;
 mod placement;
+mod sound;
 
 pub use fault::Fault;
 pub use hyperelastic::{EnergyFunction, Hyperelastic, StressFunction};

@@ -6,40 +6,105 @@ use rayon::prelude::*;
 
 impl Mesh {
     /// Calls `visit` for each set of points with the sides of the body's cells that have it, in the order of the cells. The sets have no order.
-    pub fn each_side_set(&self, mut visit: impl FnMut(&[SideIndex])) {
+    pub fn each_side_set(&self, visit: impl FnMut(&[SideIndex])) {
         let mut sides = vec![0; self.blocks.len()];
         self.body_blocks().for_each(|(index, block)| sides[index] = block.element.sides().len());
         let counts = self.blocks.iter().zip(&sides).map(|(block, sides)| block.cells().len() * sides);
         let (starts, count) = running_sums(counts);
-        let side = |item: usize| {
-            let block = starts.partition_point(|start| *start <= item) - 1;
-            let (cell, side) = ((item - starts[block]) / sides[block], (item - starts[block]) % sides[block]);
-            SideIndex { cell: CellIndex { block, cell }, side }
-        };
-        let points = |item: usize, set: &mut Vec<usize>| set.extend(self.side_points(&side(item)));
-        let mut own = Vec::new();
-        each_set(count, self.point_count(), points, |items| {
-            own.clear();
-            own.extend(items.iter().map(|&item| side(item)));
-            visit(&own);
-        });
+        each_set(&Sides { mesh: self, sides, starts, count }, self.point_count(), visit);
     }
 
     /// Calls `visit` for each set of points with the cells that have it, in their order; point p counts as `place(p)`.
-    pub(super) fn each_cell_set(&self, place: impl Fn(usize) -> usize, mut visit: impl FnMut(&[CellIndex])) {
+    pub(super) fn each_cell_set(&self, place: impl Fn(usize) -> usize, visit: impl FnMut(&[CellIndex])) {
         let (starts, count) = running_sums(self.blocks.iter().map(|block| block.cells().len()));
-        let cell = |item: usize| {
-            let block = starts.partition_point(|start| *start <= item) - 1;
-            CellIndex { block, cell: item - starts[block] }
-        };
-        let points =
-            |item: usize, set: &mut Vec<usize>| set.extend(self.cell_nodes(cell(item)).iter().map(|&p| place(p)));
-        let mut own = Vec::new();
-        each_set(count, self.point_count(), points, |items| {
-            own.clear();
-            own.extend(items.iter().map(|&item| cell(item)));
-            visit(&own);
-        });
+        each_set(&Cells { mesh: self, place, starts, count }, self.point_count(), visit);
+    }
+}
+
+/// Numbered items of points.
+trait Items {
+    type Index;
+    fn count(&self) -> usize;
+    /// Calls `visit` with the points of each item, in their order.
+    fn each(&self, visit: impl FnMut(&[usize]));
+    fn index(&self, item: usize) -> Self::Index;
+    /// The points of an item, in any order.
+    fn points(&self, index: &Self::Index) -> impl Iterator<Item = usize>;
+}
+
+/// The sides of the body's cells.
+struct Sides<'a> {
+    mesh: &'a Mesh,
+    /// How many sides a cell of each block has, and the number of its first one.
+    sides: Vec<usize>,
+    starts: Vec<usize>,
+    count: usize,
+}
+
+impl Items for Sides<'_> {
+    type Index = SideIndex;
+
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn each(&self, mut visit: impl FnMut(&[usize])) {
+        let mut points = Vec::new();
+        for (_, block) in self.mesh.body_blocks() {
+            let sides = block.element.sides();
+            for nodes in block.cells() {
+                for side in sides {
+                    points.clear();
+                    points.extend(side.nodes.iter().map(|&a| nodes[a]));
+                    visit(&points);
+                }
+            }
+        }
+    }
+
+    fn index(&self, item: usize) -> SideIndex {
+        let block = self.starts.partition_point(|start| *start <= item) - 1;
+        let (item, sides) = (item - self.starts[block], self.sides[block]);
+        SideIndex { cell: CellIndex { block, cell: item / sides }, side: item % sides }
+    }
+
+    fn points(&self, index: &SideIndex) -> impl Iterator<Item = usize> {
+        self.mesh.side_points(index)
+    }
+}
+
+/// The cells, whose points p count as `place(p)`.
+struct Cells<'a, P> {
+    mesh: &'a Mesh,
+    place: P,
+    /// The number of the first cell of each block.
+    starts: Vec<usize>,
+    count: usize,
+}
+
+impl<P: Fn(usize) -> usize> Items for Cells<'_, P> {
+    type Index = CellIndex;
+
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn each(&self, mut visit: impl FnMut(&[usize])) {
+        let mut points = Vec::new();
+        for nodes in self.mesh.blocks.iter().flat_map(|block| block.cells()) {
+            points.clear();
+            points.extend(nodes.iter().map(|&p| (self.place)(p)));
+            visit(&points);
+        }
+    }
+
+    fn index(&self, item: usize) -> CellIndex {
+        let block = self.starts.partition_point(|start| *start <= item) - 1;
+        CellIndex { block, cell: item - self.starts[block] }
+    }
+
+    fn points(&self, index: &CellIndex) -> impl Iterator<Item = usize> {
+        self.mesh.cell_nodes(*index).iter().map(|&p| (self.place)(p))
     }
 }
 
@@ -54,67 +119,63 @@ fn running_sums(counts: impl Iterator<Item = usize>) -> (Vec<usize>, usize) {
     (starts, sum)
 }
 
-/// Calls `visit` for each set of points with the items of 0 … `count` − 1 that have it, ascending. `points(item)` writes the points of an
-/// item in any order; they are below `bound`.
+/// Calls `visit` for each set of points with the items that have it, ascending. The points are below `bound`.
 ///
 /// Items are sorted as single numbers: the high bits are the lowest point, so that the items of a set are near each other in memory, then
 /// comes a hash of the set, which does not depend on the order of its points, and the low bits are the item. Points have few items each, so
 /// that these are counted, put beside each other, and sorted in short lists.
-fn each_set(count: usize, bound: usize, points: impl Fn(usize, &mut Vec<usize>), mut visit: impl FnMut(&[usize])) {
+fn each_set<I: Items>(items: &I, bound: usize, mut visit: impl FnMut(&[I::Index])) {
+    let count = items.count();
     let of_item = usize::BITS - count.leading_zeros();
     let of_hash = (u64::BITS - of_item).saturating_sub(usize::BITS - bound.leading_zeros()).max(1);
-    let mut set = Vec::new();
-    let key = |item: usize| {
-        set.clear();
-        points(item, &mut set);
-        // A sum of mixed numbers does not depend on the order in which a cell names its points, and needs no sorting.
-        let hash = set.iter().fold(0u64, |sum, &p| sum.wrapping_add(mix(p as u64)));
-        let lowest = set.iter().copied().min().unwrap_or(0) as u64;
-        (lowest << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item as u64
-    };
-    let keys: Vec<u64> = (0..count).map(key).collect();
-    // No more than the bits of all points.
-    let lowest = |key: &u64| key.checked_shr(of_item + of_hash).unwrap_or(0) as usize;
+    let least = |points: &[usize]| points.iter().copied().min().unwrap_or(0);
     // Counts of 32 bits take half of the memory; sides of more than 2³² would not fit into it by far.
-    let mut next = vec![0_u32; keys.iter().map(lowest).max().map_or(0, |most| most + 2)];
-    keys.iter().for_each(|key| next[lowest(key) + 1] += 1);
+    let mut next = vec![0_u32; bound.max(1) + 1];
+    items.each(|points| next[least(points) + 1] += 1);
     (1..next.len()).for_each(|point| next[point] += next[point - 1]);
-    let mut sorted = vec![0; count];
-    for key in &keys {
-        let place = &mut next[lowest(key)];
+    let mut keys = vec![0_u64; count];
+    let mut item = 0;
+    // A second walk over the cells takes less time than a list of all keys in the first one, which is as long as all else.
+    items.each(|points| {
+        // A sum of mixed numbers does not depend on the order in which a cell names its points, and needs no sorting.
+        let hash = points.iter().fold(0u64, |sum, &p| sum.wrapping_add(mix(p as u64)));
+        let lowest = least(points);
+        let place = &mut next[lowest];
         // The lists are then sorted on all threads; the keys have no equal ones, so that the order is the same in each run.
-        sorted[*place as usize] = *key;
+        keys[*place as usize] = ((lowest as u64) << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item;
         *place += 1;
-    }
-    // A large mesh has many sides: one of the long lists is given back.
-    drop(keys);
-    let mut keys = sorted;
+        item += 1;
+    });
+    // No more than the bits of all points.
+    let lowest = |key: &u64| key.checked_shr(of_item + of_hash).unwrap_or(0);
     keys.par_chunk_by_mut(|a, b| lowest(a) == lowest(b)).for_each(<[u64]>::sort_unstable);
-    let item = |key: &u64| (key & ((1 << of_item) - 1)) as usize;
-    let sorted = |item: usize, set: &mut Vec<usize>| {
-        set.clear();
-        points(item, set);
-        set.sort_unstable();
-    };
-    let [mut own, mut other, mut same, mut rest] = [const { Vec::new() }; 4];
-    for run in keys.chunk_by(|a, b| a >> of_item == b >> of_item) {
-        if let [key] = run {
-            visit(&[item(key)]);
-            continue;
-        }
+    let index = |key: &u64| items.index((key & ((1 << of_item) - 1)) as usize);
+    let [mut run, mut same, mut rest] = [const { Vec::new() }; 3];
+    let [mut own, mut other] = [const { Vec::new() }; 2];
+    for keys in keys.chunk_by(|a, b| a >> of_item == b >> of_item) {
+        run.extend(keys.iter().map(index));
         // Different sets may have the same hash.
-        rest.clear();
-        rest.extend(run.iter().map(item));
-        while let Some(&first) = rest.first() {
-            sorted(first, &mut own);
-            same.clear();
-            rest.retain(|&item| {
-                sorted(item, &mut other);
-                let differs = own != other;
-                same.extend((!differs).then_some(item));
-                differs
-            });
+        while run.len() > 1 {
+            for index in run.drain(..) {
+                let points = if same.is_empty() { &mut own } else { &mut other };
+                points.clear();
+                points.extend(items.points(&index));
+                let is_same = same.is_empty() || are_alike(&own, &other);
+                if is_same { &mut same } else { &mut rest }.push(index);
+            }
             visit(&same);
+            same.clear();
+            std::mem::swap(&mut run, &mut rest);
+        }
+        if !run.is_empty() {
+            visit(&run);
+            run.clear();
         }
     }
+}
+
+/// Whether two short lists have the same points, each as often.
+fn are_alike(a: &[usize], b: &[usize]) -> bool {
+    let count = |points: &[usize], p: usize| points.iter().filter(|&&q| q == p).count();
+    a.len() == b.len() && a.iter().all(|&p| count(a, p) == count(b, p))
 }

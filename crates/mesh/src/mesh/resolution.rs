@@ -250,7 +250,8 @@ impl Mesh {
             let mut placement = Placement::new(table);
             let mut x = vec![0.0; element.nodes() * element.dimension()];
             let mut set = |points: &[f64], nodes: &[usize]| {
-                placement.place(table, points, nodes, &mut x).and_then(|()| geometry.set(table, &x))
+                placement.place(table, points, nodes, &mut x)?;
+                if Geometry::is_sound(table, &x) { Ok(()) } else { geometry.set(table, &x) }
             };
             for (cell, nodes) in block.connectivity.chunks_exact_mut(element.nodes()).enumerate() {
                 let at = CellIndex { block: index, cell };

@@ -311,7 +311,7 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
         // before.
         if may_be_steady {
             each_sum(&sources, |sum| {
-                steady += usize::from(matches!(sum.share.spring(sum.length, run.is_exact), SharedSpring::Steady(_)));
+                steady += usize::from(matches!(sum.share.spring(|| sum.length, run.is_exact), SharedSpring::Steady(_)));
                 Ok(())
             })?;
         }
@@ -321,7 +321,7 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
             merged.springs += 1;
             merged.negative += usize::from(constant < 0.0);
         };
-        each_sum(&sources, |sum| match sum.share.spring(sum.length, run.is_exact) {
+        each_sum(&sources, |sum| match sum.share.spring(|| sum.length, run.is_exact) {
             SharedSpring::Length(spring) => {
                 count(spring.constant);
                 table.write(&SpringRow::of_length(&spring), &sum.nodes)
@@ -330,7 +330,7 @@ pub fn merge_shards(shards: &[PathBuf], output: &Path) -> Result<Merged> {
         })?;
         // Springs on lengths come first, as in a network that is written at once; the others are summed again for that.
         if steady > 0 {
-            each_sum(&sources, |sum| match sum.share.spring(sum.length, run.is_exact) {
+            each_sum(&sources, |sum| match sum.share.spring(|| sum.length, run.is_exact) {
                 SharedSpring::Steady(spring) => {
                     count(spring.constant);
                     table.write(&SpringRow::of_other(&spring, &spring.points), &sum.nodes)

@@ -36,11 +36,21 @@ pub fn least_squares(a: DMatrix<f64>, b: &DVector<f64>) -> (DVector<f64>, bool) 
     if n == 0 || a.nrows() == 0 {
         return (DVector::zeros(n), n > 0);
     }
+    let mut seen = b.clone();
+    let a = match a.nrows() > 2 * n {
+        // A = Q R first, where there are many more equations than unknowns: each pivot is searched for among all of them.
+        true => {
+            let plain = a.qr();
+            plain.q_tr_mul(&mut seen);
+            seen.resize_vertically_mut(n, 0.0);
+            plain.unpack_r()
+        }
+        false => a,
+    };
     // A P = Q R, with R = [R₁ R₂] of full rank.
     let pivoted = a.col_piv_qr();
     let r = pivoted.r();
     let rank = rank(&r, DEPENDENT);
-    let mut seen = b.clone();
     pivoted.q_tr_mul(&mut seen);
     let seen = seen.rows(0, rank);
     let mut u = DVector::zeros(n);
