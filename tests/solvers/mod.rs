@@ -3,6 +3,7 @@
 mod constrained;
 mod dual;
 mod extremes;
+mod groups;
 mod jacobi;
 mod normal;
 mod norms;

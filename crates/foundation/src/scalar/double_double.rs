@@ -3,8 +3,10 @@
 //!
 //! Theory: page *Precision* of the book.
 
+use super::groups::{Group, GroupWork};
 use super::lanes::with_fused_products;
 use super::{Real, Scalar};
+use pulp::{Simd, WithSimd, bytemuck};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// `hi + lo`, with |lo| at most half a unit in the last place of `hi`: 32 decimal digits in the range of `f64`.
@@ -25,28 +27,123 @@ impl From<f64> for DoubleDouble {
     }
 }
 
+/// One of the two parts of a number, or of as many numbers as a register holds.
+trait Part: Copy {
+    fn plus(self, other: Self) -> Self;
+    fn minus(self, other: Self) -> Self;
+    fn times(self, other: Self) -> Self;
+    /// `self · b + c`, rounded only once.
+    fn times_plus(self, b: Self, c: Self) -> Self;
+    fn negated(self) -> Self;
+}
+
+impl Part for f64 {
+    #[inline(always)]
+    fn plus(self, other: f64) -> f64 {
+        self + other
+    }
+
+    #[inline(always)]
+    fn minus(self, other: f64) -> f64 {
+        self - other
+    }
+
+    #[inline(always)]
+    fn times(self, other: f64) -> f64 {
+        self * other
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: f64, c: f64) -> f64 {
+        self.mul_add(b, c)
+    }
+
+    #[inline(always)]
+    fn negated(self) -> f64 {
+        -self
+    }
+}
+
+/// A part of each of several numbers, with the instructions of its machine.
+#[derive(Clone, Copy)]
+struct Parts<S: Simd>(S, S::f64s);
+
+impl<S: Simd> Part for Parts<S> {
+    #[inline(always)]
+    fn plus(self, other: Parts<S>) -> Parts<S> {
+        Parts(self.0, self.0.add_f64s(self.1, other.1))
+    }
+
+    #[inline(always)]
+    fn minus(self, other: Parts<S>) -> Parts<S> {
+        Parts(self.0, self.0.sub_f64s(self.1, other.1))
+    }
+
+    #[inline(always)]
+    fn times(self, other: Parts<S>) -> Parts<S> {
+        Parts(self.0, self.0.mul_f64s(self.1, other.1))
+    }
+
+    #[inline(always)]
+    fn times_plus(self, b: Parts<S>, c: Parts<S>) -> Parts<S> {
+        Parts(self.0, self.0.mul_add_f64s(self.1, b.1, c.1))
+    }
+
+    #[inline(always)]
+    fn negated(self) -> Parts<S> {
+        Parts(self.0, self.0.neg_f64s(self.1))
+    }
+}
+
 /// `a + b`, exactly.
 #[inline(always)]
-fn two_sum(a: f64, b: f64) -> DoubleDouble {
-    let hi = a + b;
-    let other = hi - a;
-    DoubleDouble { hi, lo: (a - (hi - other)) + (b - other) }
+fn two_sum<P: Part>(a: P, b: P) -> [P; 2] {
+    let hi = a.plus(b);
+    let other = hi.minus(a);
+    [hi, a.minus(hi.minus(other)).plus(b.minus(other))]
 }
 
 /// `a + b`, exactly, for |a| ≥ |b|.
 #[inline(always)]
-fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
-    let hi = a + b;
-    DoubleDouble { hi, lo: b - (hi - a) }
+fn fast_two_sum<P: Part>(a: P, b: P) -> [P; 2] {
+    let hi = a.plus(b);
+    [hi, b.minus(hi.minus(a))]
+}
+
+/// `x + y`, of numbers of two parts, the larger one first.
+#[inline(always)]
+fn sum<P: Part>(x: [P; 2], y: [P; 2]) -> [P; 2] {
+    let ([s, s_rest], [t, t_rest]) = (two_sum(x[0], y[0]), two_sum(x[1], y[1]));
+    let [v, v_rest] = fast_two_sum(s, s_rest.plus(t));
+    fast_two_sum(v, t_rest.plus(v_rest))
+}
+
+/// `x y`, of numbers of two parts.
+#[inline(always)]
+fn product<P: Part>(x: [P; 2], y: [P; 2]) -> [P; 2] {
+    let high = x[0].times(y[0]);
+    // The fused product minus its rounded value is the rounding error of the product, exactly.
+    let rest = x[0].times_plus(y[0], high.negated());
+    let low = x[1].times_plus(y[0], x[0].times_plus(y[1], x[1].times(y[1])));
+    fast_two_sum(high, rest.plus(low))
 }
 
 impl DoubleDouble {
     #[inline(always)]
+    fn of([hi, lo]: [f64; 2]) -> DoubleDouble {
+        DoubleDouble { hi, lo }
+    }
+
+    #[inline(always)]
+    fn parts(self) -> [f64; 2] {
+        [self.hi, self.lo]
+    }
+
+    #[inline(always)]
     fn times(self, y: f64) -> DoubleDouble {
         let high = self.hi * y;
-        // The fused product minus its rounded value is the rounding error of the product, exactly.
         let low = self.lo.mul_add(y, self.hi.mul_add(y, -high));
-        fast_two_sum(high, low)
+        DoubleDouble::of(fast_two_sum(high, low))
     }
 }
 
@@ -55,9 +152,7 @@ impl Add<&DoubleDouble> for DoubleDouble {
 
     #[inline(always)]
     fn add(self, y: &DoubleDouble) -> DoubleDouble {
-        let (s, t) = (two_sum(self.hi, y.hi), two_sum(self.lo, y.lo));
-        let v = fast_two_sum(s.hi, s.lo + t.hi);
-        fast_two_sum(v.hi, t.lo + v.lo)
+        DoubleDouble::of(sum(self.parts(), y.parts()))
     }
 }
 
@@ -75,10 +170,7 @@ impl Mul<&DoubleDouble> for DoubleDouble {
 
     #[inline(always)]
     fn mul(self, y: &DoubleDouble) -> DoubleDouble {
-        let high = self.hi * y.hi;
-        let rest = self.hi.mul_add(y.hi, -high);
-        let low = self.lo.mul_add(y.hi, self.hi.mul_add(y.lo, self.lo * y.lo));
-        fast_two_sum(high, rest + low)
+        DoubleDouble::of(product(self.parts(), y.parts()))
     }
 }
 
@@ -92,7 +184,7 @@ impl Div<&DoubleDouble> for DoubleDouble {
         let second = rest.hi / y.hi;
         let third = (rest - &y.times(second)).hi / y.hi;
         // The third digit makes the quotient about as accurate as the other operations.
-        fast_two_sum(first, second) + &DoubleDouble::from(third)
+        DoubleDouble::of(fast_two_sum(first, second)) + &DoubleDouble::from(third)
     }
 }
 
@@ -151,16 +243,82 @@ impl Real for DoubleDouble {
             return DoubleDouble::from(root);
         }
         let rest = self - &DoubleDouble::from(root).times(root);
-        fast_two_sum(root, rest.hi / (2.0 * root))
+        DoubleDouble::of(fast_two_sum(root, rest.hi / (2.0 * root)))
     }
 
     fn rounded(&self) -> f64 {
         self.hi
     }
 
+    fn grouped<W: GroupWork<DoubleDouble>>(&self, work: W) -> Result<W::Output, W> {
+        match pulp::Arch::new() {
+            // Without wider registers nothing is gained.
+            pulp::Arch::Scalar => Err(work),
+            machine => Ok(machine.dispatch(InGroups(work))),
+        }
+    }
+
     fn choose(&self, yes: &DoubleDouble, no: &DoubleDouble) -> DoubleDouble {
         // `lo` is at most half a unit of `hi`, so that the sign is that of `hi`.
         if self.hi > 0.0 { *yes } else { *no }
+    }
+}
+
+/// As many double-double numbers as a register holds parts; each is what the operations of one number make it, to the last bit.
+#[derive(Clone, Copy)]
+struct DoubleDoubles<S: Simd>([Parts<S>; 2]);
+
+struct InGroups<W>(W);
+
+impl<W: GroupWork<DoubleDouble>> WithSimd for InGroups<W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> W::Output {
+        self.0.run(DoubleDoubles([Parts(simd, simd.splat_f64s(0.0)); 2]))
+    }
+}
+
+impl<S: Simd> Group<DoubleDouble> for DoubleDoubles<S> {
+    const COUNT: usize = S::F64_LANES;
+
+    #[inline(always)]
+    fn filled(self, number: &DoubleDouble) -> DoubleDoubles<S> {
+        let Parts(simd, _) = self.0[0];
+        DoubleDoubles([Parts(simd, simd.splat_f64s(number.hi)), Parts(simd, simd.splat_f64s(number.lo))])
+    }
+
+    #[inline(always)]
+    fn load(mut self, from: &[DoubleDouble]) -> DoubleDoubles<S> {
+        for (i, number) in from.iter().enumerate() {
+            self.set(i, number);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, number: &DoubleDouble) {
+        let [Parts(_, hi), Parts(_, lo)] = &mut self.0;
+        bytemuck::cast_slice_mut(std::slice::from_mut(hi))[i] = number.hi;
+        bytemuck::cast_slice_mut(std::slice::from_mut(lo))[i] = number.lo;
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize) -> DoubleDouble {
+        let [Parts(_, hi), Parts(_, lo)] = &self.0;
+        let part = |parts| bytemuck::cast_slice::<S::f64s, f64>(std::slice::from_ref(parts))[i];
+        DoubleDouble { hi: part(hi), lo: part(lo) }
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: DoubleDoubles<S>, b: DoubleDoubles<S>) -> DoubleDoubles<S> {
+        DoubleDoubles(sum(self.0, product(a.0, b.0)))
+    }
+
+    #[inline(always)]
+    fn minus_product(self, a: DoubleDoubles<S>, b: DoubleDoubles<S>) -> DoubleDoubles<S> {
+        let [hi, lo] = product(a.0, b.0);
+        DoubleDoubles(sum(self.0, [hi.negated(), lo.negated()]))
     }
 }
 

@@ -9,6 +9,7 @@
 mod coordinates;
 mod double_double;
 mod dual;
+mod groups;
 mod lanes;
 mod norm;
 mod registers;
@@ -17,6 +18,7 @@ mod sum;
 pub use coordinates::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use groups::{Group, GroupWork};
 pub use lanes::{Lanes, Packed, PackedWork, dispatched, widest};
 pub use norm::{distance, norm, scaled_norm};
 pub use sum::Sum;
@@ -135,6 +137,11 @@ pub trait Real: Scalar<Constant = f64> {
 
     /// The nearest `f64`; that of the first lane.
     fn rounded(&self) -> f64;
+
+    /// Runs `work` with groups of such numbers where the machine computes a group sooner than its numbers one by one, and hands it back elsewhere.
+    fn grouped<W: GroupWork<Self>>(&self, work: W) -> Result<W::Output, W> {
+        Err(work)
+    }
 
     /// Zero in place of a value that is only rounding. Derivatives stay: they are not zero where the value is.
     #[inline(always)]

@@ -61,6 +61,7 @@ mod wide;
 #[doc(hidden)]
 pub mod solvers {
     pub use super::constrained::solve_nonnegative;
+    pub use super::dense::{add_outers, factorize, row_products};
     pub use super::extremes::Extremes;
     pub use super::jacobi::eigenvectors;
     pub use super::normal::Normal;

@@ -21,11 +21,15 @@ macro_rules! known_order {
     }};
 }
 
+mod grouped;
+mod pivot;
 mod products;
 
 pub use products::{add_outers, inner, row_products, tie, trace};
 
 use crate::scalar::{Real, Scalar};
+use grouped::{Factorize, LEAST};
+use pivot::accepted;
 
 /// Relative pivots below this are rounding errors: some fifty units of `f64`, as the eliminations of small matrices leave.
 /// [`at_rounding`] makes it the floor of numbers of another precision.
@@ -85,6 +89,11 @@ pub fn eliminate_row<T: Scalar>(row: &mut [T], before: &[T], inverse: &[T], m: u
 /// direction.
 pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
     let any = a[0].clone();
+    if n >= LEAST
+        && let Ok(least) = any.grouped(Factorize { a: &mut *a, n, floor, inverse: &mut *inverse })
+    {
+        return least;
+    }
     any.vectorize(
         #[inline(always)]
         || known_order!(n => factorize_order(a, n, floor, inverse)),
@@ -94,21 +103,12 @@ pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) 
 #[inline(always)]
 fn factorize_order<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) -> T {
     let (a, inverse) = (&mut a[..n * n], &mut inverse[..n]);
-    let one = a[0].one();
-    // Its reciprocal is zero beside those of other pivots, and its square does not overflow.
-    let huge = one.constant(&1e30);
-    let mut least = one.clone();
+    let mut least = a[0].one();
     for s in 0..n {
         let (before, row) = a.split_at_mut(s * n);
         let row = &mut row[..=s];
         let pivot = eliminate_row(row, before, inverse, n, s);
-        // An entry that is not above zero has no relative pivot; its direction is removed below.
-        let diagonal = row[s].choose(&row[s], &one);
-        // The quotient is not in the chain from pivot to pivot.
-        least = least.least(&(pivot.clone() / &diagonal));
-        // The choice is one of values and no branch, because lanes may differ.
-        let pivot = (pivot.clone() - &diagonal.scaled(&floor)).choose(&pivot, &huge);
-        inverse[s] = one.clone() / &pivot;
+        inverse[s] = accepted(pivot, &row[s], floor, &mut least);
     }
     least
 }

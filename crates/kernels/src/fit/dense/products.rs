@@ -1,11 +1,15 @@
 //! Products of rows, and sums of them.
 
+use super::grouped::{AddOuters, LEAST, RowProducts};
 use crate::scalar::{Real, Scalar};
 
 /// `out_st = a_s · b_t` for rows of length n; with `lower` only the lower triangle of a square result.
 ///
 /// Computed in blocks of four rows by four, so that each number that is loaded serves four sums.
 pub fn row_products<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut [T]) {
+    if b.len() >= LEAST * n && a[0].grouped(RowProducts { a, b, n, lower, out: &mut *out }).is_ok() {
+        return;
+    }
     a[0].vectorize(
         #[inline(always)]
         || known_order!(n => row_products_order(a, b, n, lower, out)),
@@ -99,6 +103,9 @@ pub fn inner<T: Scalar>(a: &[T], b: &[T]) -> T {
 /// `A ← A ± Σ_I c_I Σ_{s∈I} g_s g_sᵀ`, lower triangle, for rows g of the order n of A; `unknowns` gives the I of each
 /// row.
 pub fn add_outers<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: &[usize], sign: f64) {
+    if n >= LEAST && c[0].grouped(AddOuters { a: &mut *a, g, n, c, unknowns, sign }).is_ok() {
+        return;
+    }
     c[0].vectorize(
         #[inline(always)]
         || known_order!(n => add_outers_order(a, g, n, c, unknowns, sign)),
