@@ -198,7 +198,10 @@ def bench():
 
 def test_intervals_hold_the_truth_of_another_mesh_and_element():
     pytest.importorskip("skfem")
-    found = bench().study(["bracket"], range(5), noises=(0.0, 0.05), kinds=("interior",))
+    own = bench()
+    # What more cells and layers change of the data is far below the intervals, of 1 %.
+    assert own.error_of_data("bracket", 0) < 2e-4
+    found = own.study(["bracket"], range(5), noises=(0.0, 0.05), kinds=("interior",))
     rows = sum(row["intervals"] * row["held"] for row in found.values())
     # Of 20 intervals of 95 %, fewer than 16 hold with a chance of 0.3 %.
     assert rows >= 16, found

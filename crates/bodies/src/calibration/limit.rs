@@ -24,16 +24,15 @@ const ORDERLY: f64 = 0.9;
 /// share of the way from the latter.
 const PLACE: f64 = 0.55;
 /// The share of that way within which 95 % of the rests are.
-const REACH: f64 = 0.24;
-/// What is known of the rest, and of how changes go on, grows by these multiples of the excess of the ratio over that of an edge, which only meshes
-/// without an order have.
-const GROWTH: (f64, f64) = (0.7, 12.0);
+const REACH: f64 = 0.14;
+/// The reach of [`CHANGE`] grows by this multiple of the excess of the ratio over that of an edge, which only meshes without an order have.
+const GROWTH: f64 = 13.0;
 /// The largest ratio with which changes are compared.
 const SLOWEST: f64 = 0.6;
 /// The part of a change that is not that of the mesh before times the ratio goes on by this multiple, and how far to either side 95 % are.
-const CHANGE: (f64, f64) = (0.55, 0.35);
+const CHANGE: (f64, f64) = (0.55, 0.05);
 /// The rest of an unknown is known to this share of the largest change of all of them: one may hide in the other.
-const HIDDEN: f64 = 0.018;
+const HIDDEN: f64 = 0.012;
 
 /// What is left of an answer beyond the finest mesh, from its last changes `c_1 = u_n − u_{n−1}` and `c_0 = u_{n−1} − u_{n−2}`:
 /// `w c_1 + κ (c_1 − r c_0)`, with the ratio r of all answers. w is `q/(1 − q)` of changes that go on with the ratio q. It is bounded by that
@@ -80,12 +79,12 @@ impl Rest {
         let doubt = ((met / most - ORDERLY) / (1.0 - ORDERLY)).clamp(0.0, 1.0);
         let excess = (met - most).max(0.0);
         let share = goes_on(least + (1.0 - (1.0 - PLACE) * doubt) * (bound - least));
-        let reach = REACH * (goes_on(bound) - goes_on(least)) + GROWTH.0 * excess;
+        let reach = REACH * (goes_on(bound) - goes_on(least));
         Some(Rest {
             share,
             deviation: deviation(reach),
             ratio,
-            other: deviation(CHANGE.1 + GROWTH.1 * excess),
+            other: deviation(CHANGE.1 + GROWTH * excess),
             hidden: deviation(HIDDEN),
         })
     }
