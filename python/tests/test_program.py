@@ -50,7 +50,10 @@ def test_the_command_is_in_files_as_it_was_typed(tmp_path):
 def test_interrupts_end_the_program(scenes, tmp_path):
     command = [sys.executable, "-m", "springfit", "sweep", str(scenes / "square_quad.toml"), "--set", "sweep.over={material.poisson={from=0.0,to=0.4,count=100000}}", "--out", "o"]
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    time.sleep(3)
+    # A signal that comes while Python starts is not one to the program.
+    log, end = tmp_path / "o" / "studies.jsonl", time.monotonic() + 60
+    while not (log.exists() and log.stat().st_size) and time.monotonic() < end:
+        time.sleep(0.05)
     process.send_signal(signal.SIGINT)
     assert process.wait(60) in (130, -signal.SIGINT, 1, 0)
     process.stdout.close(), process.stderr.close()
