@@ -26,13 +26,14 @@ const PLACE: f64 = 0.55;
 /// The share of that way within which 95 % of the rests are.
 const REACH: f64 = 0.14;
 /// The reach of [`CHANGE`] grows by this multiple of the excess of the ratio over that of an edge, which only meshes without an order have.
-const GROWTH: f64 = 13.0;
+const GROWTH: f64 = 12.0;
 /// The largest ratio with which changes are compared.
 const SLOWEST: f64 = 0.6;
 /// The part of a change that is not that of the mesh before times the ratio goes on by this multiple, and how far to either side 95 % are.
-const CHANGE: (f64, f64) = (0.55, 0.05);
+// On bodies without a clamped edge, whose changes are small, 0.05 would hold too few.
+const CHANGE: (f64, f64) = (0.55, 0.35);
 /// The rest of an unknown is known to this share of the largest change of all of them: one may hide in the other.
-const HIDDEN: f64 = 0.012;
+const HIDDEN: f64 = 0.018;
 
 /// What is left of an answer beyond the finest mesh, from its last changes `c_1 = u_n − u_{n−1}` and `c_0 = u_{n−1} − u_{n−2}`:
 /// `w c_1 + κ (c_1 − r c_0)`, with the ratio r of all answers. w is `q/(1 − q)` of changes that go on with the ratio q. It is bounded by that
