@@ -32,7 +32,8 @@ INSIDE = 1e-7
 
 
 def lines(cells, layers):
-    """Coordinates from 0 to 1 of so many cells, with thinner and thinner layers on both sides of each of the coordinates that `layers` names."""
+    """The coordinates of the nodes of `cells` equal cells from 0 to 1. Around each coordinate x of `layers`, `layers[x]` further nodes on either side make
+    cells that become thinner towards x."""
     inner = np.linspace(0, 1, cells + 1)
     found = list(inner)
     for end, count in layers.items():

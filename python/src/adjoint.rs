@@ -89,7 +89,7 @@ impl SpringBody {
         Ok(SpringBody { points, dimension, pairs, others })
     }
 
-    /// Those of a network, whose laws of force are expressions.
+    /// Takes the springs of a network, whose laws of force are expressions.
     #[staticmethod]
     fn of_network(py: Python, network: &Network) -> PyResult<SpringBody> {
         let own = network.body.network();

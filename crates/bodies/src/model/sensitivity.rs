@@ -49,6 +49,12 @@ impl Edge {
         std::array::from_fn(|k| if k < d { v[j * d + k] - v[i * d + k] } else { 0.0 })
     }
 
+    /// `(a·u − 3 n·a n·u) n + n·a u + n·u a`, by which the stiffness along u turns where the edge changes by a.
+    fn turn(&self, a: &[f64; 3], u: &[f64; 3]) -> [f64; 3] {
+        let (both, na, nu) = (dot(a, u), dot(&self.n, a), dot(&self.n, u));
+        std::array::from_fn(|i| (both - 3.0 * na * nu) * self.n[i] + na * u[i] + nu * a[i])
+    }
+
     fn add(&self, force: [f64; 3], to: &mut [f64], d: usize) {
         let [i, j] = self.ends;
         for (k, force) in force.into_iter().enumerate().take(d) {
@@ -103,7 +109,7 @@ impl Network {
     /// slope at rest.
     pub fn force_sensitivities(&self, x: &[f64], a: &[f64]) -> NetworkNumbers {
         let d = self.dimension;
-        let mut found = self.nothing(0);
+        let (mut found, mut gradient) = (self.nothing(0), Vec::new());
         for (s, spring) in self.lengths.iter().enumerate() {
             let edge = Edge::of(spring, x, d);
             let along = dot(&edge.n, &edge.change(a, d));
@@ -111,8 +117,8 @@ impl Network {
             found.rests[s] = -spring.constant * along;
         }
         self.each_other(x, |s, spring, x| {
-            let along = dot(&spring.measure.gradient(x, d), &here(spring, a, d));
-            let pull = Pull::of(spring, spring.measure.value(x, d));
+            let pull = Pull::of(spring, spring.measure.both(x, d, &mut gradient));
+            let along = dot(&gradient, &here(spring, a, d));
             found.constants[s] = pull.by_constant * along;
             found.rests[s] = pull.jet.by_rest * along;
         });
@@ -122,16 +128,16 @@ impl Network {
     /// The change of the slopes F of the energy at positions x with changes of constants and rest measures, `[points × dimension]`, N.
     pub fn force_change(&self, x: &[f64], change: &NetworkNumbers) -> Vec<f64> {
         let d = self.dimension;
-        let mut force = vec![0.0; x.len()];
+        let (mut force, mut gradient) = (vec![0.0; x.len()], Vec::new());
         for (s, spring) in self.lengths.iter().enumerate() {
             let edge = Edge::of(spring, x, d);
             let pull = change.constants[s] * (edge.length - spring.rest) - spring.constant * change.rests[s];
             edge.add(edge.n.map(|n| pull * n), &mut force, d);
         }
         self.each_other(x, |s, spring, x| {
-            let of = Pull::of(spring, spring.measure.value(x, d));
+            let of = Pull::of(spring, spring.measure.both(x, d, &mut gradient));
             let pull = change.constants[s] * of.by_constant + of.jet.by_rest * change.rests[s];
-            add(spring, spring.measure.gradient(x, d).iter().map(|g| pull * g), &mut force, d);
+            add(spring, gradient.iter().map(|g| pull * g), &mut force, d);
         });
         force
     }
@@ -156,8 +162,7 @@ impl Network {
             found.constants[s] = (1.0 - share) * both + share * na * nu;
             found.rests[s] = k / edge.length * (na * nu - both);
             let turn = k * share / edge.length;
-            let slope = |i: usize| turn * ((both - 3.0 * na * nu) * edge.n[i] + na * u[i] + nu * a[i]);
-            edge.add(std::array::from_fn(slope), &mut found.points, d);
+            edge.add(edge.turn(&a, &u).map(|t| turn * t), &mut found.points, d);
         }
         let (mut points, mut constants, mut rests) = (found.points, found.constants, found.rests);
         self.each_other(x, |s, spring, x| {
@@ -193,14 +198,15 @@ impl Network {
                 edge.add(u.map(|u| change.constants[s] * u), &mut force, d);
                 continue;
             }
-            let (both, nb, nu) = (dot(&b, &u), dot(&edge.n, &b), dot(&edge.n, &u));
+            let nu = dot(&edge.n, &u);
             let share = spring.rest / edge.length;
             let (own, of_rest, turn) =
                 (change.constants[s], k * change.rests[s] / edge.length, k * share / edge.length);
+            let turned = edge.turn(&b, &u);
             let along = |i: usize| {
                 own * ((1.0 - share) * u[i] + share * nu * edge.n[i])
                     + of_rest * (nu * edge.n[i] - u[i])
-                    + turn * ((both - 3.0 * nb * nu) * edge.n[i] + nb * u[i] + nu * b[i])
+                    + turn * turned[i]
             };
             edge.add(std::array::from_fn(along), &mut force, d);
         }
@@ -266,7 +272,7 @@ struct Pull {
 }
 
 impl Pull {
-    /// That of a spring that measures c.
+    /// Evaluates the force of a spring that measures c.
     fn of(spring: &MeasureSpring, c: f64) -> Pull {
         let (k, past) = (spring.constant, c - spring.rest);
         let of_law = |own: &SpringLaw| own.law.jet(c, spring.rest, &own.parameters);
@@ -294,17 +300,14 @@ fn degree(spring: &MeasureSpring, d: usize) -> Option<usize> {
     }
 }
 
-/// `Σ_jl (∂³c/∂x_i∂x_j∂x_l) a_j u_l` at the positions x. That of a length is `−((a·u − 3 n·a n·u) n + n·a u + n·u a)/ℓ²`. A content in three dimensions is a homogeneous polynomial of degree three, so that its second derivatives
-/// at a are their changes along a; in less dimensions they do not change.
+/// `Σ_jl (∂³c/∂x_i∂x_j∂x_l) a_j u_l` at the positions x: of a length `−t/ℓ²` with t of [`Edge::turn`]. A content in three dimensions is a
+/// homogeneous polynomial of degree three, so that its second derivatives at a are their changes along a; in less dimensions they do not change.
 fn third(spring: &MeasureSpring, x: &[f64], a: &[f64], u: &[f64], d: usize) -> Vec<f64> {
     if let Measure::Length = spring.measure {
         let edge = Edge::between([0, 1], x, d);
         let (a, u) = (edge.change(a, d), edge.change(u, d));
-        let (both, na, nu) = (dot(&a, &u), dot(&edge.n, &a), dot(&edge.n, &u));
-        let along =
-            |i: usize| -((both - 3.0 * na * nu) * edge.n[i] + na * u[i] + nu * a[i]) / (edge.length * edge.length);
         let mut found = vec![0.0; x.len()];
-        edge.add(std::array::from_fn(along), &mut found, d);
+        edge.add(edge.turn(&a, &u).map(|t| -t / (edge.length * edge.length)), &mut found, d);
         return found;
     }
     match degree(spring, d) {

@@ -121,7 +121,7 @@ pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<M
         visited += CHUNK;
         let found = springs.len() + part.0.len();
         if found > springs.capacity() {
-            // A list that grows is copied: how many springs all points have is told by those that were visited.
+            // A list that grows is copied. The number of springs at the points that were visited tells how many there are at all points.
             let all = found.max(found.saturating_mul(mesh.point_count()) / visited);
             springs.reserve_exact(all + all / 16 - springs.len());
         }

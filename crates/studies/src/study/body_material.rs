@@ -65,19 +65,19 @@ impl BodyConstants {
     }
 }
 
-/// For which cells of a body an input gives a number.
+/// The cells of a body for which an input gives a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stated {
-    /// For none.
+    /// The input gives it for no cell.
     Nowhere,
-    /// For some.
+    /// The input gives it for some of the cells.
     Partly,
-    /// For all.
+    /// The input gives it for all cells.
     Everywhere,
 }
 
 impl Stated {
-    /// Whether it gives the one number that all cells have.
+    /// Tells whether the input gives the one number that all cells share.
     pub fn once(number: Option<f64>) -> Stated {
         if number.is_some() { Stated::Everywhere } else { Stated::Nowhere }
     }
