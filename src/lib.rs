@@ -103,18 +103,22 @@ pub mod program;
 #[cfg(feature = "cli")]
 pub mod referee;
 #[cfg(feature = "cli")]
-pub mod report;
-#[cfg(feature = "cli")]
 mod terminal;
 
-pub use springfit_bodies::{calibration, dynamics, engine, model, positive, solve, whole};
+pub use springfit_bodies::{dynamics, engine, model, solve};
+pub use springfit_element::{element, material, springs, stiffness};
+pub use springfit_fit::fit;
 pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};
 #[cfg(feature = "cli")]
 pub use springfit_generate::generate;
-pub use springfit_kernels::{element, fit, material, springs, stiffness};
+pub use springfit_identify::{calibration, positive, whole};
 pub use springfit_mesh::mesh;
+#[cfg(feature = "cli")]
+pub use springfit_report::report;
 pub use springfit_studies::study;
 
+#[cfg(feature = "cli")]
+use springfit_foundation::file;
 /// Files that come into a folder together, and replace those of the run before.
 ///
 /// ```
@@ -229,8 +233,6 @@ pub use springfit_foundation::named::suggestion;
 /// ```
 #[doc(inline)]
 pub use springfit_foundation::named::unknown;
-#[cfg(feature = "cli")]
-use springfit_foundation::{file, number};
 #[cfg(feature = "cli")]
 use springfit_networks::network;
 

@@ -3,6 +3,7 @@
 use serde_json::Value;
 use springfit::report::{Report, VERSION, report};
 use springfit::study::{KindRecord, Scene, run};
+use springfit_report::report::parts::{Note, Weight, grouped, ordered};
 use std::path::Path;
 
 /// Everything that a linear scene may have: fits to the stiffness, published and to the whole object, a gauge, a motion.
@@ -195,4 +196,32 @@ fn keys_belong_to_their_objectives() {
         let error = scene(keys);
         assert!(error.starts_with(start), "{keys}: {error}");
     }
+}
+
+#[test]
+fn notes_that_differ_in_subjects_and_figures_are_one_and_the_dearest_is_first() {
+    let far = |name: &str, percent: &str| {
+        Note::of_model(Weight::Model, name, "the network is not the material").figures(percent).advice(". Take exact")
+    };
+    let notes = vec![
+        Note::of_body(Weight::Detail, "some detail"),
+        far("a", ": 16 %"),
+        far("b", ": 28 %"),
+        Note::of_model(Weight::Broken, "b", "mechanism"),
+        Note::of_load(Weight::Reference, "errors under ", "push", " are relative to quadratic elements")
+            .figures(": 1 %"),
+        Note::of_load(Weight::Reference, "errors under ", "pull", " are relative to quadratic elements")
+            .figures(": 1 %"),
+    ];
+    let sentences: Vec<String> = grouped(notes.clone()).iter().map(Note::sentence).collect();
+    assert_eq!(
+        sentences,
+        [
+            "b: mechanism",
+            "errors under push, pull are relative to quadratic elements: 1 %",
+            "a, b: the network is not the material. Take exact",
+            "some detail"
+        ]
+    );
+    assert_eq!(ordered(notes).len(), 6);
 }

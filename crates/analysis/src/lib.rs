@@ -8,6 +8,7 @@ pub mod analysis;
 
 // The layers below, by the same names as everywhere.
 use springfit_bodies::{model, solve};
+use springfit_element::{element, material, springs, stiffness};
+use springfit_fit::fit;
 use springfit_foundation::{clock, error, named, number, random, scalar, symbolic};
-use springfit_kernels::{element, fit, material, springs, stiffness};
 use springfit_mesh::mesh;

@@ -7,6 +7,7 @@
 pub mod generate;
 
 // The layers below, by the same names as everywhere.
+use springfit_element::{element, material, springs, stiffness};
+use springfit_fit::fit;
 use springfit_foundation::named::unknown;
 use springfit_foundation::{error, scalar, symbolic, text};
-use springfit_kernels::{element, fit, material, springs, stiffness};

@@ -8,6 +8,6 @@ pub mod network;
 
 // The layers below, by the same names as everywhere.
 use springfit_bodies::{engine, model};
+use springfit_element::{element, material, springs, stiffness};
 use springfit_foundation::{error, file, symbolic, text};
-use springfit_kernels::{element, material, springs, stiffness};
 use springfit_mesh::mesh;

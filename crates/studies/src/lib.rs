@@ -8,7 +8,9 @@ pub mod study;
 
 // The layers below, by the same names as everywhere.
 use springfit_analysis::analysis;
-use springfit_bodies::{calibration, dynamics, engine, model, positive, solve, whole};
-use springfit_foundation::{bound, clock, error, file, named, number, quantity, random, range, scalar, symbolic, text};
-use springfit_kernels::{element, fit, material, springs, stiffness};
+use springfit_bodies::{dynamics, engine, model, solve};
+use springfit_element::{element, material, springs, stiffness};
+use springfit_fit::fit;
+use springfit_foundation::{bound, clock, error, file, named, number, quantity, random, range, scalar, text};
+use springfit_identify::{calibration, whole};
 use springfit_mesh::mesh;

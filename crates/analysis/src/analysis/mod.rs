@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod homogenise;
+pub mod locking;
 pub mod metrics;
 pub mod moduli;
 pub mod shapes;

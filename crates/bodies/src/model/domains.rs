@@ -46,7 +46,7 @@ fn springs_of_edges(mesh: &Mesh, material: MaterialMap, fit: &ExactFit) -> Resul
 }
 
 /// The domains of all edges of linear simplices, one in each region of the material that meets at the edge.
-pub(crate) fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMap) -> Vec<EdgeDomain> {
+pub fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMap) -> Vec<EdgeDomain> {
     let (d, n) = (mesh.dimension, block.element.nodes());
     let (mut gradients, mut volumes) = (Vec::with_capacity(block.connectivity.len() * d), Vec::new());
     each_cell(mesh, |_, _, geometry| {
@@ -87,7 +87,7 @@ pub(crate) fn edge_domains(mesh: &Mesh, block: &CellBlock, material: &MaterialMa
 }
 
 /// The network of the springs of domains; `law` is that of their springs on content.
-pub(crate) fn network_of<'a>(
+pub fn network_of<'a>(
     dimension: usize,
     domains: impl Iterator<Item = (&'a EdgeDomain, &'a DomainSprings)> + Clone,
     law: Option<&Arc<Law>>,
@@ -103,11 +103,7 @@ pub fn has_edge_springs(mesh: &Mesh, material: &MaterialMap, fit: &ExactFit) -> 
 }
 
 /// The cells of the mesh, and what their domains have in common.
-pub(crate) fn parts<'a>(
-    mesh: &'a Mesh,
-    material: &MaterialMap,
-    fit: &ExactFit,
-) -> Result<(&'a CellBlock, ExactDomains)> {
+pub fn parts<'a>(mesh: &'a Mesh, material: &MaterialMap, fit: &ExactFit) -> Result<(&'a CellBlock, ExactDomains)> {
     let block = linear_simplices(mesh, "shear", "\"cells\": edges", fit.shear.name())?;
     let all = match material.materials()? {
         CellMap::Uniform(of_all) => std::slice::from_ref(of_all),
@@ -154,7 +150,7 @@ fn merged(mut springs: Vec<([usize; 2], f64)>) -> Vec<LengthSpring> {
 
 /// The domain of an edge within one region.
 #[derive(Debug, Clone)]
-pub(crate) struct EdgeDomain {
+pub struct EdgeDomain {
     /// The ends of the edge.
     pub edge: [usize; 2],
     /// Its points, in rising order.

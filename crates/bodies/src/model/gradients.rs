@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// `∇c_s` of every spring at given positions, on the degrees of freedom of the spring.
 #[derive(Debug)]
-pub(crate) struct SpringGradients(PartVectors);
+pub struct SpringGradients(PartVectors);
 
 impl SpringGradients {
     /// The gradients at the positions `x`, `[points × dimension]`, m; and the force of each spring there, in N if it

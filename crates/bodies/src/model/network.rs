@@ -163,7 +163,7 @@ impl MeasureSpring {
     }
 
     /// `k g gᵀ + T H` at the points as they are, `[points · d × points · d]`: the slope, the gradient, the force, the second derivatives.
-    pub(crate) fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
+    pub fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
         let mut x = vec![0.0; self.points.len() * d];
         gather(points, d, &self.points, &mut x);
         let gradient = self.measure.gradient(&x, d);

@@ -46,6 +46,6 @@ pub(crate) fn places(pairs: &[(usize, usize)], is_row: &[bool]) -> Vec<usize> {
 }
 
 /// The degrees of freedom of `nodes`, in order.
-pub(crate) fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
+pub fn dofs(nodes: &[usize], dimension: usize) -> impl Iterator<Item = usize> + Clone {
     nodes.iter().flat_map(move |n| (0..dimension).map(move |k| n * dimension + k))
 }

@@ -2,13 +2,14 @@
 
 /// The degrees of freedom of each part.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Places {
+pub struct Places {
     /// The index at which each part begins in `dofs`, `[parts + 1]`.
     starts: Vec<usize>,
     dofs: Vec<usize>,
 }
 
 impl Places {
+    /// No part.
     pub fn new() -> Places {
         Places { starts: vec![0], dofs: Vec::new() }
     }
@@ -38,8 +39,10 @@ impl Default for Places {
 
 /// The vectors of all parts, for example the forces `F_s = ∂F/∂c_s` of each part at factor 1.
 #[derive(Debug, Clone)]
-pub(crate) struct PartVectors {
+pub struct PartVectors {
+    /// Where each part acts.
     pub places: std::sync::Arc<Places>,
+    /// The vectors of the parts, one after another, in the order of their places.
     pub values: Vec<f64>,
 }
 

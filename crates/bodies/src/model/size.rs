@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 /// positions 16 for the indices, 8 for their order, 8 to sort them and 8 for the value.
 const BYTES: u64 = 24 + 2 * (16 + 8 + 8 + 8);
 /// The advice if a model is too large.
-pub(crate) const ADVICE: &str = "take a mesh with fewer points, or a machine with more memory";
+pub const ADVICE: &str = "take a mesh with fewer points, or a machine with more memory";
 
 fn check(what: &str, entries: usize) -> Result<()> {
     memory::require(what, entries as u64 * BYTES, ADVICE).map_err(|e| e.at_key("mesh"))

@@ -2,16 +2,13 @@
 //!
 //! Theory: page *Bodies on several machines* of the book.
 
-use super::body::{Case, load_cases};
-use super::fits::{Fitted, NamedFit, Recipe, Reference, Task};
-use super::progress::Progress;
-use super::scene::{Scene, load_elements};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::{CellFits, ShearSprings};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{BlockStiffness, Network};
+use springfit_scenes::{Case, Fitted, NamedFit, Progress, Recipe, Reference, Scene, Task, load_cases, load_elements};
 use std::path::Path;
 use std::sync::Arc;
 

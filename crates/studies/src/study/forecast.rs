@@ -1,14 +1,9 @@
 //! What a scene will take, before it is run: its sizes, and estimates of time and memory.
 
+mod rates;
 mod whole;
 
-use super::body::{Case, LargeBody, load_cases};
-use super::cost::{
-    ASSEMBLY, BYTES, COMPARED, COMPARISONS, ITERATED, REFINEMENTS, SLOWEST_RATE, SOLUTIONS, SPARSE, entries,
-};
-use super::fits::{FitLimit, NamedFit, Reference};
-use super::fitting::fit_mesh;
-use super::scene::Scene;
+use self::rates::{ASSEMBLY, BYTES, COMPARED, ITERATED, SLOWEST_RATE, SOLUTIONS, SPARSE};
 use crate::analysis::tensor::most_samples;
 use crate::clock::Clock;
 use crate::error::Result;
@@ -18,6 +13,9 @@ use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
+use springfit_scenes::{
+    COMPARISONS, Case, FitLimit, LargeBody, NamedFit, REFINEMENTS, Reference, Scene, entries, fit_mesh, load_cases,
+};
 use std::collections::BTreeMap;
 
 /// Work that takes longer is announced, s.

@@ -1,8 +1,8 @@
 //! Works that do not depend on each other, several at a time.
 
-use super::timing::STACK;
 use crate::error::{Error, Result};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use springfit_scenes::STACK;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;

@@ -1,14 +1,14 @@
 //! The errors of a sampled fit over the number of its shapes.
 
-use super::fits::{FamilyOutcome, NamedFit, Recipe, Reference, SampledRecipe};
-use super::fitting::fit_without_errors;
-use super::progress::{Event, Progress};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use crate::fit::{Sampling, Spread};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use serde::Serialize;
+use springfit_scenes::{
+    Event, FamilyOutcome, NamedFit, Progress, Recipe, Reference, SampledRecipe, fit_without_errors,
+};
 
 /// A fit to the first shapes of a sequence.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,6 +1,6 @@
 //! The stages of a scene, before any of them runs.
 
-use super::scene::Scene;
+use springfit_scenes::Scene;
 
 /// The stages of a scene in order: what will run, or the reason why it is left out.
 pub fn stages(scene: &Scene) -> Vec<(String, Option<String>)> {

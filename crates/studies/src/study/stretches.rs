@@ -1,13 +1,6 @@
 //! Springs at large deformation: their error as a function of the stretch, and that of a sampled fit as a function of
 //! the number of shapes and the run time.
 
-use super::body::LargeBody;
-use super::fits::{ExactRecipe, ForceRecipe, NamedFit, Recipe, Reference, SampledOutcome, SampledRecipe};
-use super::fitting::fit_without_errors;
-use super::outcome::FitOutcome;
-use super::own_name::BODY;
-use super::progress::{Event, Progress};
-use super::timing::{Times, on_one_thread, time_fits};
 use crate::analysis::metrics::displacement_error;
 use crate::clock::Clock;
 use crate::element::{Element, SpringGroup};
@@ -19,6 +12,10 @@ use crate::model::{Body, Elastic, Response, Support, displaced};
 use crate::solve::{Ending, Newton};
 use crate::springs::{Law, Springs};
 use serde::Serialize;
+use springfit_scenes::{
+    BODY, Event, ExactRecipe, FitOutcome, ForceRecipe, LargeBody, NamedFit, Progress, Recipe, Reference,
+    SampledOutcome, SampledRecipe, Times, fit_without_errors, on_one_thread, time_fits,
+};
 use std::sync::Arc;
 
 /// The stretches of the box, from the range of the linear theory to twice its length.

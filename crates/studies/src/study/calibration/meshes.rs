@@ -5,8 +5,7 @@ use crate::calibration::{Asked, Laws, Level, LoadCase};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::{Embedding, Mesh};
 use crate::model::cell_places;
-use crate::study::body::applied_cases;
-use crate::study::scene::Scene;
+use springfit_scenes::{Scene, applied_cases};
 
 /// The degrees of freedom of the finest mesh, where the scene does not say how often the mesh is refined: some seconds for each step.
 const USUAL: usize = 60_000;

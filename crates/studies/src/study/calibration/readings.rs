@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::mesh::{Mesh, Scattered};
 use crate::model::Support;
 use crate::named::unknown;
-use crate::study::scene::{Reaction, Scene};
+use springfit_scenes::{Reaction, Scene};
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -12,11 +12,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::MaterialMap;
 use crate::mesh::{CellBlock, Mesh};
 use crate::named::unknown;
-use crate::study::body::applied_cases;
-use crate::study::checkpoint::Controls;
-use crate::study::progress::{Event, Progress};
-use crate::study::scene::{CalibrationRecipe, Scene};
 use crate::text::rounded;
+use springfit_scenes::{CalibrationRecipe, Controls, Event, Progress, Scene, applied_cases};
 
 /// Residuals that are as large by chance with a smaller probability are more than noise. One run in a hundred with
 /// right noise is warned of.

@@ -2,8 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::fit::Solver;
-use crate::study::fits::{FitEntry, NamedFit};
-use crate::study::own_name::{BODY, expect_own_name};
+use springfit_scenes::{BODY, FitEntry, NamedFit, expect_own_name};
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};

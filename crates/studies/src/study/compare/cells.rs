@@ -11,10 +11,8 @@ use crate::error::{Error, Result};
 use crate::fit::{CellFits, ElementErrors, Solver, Spread, element_errors};
 use crate::material::Material;
 use crate::springs::Springs;
-use crate::study::fits::{NamedFit, Recipe};
-use crate::study::progress::{Event, Progress};
-use crate::study::timing::{TimedWork, Times, interleaved_after, on_one_thread};
 use serde::Serialize;
+use springfit_scenes::{Event, NamedFit, Progress, Recipe, TimedWork, Times, interleaved_after, on_one_thread};
 use std::sync::Arc;
 
 /// The result of one method on shapes of an element.

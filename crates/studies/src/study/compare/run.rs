@@ -7,16 +7,11 @@ use super::record::{CaseRecord, MethodRecord};
 use super::usual::{compared, usual_fits};
 use crate::error::Result;
 use crate::number::finite;
-use crate::study::checkpoint::Controls;
-use crate::study::fits::NamedFit;
 use crate::study::jobs::{apart, each_of};
-use crate::study::outcome::{FitOutcome, Measured, Outcome};
-use crate::study::own_name::BODY;
-use crate::study::progress::Progress;
 use crate::study::run::run_with;
 use crate::study::stretches::{Pulled, STRETCHES, StretchedFit};
-use crate::study::timing::Times;
 use serde_json::{Value, json};
+use springfit_scenes::{BODY, Controls, FitOutcome, Measured, NamedFit, Outcome, Progress, Times};
 use std::collections::BTreeMap;
 
 impl Comparing {

@@ -4,8 +4,7 @@ use super::entry::{ShapesKeys, numbers, values};
 use crate::analysis::shapes::{ShapeFamily, ShapeSet};
 use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
-use crate::study::choice::choice;
-use crate::study::keys::keys;
+use springfit_scenes::{choice, keys};
 
 /// Sets of a table at most.
 const MOST: f64 = 1e5;

@@ -7,14 +7,9 @@ use crate::fit::{Fit, MotionWeight, Objective, Search, ShearSprings, Solver, Vol
 use crate::material::{EnergyMap, Material, MaterialMap};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::Springs;
-use crate::study::body::applied_cases;
-use crate::study::checkpoint::Controls;
-use crate::study::fits::{ExactRecipe, NamedFit, Recipe, WholeBody};
-use crate::study::outcome::Outcome;
-use crate::study::progress::Progress;
 use crate::study::run::run_with;
-use crate::study::scene::Scene;
 use crate::study::stretches::sampled_fits;
+use springfit_scenes::{Controls, ExactRecipe, NamedFit, Outcome, Progress, Recipe, Scene, WholeBody, applied_cases};
 
 /// The largest stretch of the shapes that are sampled for a scene.
 const SAMPLED: f64 = 0.35;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
-use crate::study::scene::Scene;
+use springfit_scenes::Scene;
 
 /// The largest number of unknowns of the finest level if cells fill space. Factors then grow with the power 4/3, and
 /// 200 000 unknowns take some gigabytes.

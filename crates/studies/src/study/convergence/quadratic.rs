@@ -3,14 +3,10 @@
 
 use super::outcome::{LoadConvergence, ModelConvergence, Step};
 use super::quantities::Quantities;
+use crate::analysis::locking::Locking;
 use crate::error::Result;
 use crate::mesh::Mesh;
-use crate::study::body::{FinerAnswer, quadratic_answers};
-use crate::study::locking::Locking;
-use crate::study::outcome::Outcome;
-use crate::study::own_name::QUADRATIC;
-use crate::study::progress::Progress;
-use crate::study::scene::Scene;
+use springfit_scenes::{FinerAnswer, Outcome, Progress, QUADRATIC, Scene, quadratic_answers};
 
 /// Quadratic elements on the levels of linear cells that lock.
 pub(super) struct Quadratic {

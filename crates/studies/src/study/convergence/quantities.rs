@@ -7,8 +7,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Action, nodal_forces};
 use crate::scalar::Sum;
-use crate::study::body::applied_cases;
-use crate::study::scene::{LoadCase, Part, Scene};
+use springfit_scenes::{LoadCase, Part, Scene, applied_cases};
 
 /// A load on a mesh, which weights displacements.
 pub struct Quantities {

@@ -6,8 +6,7 @@ use crate::material::MaterialMap;
 use crate::mesh::Mesh;
 use crate::model::{Support, masses};
 use crate::springs::norm;
-use crate::study::body::applied_cases;
-use crate::study::scene::Scene;
+use springfit_scenes::{Scene, applied_cases};
 
 /// Contents that differ by less than this share are equal up to rounding. Coordinates in files have six digits or more.
 const ROUNDING: f64 = 1e-6;

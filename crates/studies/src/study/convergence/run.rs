@@ -9,13 +9,9 @@ use crate::analysis::metrics::{displacement_error, product, square};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, is_flat, masses};
-use crate::study::checkpoint::Controls;
-use crate::study::outcome::{FitOutcome, Outcome};
-use crate::study::own_name::BODY;
-use crate::study::progress::{Event, Progress};
 use crate::study::run::run_with;
-use crate::study::scene::{LoadCase, Output, Scene};
 use crate::text::time_in_words;
+use springfit_scenes::{BODY, Controls, Event, FitOutcome, LoadCase, Outcome, Output, Progress, Scene};
 use std::time::Instant;
 
 /// The largest number of levels. Each level has up to eight times as many cells as the previous one.

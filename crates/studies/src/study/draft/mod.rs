@@ -1,13 +1,12 @@
 //! The first scene for a mesh: it runs as it is, and says in comments what else there is.
 
-use super::extent::extends;
-use super::locking::LOCKS;
-use super::scene::{FillEntry, MeshLength};
+use crate::analysis::locking::LOCKS;
 use crate::fit::check_flat;
 use crate::mesh::{CellBlock, FillMesh, Filled, Group, ListedSides, Mesh, Selection};
 use crate::text::{comment, rounded, toml as quoted};
 use conditions::conditions;
 use material::{POISSON, material_lines, stated_poisson, young};
+use springfit_scenes::{FillEntry, MeshLength, extends};
 use std::fmt::Write;
 
 mod conditions;

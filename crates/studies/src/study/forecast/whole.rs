@@ -1,12 +1,12 @@
 //! What fits to the whole object will take, and the finer body that they ask: counts of loads, times the solutions that each takes.
 
+use super::rates::{ASSEMBLY, BYTES, COMPARED, ITERATED, SLOWEST_RATE, SOLUTIONS, SPARSE};
 use crate::error::Result;
 use crate::fit::{ShearSprings, VolumeSprings};
 use crate::mesh::Mesh;
 use crate::model::BlockStiffness;
 use crate::solve::{FactorCost, dense_rate, factor_cost, factor_cost_of};
-use crate::study::cost::{ASSEMBLY, BYTES, COMPARED, ITERATED, SLOWEST_RATE, SOLUTIONS, SPARSE, entries};
-use crate::study::fits::{Start, ValidationRecipe, WholeRecipe};
+use springfit_scenes::{Start, ValidationRecipe, WholeRecipe, entries};
 use std::collections::HashMap;
 
 /// Loads that are made for a support: of each kind, in the plane and in space; varied ones; those that choose ρ where loads are not varied;

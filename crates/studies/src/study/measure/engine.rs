@@ -4,7 +4,7 @@ use crate::engine::{Ceiling, Setting, TruncatedModel, least_substeps};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{Specimen, Support};
 use crate::solve::System;
-use crate::study::fits::EngineLimit;
+use springfit_scenes::EngineLimit;
 
 /// Points within this share of the length of a network from its end are at the end. Ends of printed or simulated
 /// networks are not flat to rounding.

@@ -15,9 +15,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::material::{CellMap, Plane, State};
 use crate::mesh::Mesh;
 use crate::model::{Lumping, Specimen, content, lumped_masses};
-use crate::study::fits::EngineLimit;
 use hull::Hull;
 use motions::{Motions, parts};
+use springfit_scenes::EngineLimit;
 
 /// How a network is measured.
 #[derive(Debug, Clone, Default)]

@@ -6,8 +6,8 @@ use crate::dynamics::largest_square;
 use crate::error::Result;
 use crate::model::{Entries, Specimen, Support};
 use crate::solve::{eigenvalues, is_definite, lowest_modes};
-use crate::study::time::{RELEASE, Raised};
 use nalgebra::DMatrix;
+use springfit_scenes::{RELEASE, Raised};
 use std::f64::consts::TAU;
 
 /// Degrees of freedom up to which all motions are counted, by the eigenvalues of the stiffness. A dense decomposition

@@ -1,9 +1,9 @@
 //! What is measured of a network.
 
 use crate::analysis::homogenise::{Elasticity, Tension};
-use crate::study::fits::EngineLimit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use springfit_scenes::EngineLimit;
 
 /// A network as a material and as a body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

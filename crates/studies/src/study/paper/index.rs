@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 use crate::file;
 use crate::named::unknown;
 use crate::range::LARGEST;
-use crate::study::fits::FitEntry;
 use serde::{Deserialize, Serialize};
+use springfit_scenes::FitEntry;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! The results of a paper's experiments.
 
 use super::index::{Column, RowEntry};
-use crate::study::outcome::Outcome;
 use serde::Serialize;
+use springfit_scenes::Outcome;
 
 /// The tables that were run, and their scenes.
 #[derive(Debug)]

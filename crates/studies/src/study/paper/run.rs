@@ -8,12 +8,11 @@ use crate::error::{Error, Result};
 use crate::file::{create_folder, on_line_of_key, read_text, write_whole};
 use crate::solve::{Ending, Standing};
 use crate::study::compare::{MethodOutcome, measure_recipes};
-use crate::study::fits::{NamedFit, Recipe};
-use crate::study::outcome::{FitOutcome, ModelMotion, MotionEnding, Outcome};
-use crate::study::own_name::expect_own_name;
-use crate::study::progress::{Event, Progress};
 use crate::study::run::run;
-use crate::study::scene::{Scene, load_element};
+use springfit_scenes::{
+    Event, FitOutcome, ModelMotion, MotionEnding, NamedFit, Outcome, Progress, Recipe, Scene, expect_own_name,
+    load_element,
+};
 use springfit_shipped::EXPERIMENTS;
 use std::path::{Path, PathBuf};
 

@@ -6,8 +6,7 @@ use super::outcome::{PaperRow, Surface};
 use crate::analysis::moduli::Lattice;
 use crate::error::{Error, Result};
 use crate::springs::Springs;
-use crate::study::fits::NamedFit;
-use crate::study::scene::load_element;
+use springfit_scenes::{NamedFit, load_element};
 use std::path::Path;
 
 /// The number of steps along each constant.

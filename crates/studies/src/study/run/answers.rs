@@ -2,17 +2,16 @@
 
 use super::posed::Posed;
 use super::solved::{Solved, solve_linear};
+use crate::analysis::locking::{TooStiff, bends, lacking};
 use crate::error::Result;
 use crate::material::EnergyMap;
 use crate::mesh::Mesh;
 use crate::model::Deformation;
-use crate::study::body::{Case, LargeBody, LinearBody, load_notes};
-use crate::study::locking::{TooStiff, bends, lacking};
-use crate::study::masses::PointMasses;
-use crate::study::outcome::{BodyLoad, FitOutcome, Followed, Outcome};
-use crate::study::progress::{Event, Progress};
 use crate::study::stages::stages;
-use crate::study::time::TimePlan;
+use springfit_scenes::{
+    BodyLoad, Case, Event, FitOutcome, Followed, LargeBody, LinearBody, Outcome, PointMasses, Progress, TimePlan,
+    load_notes,
+};
 
 /// The displacements of the finite elements; those of the networks are with their fits.
 pub(super) struct Answers {

@@ -4,15 +4,11 @@ mod answers;
 mod posed;
 mod solved;
 
-use super::checkpoint::Controls;
-use super::fits::FitLimit;
-use super::outcome::Outcome;
-use super::progress::{Event, Progress};
-use super::scene::Scene;
 use crate::error::Result;
 use answers::Answers;
 use posed::Posed;
 use solved::Solved;
+use springfit_scenes::{Controls, Event, FitLimit, Outcome, Progress, Scene};
 
 /// Runs the scene. Only the work that the scene requests is done.
 ///

@@ -1,18 +1,16 @@
 //! What a scene asks of a body, before anything is solved.
 
+use crate::analysis::locking::{Locking, TooStiff};
 use crate::analysis::moduli::moduli_of_body;
 use crate::error::{Error, Result};
 use crate::material::{EnergyMap, MaterialMap};
 use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
-use crate::study::body::{Case, Gauged, judge_by_truth, judge_sheet, load_cases};
-use crate::study::checkpoint::Controls;
 use crate::study::forecast::Forecast;
-use crate::study::locking::{Locking, TooStiff};
-use crate::study::outcome::{FitOutcome, Standard};
-use crate::study::progress::{Event, Progress};
-use crate::study::scene::Scene;
-use crate::study::time::TimePlan;
+use springfit_scenes::{
+    Case, Controls, Event, FitOutcome, Gauged, Progress, Scene, Standard, TimePlan, judge_by_truth, judge_sheet,
+    load_cases,
+};
 
 /// The body of a scene with its material, its support and its loads.
 pub(super) struct Posed<'a> {

@@ -3,14 +3,11 @@
 use super::posed::Posed;
 use crate::error::Result;
 use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
-use crate::study::body::{FineBody, LargeBody, LinearBody, seconds_of_body, seconds_of_network};
-use crate::study::checkpoint::Controls;
-use crate::study::fits::{Finer, FitLimit, NamedFit, Reference, Task, WholeBody};
-use crate::study::fitting::{fit_mesh, fit_without_errors};
-use crate::study::masses::{PointMasses, point_masses};
-use crate::study::outcome::FitOutcome;
-use crate::study::progress::{Event, Progress};
-use crate::study::timing::{Costed, ModelTimes, Statics, model_times, on_one_thread, time_fits};
+use springfit_scenes::{
+    Controls, Costed, Event, FineBody, Finer, FitLimit, FitOutcome, LargeBody, LinearBody, ModelTimes, NamedFit,
+    PointMasses, Progress, Reference, Statics, Task, WholeBody, fit_mesh, fit_without_errors, model_times,
+    on_one_thread, point_masses, seconds_of_body, seconds_of_network, time_fits,
+};
 
 /// The density that steps are timed with where the scene gives none, kg/m³.
 const WATER: f64 = 1000.0;

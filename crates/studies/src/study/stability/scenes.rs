@@ -6,11 +6,8 @@ use crate::dynamics::largest_square;
 use crate::error::{Error, Result};
 use crate::model::{Lumping, lumped_masses};
 use crate::solve::Standing;
-use crate::study::fits::NamedFit;
-use crate::study::outcome::{FitOutcome, Outcome};
-use crate::study::progress::{Event, Progress};
 use crate::study::run::run;
-use crate::study::scene::{Output, Scene};
+use springfit_scenes::{Event, FitOutcome, NamedFit, Outcome, Output, Progress, Scene};
 use std::time::Instant;
 
 /// Poisson's ratios, up to nearly incompressible.

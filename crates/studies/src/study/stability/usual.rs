@@ -6,7 +6,7 @@ use super::motions::sweep_motions;
 use super::outcome::StabilityOutcome;
 use crate::element::{Element, SHIPPED};
 use crate::error::Result;
-use crate::study::progress::{Event, Progress};
+use springfit_scenes::{Event, Progress};
 use std::time::Instant;
 
 /// The largest number of nodes of the elements that are swept by default; larger ones take a minute each.

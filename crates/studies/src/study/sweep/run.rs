@@ -2,11 +2,9 @@
 
 use super::studies::{Study, Sweep, of_study};
 use crate::error::Result;
-use crate::study::checkpoint::Controls;
 use crate::study::jobs::{apart, each_of};
-use crate::study::outcome::Outcome;
-use crate::study::progress::Progress;
 use crate::study::run::run_with;
+use springfit_scenes::{Controls, Outcome, Progress};
 
 impl Sweep {
     /// Runs one study.

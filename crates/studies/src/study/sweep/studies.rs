@@ -1,11 +1,10 @@
 //! The studies of a sweep, each a scene with other values of some keys.
 
-use super::entry::SweepEntry;
 use crate::error::{Error, Result};
 use crate::file::{self, Sum};
-use crate::study::scene::{InMemory, Scene, Setting};
 use crate::text::printable;
 use serde_json::Value;
+use springfit_scenes::{InMemory, Scene, Setting, SweepEntry};
 use std::collections::{BTreeMap, HashMap};
 use std::hash::Hasher;
 use std::path::{Path, PathBuf};

@@ -1,0 +1,232 @@
+//! Least squares in closed form: the constants of one element, or of one per lane, from the node positions alone.
+//!
+//! Theory: page *Least squares* of the book.
+
+use super::bounded::{Factors, bound};
+use super::least_squares::{equations, normal_equations};
+use super::nodal::{Nodal, is_shorter};
+use super::normal::Normal;
+use super::settings::Fit;
+use super::sizes::of_size;
+use super::weight::{ClosedWeight, Route};
+use crate::element::Tabulation;
+use crate::material::Hooke;
+use crate::scalar::{Packed, Real};
+use crate::springs::Springs;
+use crate::stiffness::Geometry;
+
+/// The most bounded constants whose equations are solved by factors in all lanes at once. Beyond it one lane after the
+/// other is faster.
+const MOST_FACTORED: usize = 120;
+/// The most bounded constants that are solved by factors where the equations of the nodes are solved. Beyond it
+/// conjugate gradients are faster, whose products with M are cheap there.
+const MOST_FACTORED_WITH_NODES: usize = 60;
+
+/// How the equations of a fit are solved, with the working memory.
+#[derive(Debug, Clone)]
+pub struct Closed<T> {
+    weight: ClosedWeight,
+    steps: Steps,
+    nonnegative: bool,
+    nodal: Nodal<T>,
+    normal: Normal<T>,
+    tied: Normal<T>,
+    /// The equations before elimination, if constants are bounded.
+    kept: Normal<T>,
+    factors: Factors<T>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Steps {
+    /// `M = 2I`: each constant is half of its right-hand side.
+    Decoupled,
+    /// The equations of the nodes, which are fewer than those of the springs.
+    Nodes,
+    Springs,
+    /// One equation per group.
+    Groups,
+}
+
+impl<T: Real> Closed<T> {
+    /// None for objectives without a closed form.
+    pub fn of(springs: &Springs, fit: &Fit) -> Option<Closed<T>> {
+        let Route::Closed(weight) = fit.objective.route(springs.need_matrix()) else { return None };
+        let lengths_alone = springs.content().is_none() && springs.parallel().is_empty();
+        let steps = match weight {
+            _ if fit.tied => Steps::Groups,
+            // Two length springs share a block of different nodes only if they join
+            // the same nodes: M is diagonal. A spring on the content is in all blocks.
+            ClosedWeight::OffDiagonal if lengths_alone => Steps::Decoupled,
+            ClosedWeight::None if is_shorter(springs) => Steps::Nodes,
+            ClosedWeight::None | ClosedWeight::OffDiagonal | ClosedWeight::Modal(_) => Steps::Springs,
+        };
+        Some(Closed {
+            weight,
+            steps,
+            nonnegative: fit.nonnegative,
+            nodal: Nodal::default(),
+            normal: Normal::default(),
+            tied: Normal::default(),
+            kept: Normal::default(),
+            factors: Factors::default(),
+        })
+    }
+
+    /// Solves for the element with nodes at `x`, `[nodes × dimension]`, and fills in its geometry. Returns false if the
+    /// Jacobian is not safely positive or the equations are not regular.
+    pub fn solve(
+        &mut self,
+        table: &Tabulation,
+        springs: &Springs,
+        x: &[T],
+        geometry: &mut Geometry<T>,
+        hooke: &Hooke<T>,
+    ) -> bool
+    where
+        T: Real,
+    {
+        if self.steps == Steps::Nodes {
+            return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, hooke, &mut self.normal);
+        }
+        let regular = of_size!(T, x[0], (springs.dimension(), springs.nodes()), |D, n| {
+            self.solve_in::<D>(n, table, springs, x, geometry, hooke)
+        });
+        regular && self.finish(springs)
+    }
+
+    #[inline(always)]
+    fn solve_in<const D: usize>(
+        &mut self,
+        n: usize,
+        table: &Tabulation,
+        springs: &Springs,
+        x: &[T],
+        geometry: &mut Geometry<T>,
+        hooke: &Hooke<T>,
+    ) -> bool {
+        if !geometry.update_in::<D>(n, table, x) {
+            return false;
+        }
+        equations::<T, D>(n, self.weight, springs, x, geometry, hooke, &mut self.normal);
+        if self.steps == Steps::Decoupled {
+            for b in &mut self.normal.rhs {
+                *b = b.clone().scaled(&0.5);
+            }
+        }
+        true
+    }
+
+    /// Solves the equations.
+    fn finish(&mut self, springs: &Springs) -> bool {
+        let equations = match self.steps {
+            Steps::Decoupled | Steps::Nodes => return true,
+            Steps::Springs => &mut self.normal,
+            Steps::Groups => {
+                self.normal.tied(springs.groups(), springs.names().len(), &mut self.tied);
+                &mut self.tied
+            }
+        };
+        // The elimination overwrites the equations, which the search under bounds needs.
+        if self.nonnegative {
+            self.kept.gram.clone_from(&equations.gram);
+            self.kept.rhs.clone_from(&equations.rhs);
+        }
+        equations.solve_regular()
+    }
+
+    /// The constant of spring `s` after [`Closed::solve`], in N/m, without bounds.
+    pub fn constant(&self, springs: &Springs, s: usize) -> &T {
+        match self.steps {
+            Steps::Groups => &self.tied.rhs[springs.groups()[s]],
+            Steps::Decoupled | Steps::Nodes | Steps::Springs => &self.normal.rhs[s],
+        }
+    }
+
+    /// Solves the equations of [`Closed::solve`] for another right-hand side, one number per spring: `w ← M⁻¹ w`. Of tied springs each receives
+    /// that of its group.
+    pub fn solve_again(&mut self, springs: &Springs, w: &mut [T]) {
+        let Some(any) = w.first().cloned() else { return };
+        any.vectorize(
+            #[inline(always)]
+            || match self.steps {
+                Steps::Decoupled => {
+                    for w in &mut *w {
+                        *w = w.clone().scaled(&0.5);
+                    }
+                }
+                Steps::Nodes => self.nodal.solve_again(springs, w),
+                Steps::Springs => self.normal.substitute(w),
+                Steps::Groups => {
+                    let mut sums = vec![any.zero(); springs.names().len()];
+                    // The equations of groups are sums over their springs, and so is their right-hand side.
+                    for (w, &group) in w.iter().zip(springs.groups()) {
+                        sums[group] = sums[group].clone() + w;
+                    }
+                    self.tied.substitute(&mut sums);
+                    for (w, &group) in w.iter_mut().zip(springs.groups()) {
+                        *w = sums[group].clone();
+                    }
+                }
+            },
+        );
+    }
+
+    /// The weight of the norm.
+    pub fn weight(&self) -> ClosedWeight {
+        self.weight
+    }
+
+    /// The equations of a single element, one per spring.
+    pub fn equations_alone(&self, springs: &Springs, x: &[f64], geometry: &Geometry, hooke: &Hooke) -> Normal {
+        let mut normal = Normal::default();
+        normal_equations(self.weight, springs, x, geometry, hooke, &mut normal);
+        normal
+    }
+
+    /// The equations that [`Closed::solve`] solved, for bounded constants; none if each constant has an equation of its
+    /// own.
+    pub fn equations(
+        &mut self,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        hooke: &Hooke<T>,
+    ) -> Option<&Normal<T>> {
+        match self.steps {
+            Steps::Decoupled => None,
+            // The nodes were solved without any equation of a spring, which is worked out only now, for the few cells with bounds.
+            Steps::Nodes => {
+                normal_equations(self.weight, springs, x, geometry, hooke, &mut self.normal);
+                Some(&self.normal)
+            }
+            Steps::Springs | Steps::Groups => Some(&self.kept),
+        }
+    }
+}
+
+impl<T: Packed> Closed<T> {
+    /// Replaces the constants of these lanes, after [`Closed::solve`], by the optimum under `k ≥ 0`. False, with nothing changed, where each
+    /// constant has an equation of its own, there are too many of them, or the search does not end.
+    pub fn bound(
+        &mut self,
+        springs: &Springs,
+        x: &[T],
+        geometry: &Geometry<T>,
+        hooke: &Hooke<T>,
+        lanes: &[usize],
+    ) -> bool {
+        match self.steps {
+            Steps::Decoupled => return false,
+            Steps::Nodes if springs.len() > MOST_FACTORED_WITH_NODES => {
+                return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
+            }
+            // The equations of the nodes have no rows of single springs, which bounds need.
+            Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
+            Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED => return false,
+            Steps::Springs | Steps::Groups => {}
+        }
+        let k = if self.steps == Steps::Groups { &mut self.tied.rhs } else { &mut self.normal.rhs };
+        self.factors.set(&self.kept);
+        bound(&mut self.factors, &self.kept.rhs, k, lanes)
+    }
+}
