@@ -6,11 +6,11 @@
 mod clock;
 
 use clock::clock;
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight};
-use springfit::material::{Material, State};
-use springfit::mesh::{Gate, MeshArrays};
-use springfit::study::{NamedFit, Reference, fit_mesh};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_fit::fit::{Fit, Objective, Weight};
+use springfit_mesh::mesh::{Gate, MeshArrays};
+use springfit_studies::study::{NamedFit, Reference, fit_mesh};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::stdin;

@@ -5,13 +5,13 @@
 mod clock;
 
 use clock::clock;
-use springfit::dynamics::{Curve, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome};
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::{Material, State};
-use springfit::mesh::{DiscMesh, Mesh};
-use springfit::model::{Network, Support, masses};
-use springfit::springs::Springs;
+use springfit_bodies::dynamics::{Curve, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome};
+use springfit_bodies::model::{Network, Support, masses};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{DiscMesh, Mesh};
 use std::sync::Arc;
 
 const THICKNESS: f64 = 5e-4;

@@ -8,12 +8,12 @@ mod c_loop;
 mod clock;
 
 use c_loop::{Case, c_loop, case, compile, cube, exact, springfit, write};
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::{Material, State};
-use springfit::mesh::{DiscMesh, Mesh};
-use springfit::model::Network;
-use springfit::springs::Springs;
+use springfit_bodies::model::Network;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{DiscMesh, Mesh};
 use std::sync::Arc;
 
 const ROUNDS: usize = 7;

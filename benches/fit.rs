@@ -1,15 +1,15 @@
 //! Time per element of every objective on every shipped element, on jittered boxes; and a million tetrahedra beside a
 //! batched NumPy implementation of the same fit, in the same run. Medians of five runs.
 
-use springfit::element::{Element, SHIPPED};
-use springfit::fit::{
+use springfit_bodies::model::Network;
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::{Energy, Hooke, Material, State, Stiffness};
+use springfit_element::springs::{Force, Law, Springs};
+use springfit_fit::fit::{
     Balance, CellFits, ExactFit, Fit, Higher, MotionWeight, Objective, SampledFit, Sampling, VolumeSprings, Weight,
     Weights, fit_cells, fit_exact, fit_sampled,
 };
-use springfit::material::{Energy, Hooke, Material, State, Stiffness};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::Network;
-use springfit::springs::{Force, Law, Springs};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;

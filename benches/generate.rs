@@ -3,11 +3,11 @@
 //! The C is compiled with `-O3 -march=native` and called cell by cell, as a program that remeshes would call it. The
 //! kernels fit the same cells, several at once in the lanes of the processor.
 
-use springfit::element::Element;
-use springfit::fit::{CellFits, ExactFit, Fit, Objective, fit_cells, fit_exact, published};
-use springfit::generate::{Program, Recipe, language};
-use springfit::material::Material;
-use springfit::springs::Springs;
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{CellFits, ExactFit, Fit, Objective, fit_cells, fit_exact, published};
+use springfit_generate::generate::{Program, Recipe, language};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;

@@ -8,13 +8,13 @@ mod c_loop;
 mod clock;
 mod program;
 
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::{CellMap, Hooke, Material, State};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{BlockStiffness, Support, finite_elements};
-use springfit::solve::{Levels, StaticSolver, System};
-use springfit::springs::Springs;
+use springfit_bodies::model::{BlockStiffness, Support, finite_elements};
+use springfit_bodies::solve::{Levels, StaticSolver, System};
+use springfit_element::element::Element;
+use springfit_element::material::{CellMap, Hooke, Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::Command;
@@ -103,7 +103,7 @@ fn fits(folder: &Path, material: Material) -> Row {
     let fit = Fit::new(Objective::Frobenius(Weight::None));
     let work = || fit_cells(element, &springs, &mesh.points, connectivity, material.moduli(), &fit, &mut |_| {});
     let sum = |fits: &Result<_, _>| {
-        fits.as_ref().map_or(f64::NAN, |fits: &springfit::fit::CellFits| fits.constants.iter().sum())
+        fits.as_ref().map_or(f64::NAN, |fits: &springfit_fit::fit::CellFits| fits.constants.iter().sum())
     };
     let own = timed("springfit", work, sum);
     let found = python("numpy_tet4.py", &[&folder.join("nodes").to_string_lossy()]);

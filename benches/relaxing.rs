@@ -4,14 +4,14 @@
 mod clock;
 
 use clock::clock;
-use springfit::dynamics::{
+use springfit_bodies::dynamics::{
     BranchForm, BranchTerm, FlowMemory, Integrator, LargeMemory, Memory, Motion, Options, Simulation, StepOutcome,
 };
-use springfit::element::Element;
-use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, fit_exact};
-use springfit::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State, with_moduli};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{MaterialPoints, Network, Support, masses};
+use springfit_bodies::model::{MaterialPoints, Network, Support, masses};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State, with_moduli};
+use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, fit_exact};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
 use std::sync::Arc;
 
 const ROUNDS: usize = 7;
@@ -104,7 +104,7 @@ fn compare(element: &str, side: usize) {
                 .iter()
                 .map(|kind| {
                     let memory = memory(&mesh, material, *kind);
-                    let model: &dyn springfit::model::Elastic = if memory.is_none() { &elastic } else { &left };
+                    let model: &dyn springfit_bodies::model::Elastic = if memory.is_none() { &elastic } else { &left };
                     let motion =
                         Motion { support: support.clone(), memory, ..Motion::free(model, &mesh.points, &masses) };
                     let mut simulation = Simulation::new(motion, options).expect("the model is sound");

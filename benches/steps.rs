@@ -7,13 +7,13 @@
 mod clock;
 
 use clock::clock;
-use springfit::element::Element;
-use springfit::fit::{ExactEnergy, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
-use springfit::material::{Material, State};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Elastic, Network, masses, patch_springs};
-use springfit::scalar::{Coordinates, CoordinatesWork, with_coordinates};
-use springfit::springs::Springs;
+use springfit_bodies::model::{Elastic, Network, masses, patch_springs};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{ExactEnergy, ExactFit, Fit, Objective, VolumeSprings, Weight, fit_cells, fit_exact};
+use springfit_foundation::scalar::{Coordinates, CoordinatesWork, with_coordinates};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::sync::Arc;
 
 /// Cubes along an edge of the box, each six tetrahedra.

@@ -1,16 +1,16 @@
 //! What a whole-object fit costs: its gradient beside one solve per load, and fits of boxes up to a hundred thousand springs.
 
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::{Material, State};
-use springfit::mesh::BoxMesh;
-use springfit::model::{Network, Support, finite_elements};
-use springfit::solve::System;
-use springfit::springs::Springs;
-use springfit::whole::{
+use springfit_bodies::model::{Network, Support, finite_elements};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_identify::whole::{
     Displacements, LeastSquares, NodalLoad, Object, Target, Unknowns, Validation, Wanted, WholeSettings, fit_whole,
     made_loads, random_loads,
 };
+use springfit_mesh::mesh::BoxMesh;
 use std::sync::Arc;
 use std::time::Instant;
 

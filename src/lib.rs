@@ -41,30 +41,27 @@
 //!
 //! # Modules
 //!
-//! A module uses only those above it.
+//! A module uses only those above it. Each names what users need of a package of its own, which has more, and may change it.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | [`error`] | the error type: kind, file, line, key and problem |
-//! | [`scalar`], [`symbolic`] | the numbers of the kernels; expressions, and exact rational functions |
-//! | [`random`] | reproducible random numbers, and points that fill a cube evenly |
-//! | [`range`], [`quantity`], [`text`] | limits of physical quantities, units, texts made safe to print |
+//! | [`scalar`], [`symbolic`] | kinds of numbers; expressions, and exact rational functions |
+//! | [`quantity`] | physical quantities, and their units |
 //! | [`element`] | elements read from TOML files: cell, shape functions, quadrature, groups of springs |
 //! | [`material`] | elastic moduli, plane states, hyperelastic energies |
 //! | [`stiffness`] | the geometry of an element, `R = ∫ Bᵀ D B dV`, and forces at large deformation |
 //! | [`springs`] | what springs measure, their forces and tangents, force laws |
 //! | [`fit`] | spring constants of elements: norms, divergence, exact networks, sampled forces, published formulas |
-//! | [`mesh`] | meshes: read from Gmsh and VTK files, generated, refined, checked |
+//! | [`mesh`] | meshes: read from files of many programs, generated, refined, filled, checked |
 //! | [`model`] | the finite element model and the network of a mesh; loads, supports, masses |
 //! | [`solve`] | linear and nonlinear statics, natural vibrations, stability of a network |
-//! | [`positive`] | the nearest network without negative springs to an exact network |
 //! | [`dynamics`] | motion in time |
+//! | [`engine`] | what a network answers in an engine that ends its iterations early |
+//! | [`positive`] | the nearest network without negative springs to an exact network |
 //! | [`whole`] | spring constants from the displacements of the whole body |
+//! | [`calibration`] | moduli of a body from measurements, with intervals |
 //! | [`study`] | scenes, and the studies that are made from them |
-//! | `generate` | code that computes the springs of a cell at run time (feature `cli`) |
-//! | `report` | tables, JSON, CSV, SVG and VTU files of the results (feature `cli`) |
-//! | `export` | networks as files and scripts of other programs (feature `cli`) |
-//! | `referee` | whether simulators reproduce the modulus in their input (feature `cli`) |
 //! | [`prelude`] | the names that most programs need |
 //!
 //! Lengths are in m, moduli in Pa, forces in N, masses in kg and times in s. Arrays are row by row; their shapes are
@@ -72,8 +69,8 @@
 //!
 //! # Features
 //!
-//! - `cli` (default): the program `springfit`, and the module `report`. A library user turns it off with
-//!   `default-features = false`, and saves the dependencies for the command line, tables and pictures.
+//! - `cli` (default): the program `springfit`. A library user turns it off with `default-features = false`, and saves the
+//!   dependencies for the command line, tables and pictures.
 //!
 //! # Errors
 //!
@@ -88,153 +85,188 @@
 
 #![forbid(unsafe_code)]
 
-// The commands name the library as its users do.
-#[cfg(feature = "cli")]
-extern crate self as springfit;
-
 #[cfg(feature = "cli")]
 mod commands;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod export;
 pub mod prelude;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod program;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod referee;
 #[cfg(feature = "cli")]
 mod terminal;
 
-pub use springfit_bodies::{dynamics, engine, model, solve};
-pub use springfit_element::{element, material, springs, stiffness};
-pub use springfit_fit::fit;
-pub use springfit_foundation::{error, quantity, random, range, scalar, symbolic, text};
-#[cfg(feature = "cli")]
-pub use springfit_generate::generate;
-pub use springfit_identify::{calibration, positive, whole};
-pub use springfit_mesh::mesh;
-#[cfg(feature = "cli")]
-pub use springfit_report::report;
-pub use springfit_studies::study;
+/// The error of every function that depends on input: its kind, file, line, key and problem.
+pub mod error {
+    #[doc(inline)]
+    pub use springfit_foundation::error::{Error, ErrorKind, Result};
+}
 
-#[cfg(feature = "cli")]
-use springfit_foundation::file;
-/// Files that come into a folder together, and replace those of the run before.
-///
-/// ```
-/// let folder = std::env::temp_dir().join(format!("springfit-edition-{}", std::process::id()));
-/// let mut edition = springfit::Edition::begin(&folder, &["a.txt"], &[], &[])?;
-/// edition.write("a.txt", |path| springfit::write_whole(path, b"one"))?;
-/// assert!(!folder.join("a.txt").exists());
-/// edition.publish()?;
-/// assert_eq!(std::fs::read(folder.join("a.txt")).unwrap(), b"one");
-/// # std::fs::remove_dir_all(&folder).unwrap();
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::Edition;
-/// A checksum, by which files of a run are known again.
-///
-/// ```
-/// let sum = springfit::Sum::of(b"");
-/// assert_eq!(sum.to_string(), "cbf29ce484222325"); // FNV-1a of nothing
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::Sum;
-/// Takes back what this process has begun to write, before it ends.
-///
-/// ```no_run
-/// springfit::abandon();
-/// std::process::exit(130);
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::abandon;
-/// Refuses an output that is an input, before long work.
-///
-/// ```
-/// let file = std::env::temp_dir().join(format!("springfit-apart-{}", std::process::id()));
-/// springfit::write_whole(&file, b"")?;
-/// assert!(springfit::check_apart(&[file.clone()], &[file.clone()]).is_err());
-/// # std::fs::remove_file(&file).unwrap();
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::check_apart;
-/// Refuses a file that could not be written, before long work.
-///
-/// ```
-/// let file = std::env::temp_dir().join("springs.json");
-/// assert!(springfit::check_file(&file).is_ok());
-/// assert!(springfit::check_file("/".as_ref()).is_err());
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::check_file;
-/// Refuses a folder that could not be written into, before long work.
-///
-/// ```
-/// let missing = std::env::temp_dir().join("springfit-not-yet-there");
-/// assert!(springfit::check_folder(&missing).is_ok());
-/// assert!(!missing.exists());
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::check_folder;
-/// Lists the files of a folder with one ending.
-///
-/// ```
-/// let scenes = springfit::files_in("scenes".as_ref(), "toml")?;
-/// assert!(scenes.contains(&"scenes/square_quad.toml".into()));
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::files_in;
-/// Ends what a process left that ended while it put files in their places.
-///
-/// ```
-/// springfit::finish_edition(&std::env::temp_dir())?; // nothing was left there
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::finish_edition;
-/// Writes a file at once: whoever reads sees the old file or the new one.
-///
-/// ```
-/// let file = std::env::temp_dir().join(format!("springfit-whole-{}", std::process::id()));
-/// springfit::write_whole(&file, b"k\n50\n")?;
-/// assert_eq!(std::fs::read(&file).unwrap(), b"k\n50\n");
-/// # std::fs::remove_file(&file).unwrap();
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::write_whole;
-/// Writes a file at once, with content that is made while it is written.
-///
-/// ```
-/// let file = std::env::temp_dir().join(format!("springfit-with-{}", std::process::id()));
-/// springfit::write_with(&file, |to| (0..3).try_for_each(|k| writeln!(to, "{k}")))?;
-/// assert_eq!(std::fs::read(&file).unwrap(), b"0\n1\n2\n");
-/// # std::fs::remove_file(&file).unwrap();
-/// # Ok::<(), springfit::error::Error>(())
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::file::write_with;
-/// Says which known name was meant.
-///
-/// ```
-/// assert_eq!(springfit::suggestion(["edge", "diagonal"], "egde"), "; did you mean \"edge\"?");
-/// assert_eq!(springfit::suggestion(["edge", "diagonal"], "bulk"), "");
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::named::suggestion;
-/// Makes the error for a name that is not known.
-///
-/// ```
-/// let error = springfit::unknown("a group", ["edge", "diagonal"], "egde");
-/// assert_eq!(error.to_string(), "expected a group, found \"egde\"; did you mean \"edge\"?");
-/// ```
-#[doc(inline)]
-pub use springfit_foundation::named::unknown;
-#[cfg(feature = "cli")]
-use springfit_networks::network;
+/// Physical quantities, and the units that texts may state them in.
+pub mod quantity {
+    #[doc(inline)]
+    pub use springfit_foundation::quantity::Quantity;
+}
+
+/// Kinds of numbers in which elements are integrated and springs fitted.
+pub mod scalar {
+    #[doc(inline)]
+    pub use springfit_foundation::scalar::{DoubleDouble, Dual, Real, Scalar};
+}
+
+/// Expressions of text, and exact rational functions.
+pub mod symbolic {
+    #[doc(inline)]
+    pub use springfit_foundation::symbolic::{Expr, Fraction, Polynomial};
+}
+
+/// Elements, read from TOML files: cell, shape functions, quadrature, groups of springs. The page *Element files* of the book has the keys.
+pub mod element {
+    #[doc(inline)]
+    pub use springfit_element::element::{
+        Cell, Element, JacobianBounds, Kind, Quadrature, SHIPPED, ShapeFunctions, Side, SideTable, SpringGroup,
+        SpringKind, Tabulation, coordinate_names, schema,
+    };
+}
+
+/// Elastic moduli, plane states, anisotropic and hyperelastic materials, and their values by cell.
+pub mod material {
+    #[doc(inline)]
+    pub use springfit_element::material::{
+        Anisotropy, BlockValues, CellMap, Energy, EnergyMap, Hooke, LinearMaterial, Material, MaterialMap, Moduli,
+        Plane, RegionMaterial, Relaxation, RelaxationTerm, SHIPPED, State, Stiffness, schema, with_moduli,
+    };
+}
+
+/// The geometry of an element at its quadrature points, `R = ∫ Bᵀ D B dV`, and forces at large deformation.
+pub mod stiffness {
+    #[doc(inline)]
+    pub use springfit_element::stiffness::{EnergyFunction, Geometry, Hyperelastic, StressFunction};
+}
+
+/// What springs measure, their forces, and laws of force.
+pub mod springs {
+    #[doc(inline)]
+    pub use springfit_element::springs::{
+        AskedForces, Force, ForceFunction, FunctionSpring, Law, Measure, Patch, SpringResponse, Springs,
+    };
+}
+
+/// Spring constants of elements: norms, divergence, exact networks, sampled forces. The pages of *Theory* in the book derive them.
+pub mod fit {
+    /// Spring constants by formulas of other authors. The page *Related methods* of the book has their sources.
+    pub mod published {
+        #[doc(inline)]
+        pub use springfit_fit::fit::published::{Method, Unmet, constants_of_cell, fit, unmet};
+    }
+    #[doc(inline)]
+    pub use springfit_fit::fit::{
+        Balance, CellFits, CellFunction, CellNumbers, CellStart, Certificate, Choices, ClosedFit, ClosedForm,
+        DampingKind, DampingTest, ElementErrors, ExactEnergy, ExactFit, Fit, GivenFit, GivenStiffness, GradientFit,
+        Higher, Inputs, ModulusTest, MotionWeight, Norm, Objective, ResidualFunction, ResidualObjective, Rest,
+        SampledFit, SampledFits, Sampling, Search, ShapeError, ShearSprings, Solver, Spread, Topology, VolumeSprings,
+        Weight, Weights, condense, element_errors, fit_cells, fit_element, fit_exact, fit_sampled, plain,
+    };
+}
+
+/// Meshes: read from files of many programs, generated, refined, filled, checked.
+pub mod mesh {
+    /// Grids of VTK.
+    pub mod vtk {
+        #[doc(inline)]
+        pub use springfit_mesh::mesh::vtk::{Array, Grid, write};
+    }
+    #[doc(inline)]
+    pub use springfit_mesh::mesh::{
+        BoxMesh, CellBlock, CellIndex, DiscMesh, Field, FillBoundary, FillLayers, FillMesh, FillSpacing, Filled,
+        Format, Gate, Group, MESH_FORMATS, Mesh, MeshArrays, MeshFormat, MeshSource, NumberOrigin, Numbering, Quality,
+        Scattered, Selection, SourceBlock, VoxelMesh, listed_endings,
+    };
+}
+
+/// The finite element model and the network of a mesh; loads, supports, masses.
+pub mod model {
+    #[doc(inline)]
+    pub use springfit_bodies::model::{
+        Action, BendingSprings, BlockStiffness, Body, CompressedRows, ConsistentMasses, Elastic, Entries, LengthSpring,
+        Lumping, MaterialPoints, MeasureSpring, Network, PreparedNetwork, Response, RestTension, Specimen, SpringLaw,
+        Support, bending_springs, displaced, edge_springs, exact_network, fibre_springs, finite_elements, is_exact,
+        length_shares, lumped_masses, masses, nodal_forces, patch_springs, unheld_bodies,
+    };
+}
+
+/// Linear and nonlinear statics, natural vibrations, and the stability of a network.
+pub mod solve {
+    #[doc(inline)]
+    pub use springfit_bodies::solve::{
+        Applied, Ending, Equilibrium, Factor, Modes, Newton, Solved, Stability, Standing, StaticMethod, StaticSolver,
+        System, is_definite, lowest_modes,
+    };
+}
+
+/// Motion in time: integrators, damping, drives, conservation of energy.
+pub mod dynamics {
+    #[doc(inline)]
+    pub use springfit_bodies::dynamics::{
+        BranchForm, BranchTerm, Curve, Damping, Drive, EnergyBalance, Integrator, LinearSolver, Memory, Motion,
+        MotionState, Options, Simulation, Step, StepOutcome,
+    };
+}
+
+/// What a network answers in an engine that ends its iterations early.
+pub mod engine {
+    #[doc(inline)]
+    pub use springfit_bodies::engine::{
+        Engine, Frames, Precision, Setting, Sweep, Truncated, TruncatedModel, Vibration,
+    };
+}
+
+/// The nearest network without negative springs to an exact network.
+pub mod positive {
+    #[doc(inline)]
+    pub use springfit_identify::positive::{PositiveFit, PositiveOutcome, Route, nearest_positive};
+}
+
+/// Spring constants fitted to the displacements of the whole body.
+pub mod whole {
+    #[doc(inline)]
+    pub use springfit_identify::whole::{
+        BodyRegions, Determination, Displacements, LeastSquares, ModuliSharing, NodalLoad, Object, Stretched, Target,
+        Unknowns, Validation, Wanted, Weighing, WholeFit, WholeSettings, fit_whole, made_loads, random_loads,
+    };
+}
+
+/// Moduli of a body from measurements, with intervals.
+pub mod calibration {
+    #[doc(inline)]
+    pub use springfit_identify::calibration::{
+        Asked, Estimate, FieldEstimate, Laws, LoadCase, Observation, Prior, Quantity, Unknown, Unknowns, estimate,
+        estimate_field,
+    };
+}
+
+/// Scenes, and the studies that are made from them. [`Scene`](study::Scene) reads and checks a scene file, and [`run`](study::run()) fits
+/// its springs, solves its loads with both models and compares them; the result is an [`Outcome`](study::Outcome).
+pub mod study {
+    #[doc(inline)]
+    pub use springfit_studies::study::{
+        BodyLoad, CalibratedLoad, CalibratedRegion, CalibrationOutcome, CaseRecord, CellValues, Comparing,
+        ComplexModulus, Controls, Convergence, DampingRecipe, DisplacementError, DraftMaterial, DynamicModuli,
+        DynamicModuliOutcome, EffectiveModuli, EngineEntry, EngineOutcome, Event, ExactOutcome, FillEntry, FitEntry,
+        FitOutcome, FitTimes, FittedKind, Followed, Forecast, FrequencyOutcome, GaugeResult, HeldOut, InMemory,
+        Inspection, Lattice, Level, Limit, LoadKind, LoadOutcome, Materials, MatrixErrors, MeasureOptions, Measured,
+        MeasuredNetwork, MeshInput, MeshLength, MethodRecord, ModelMotion, ModelTimes, MotionOutcome, MotionRecipe,
+        NamedFit, NetworkMaterial, Outcome, Paper, Part, Progress, PublishedOutcome, Recipe, Reference, SampledOutcome,
+        Scene, Setting, StabilityOutcome, StabilityRow, Standard, StiffnessOutcome, Stretches, Study, Sweep,
+        TensionOutcome, Times, WholeOutcome, calibrate, compare_element, compare_scene, compare_stretches, converge,
+        converge_to, displacement_error, draft, fit_mesh, inspect, learning_curve, matrix_errors, measure,
+        moduli_of_body, network_material, run, run_paper, run_with, scene_schema, stability, stability_of_scene,
+    };
+}
 
 // The examples of README and of the book are compiled and run with those of this page.
 #[cfg(doctest)]

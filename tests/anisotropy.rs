@@ -3,13 +3,13 @@
 
 use crate::messages::reads;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
-use springfit::element::{Element, SHIPPED};
-use springfit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
-use springfit::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
-use springfit::study::{Outcome, Scene, run};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
 use springfit_numerics::dense::eigenvalues;
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -478,7 +478,7 @@ fn regions_may_be_isotropic_or_not() {
     let outcome = outcome(text);
     let end = outcome.loads[0].fem.iter().skip(2).step_by(3).copied().fold(0.0, f64::max);
     assert!((end / (10.0 / 2e3 + 20.0 / 7e3) - 1.0).abs() < 1e-10, "{end}");
-    assert!(springfit::report::summary(&outcome).contains("anisotropic, 2 cells"));
+    assert!(springfit_report::report::summary(&outcome).contains("anisotropic, 2 cells"));
     // Each cell has the constants that it has alone.
     let fit = Fit::new(Objective::Frobenius(Weight::OffDiagonal));
     let block = &outcome.mesh.blocks[0];

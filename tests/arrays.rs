@@ -1,8 +1,8 @@
 //! Meshes from arrays are those that they were taken from, and wrong arrays are errors.
 
 use crate::shapes::Random;
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{BoxMesh, Gate, Group, Mesh, MeshArrays, MeshSource};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{BoxMesh, Gate, Group, Mesh, MeshArrays, MeshSource};
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

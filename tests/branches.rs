@@ -1,13 +1,13 @@
 //! Branches that yield, and branches in explicit steps: against independent integration, and against each other.
 
 use crate::messages::reads;
-use springfit::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, Memory};
-use springfit::element::Element;
-use springfit::fit::ShearSprings;
-use springfit::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{MaterialPoints, displaced};
-use springfit::study::{MotionEnding, Outcome, Scene, run};
+use springfit_bodies::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, Memory};
+use springfit_bodies::model::{MaterialPoints, displaced};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State};
+use springfit_fit::fit::ShearSprings;
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{MotionEnding, Outcome, Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 

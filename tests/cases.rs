@@ -1,10 +1,10 @@
 //! The errors e_rms and e_max of whole bodies are those of reference, and a run says which networks are not stable.
 
-use springfit::element::Element;
-use springfit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
-use springfit::material::Material;
-use springfit::solve::Standing;
-use springfit::study::{Event, FitOutcome, NamedFit, Scene, compare_element, run};
+use springfit_bodies::solve::Standing;
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_fit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
+use springfit_studies::study::{Event, FitOutcome, NamedFit, Scene, compare_element, run};
 use std::path::Path;
 
 /// One fit of a scene in place of those it lists; `bulk` adds the optional groups.
@@ -121,7 +121,7 @@ fn a_body_that_is_wholly_held_is_no_mechanism() {
                 assert!(!["mechanism", "stalled", "indefinite"].contains(&fit.status()), "{law}: {}", fit.status());
                 assert!(fit.loads[0].displacement.as_ref().unwrap().iter().all(|u| *u == 0.0), "{law}");
             }
-            assert!(springfit::report::notes(&outcome).iter().all(|note| !note.contains("mechanism")), "{law}");
+            assert!(springfit_report::report::notes(&outcome).iter().all(|note| !note.contains("mechanism")), "{law}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The shipped elements in meshes that Gmsh, meshio and VTK wrote: node orders, contents, and surfaces and curves in space.
 
-use springfit::element::{Quadrature, SHIPPED, Tabulation};
-use springfit::fit::{Balance, Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
-use springfit::material::Material;
-use springfit::mesh::{Mesh, MeshSource};
-use springfit::model::{Network, finite_elements, masses};
-use springfit::springs::Springs;
-use springfit::stiffness::each_cell;
+use springfit_bodies::model::{Network, finite_elements, masses};
+use springfit_element::element::{Quadrature, SHIPPED, Tabulation};
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::each_cell;
+use springfit_fit::fit::{Balance, Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
+use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -76,7 +76,7 @@ fn a_rod_is_one_spring() {
         let fits =
             fit_cells(element, &springs, points, cells, material.moduli(), &Fit::new(objective), &mut |_| {}).unwrap();
         for (k, nodes) in fits.constants.iter().zip(cells.chunks_exact(2)) {
-            let length = springfit::springs::distance(mesh.point(nodes[0]), mesh.point(nodes[1]));
+            let length = springfit_element::springs::distance(mesh.point(nodes[0]), mesh.point(nodes[1]));
             // The spectral optimum is known to a millionth of R where it is zero.
             assert!((k * length / 6e5 - 1.0).abs() < 2e-6, "{k} {length}");
         }
@@ -93,7 +93,7 @@ fn surfaces_are_membranes() {
     let mesh = mesh("sphere3.msh");
     assert_eq!((mesh.dimension, mesh.cell_dimension()), (3, 2));
     let element = &mesh.blocks[0].element;
-    let plane = springfit::element::Element::load("tri3").unwrap();
+    let plane = springfit_element::element::Element::load("tri3").unwrap();
     let material = Material::for_body(2, 1e4, 1.0 / 3.0, None, Some(1e-3)).unwrap();
     let every = ["edge".to_string(), "bulk".to_string()];
     for names in [&every[..1], &every[..]] {
@@ -103,13 +103,15 @@ fn surfaces_are_membranes() {
             let fit = Fit::new(objective);
             let fits = fit_cells(element, &springs, &mesh.points, cells, material.moduli(), &fit, &mut |_| {}).unwrap();
             for (nodes, k) in cells.chunks_exact(3).zip(fits.constants.chunks_exact(springs.len())) {
-                let side =
-                    |i: usize, j: usize| springfit::springs::distance(mesh.point(nodes[i]), mesh.point(nodes[j]));
+                let side = |i: usize, j: usize| {
+                    springfit_element::springs::distance(mesh.point(nodes[i]), mesh.point(nodes[j]))
+                };
                 let (a, b, c) = (side(0, 1), side(0, 2), side(1, 2));
                 let x = (a * a + b * b - c * c) / (2.0 * a);
                 let flat = [0.0, 0.0, a, 0.0, x, (b * b - x * x).sqrt()];
                 let springs = Springs::select(&plane, Some(names)).unwrap();
-                let expected = springfit::fit::fit_element(&plane, &springs, &flat, material.moduli(), &fit).unwrap();
+                let expected =
+                    springfit_fit::fit::fit_element(&plane, &springs, &flat, material.moduli(), &fit).unwrap();
                 for (s, (k, e)) in k.iter().zip(&expected).enumerate() {
                     // The area spring has another unit.
                     let size = expected[0].abs() * if s < 3 { 1.0 } else { 1.0 / (a * a) };
@@ -121,7 +123,7 @@ fn surfaces_are_membranes() {
             let map =
                 |v: &[f64]| -> Vec<f64> { (0..3).map(|k| (0..3).map(|l| stretch[3 * k + l] * v[l]).sum()).collect() };
             let u: Vec<f64> = mesh.points.chunks_exact(3).flat_map(map).collect();
-            let energy = |entries: &springfit::model::Entries| -> f64 {
+            let energy = |entries: &springfit_bodies::model::Entries| -> f64 {
                 let twice = |e: &faer::sparse::Triplet<usize, usize, f64>| if e.row == e.col { 1.0 } else { 2.0 };
                 entries.iter().map(|e| twice(e) * e.val * u[e.row] * u[e.col]).sum()
             };

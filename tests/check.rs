@@ -1,13 +1,17 @@
 //! Every shipped element and example passes its proof; files that are wrong in one way fail in that one.
 
-use springfit::element::Element;
-use springfit::study::{Mark, inspect};
+use springfit_element::element::Element;
+use springfit_studies::study::{Mark, inspect};
 use std::path::Path;
 use std::process::Command;
 
 fn folder(name: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-    springfit::files_in(&folder, "toml").unwrap().iter().map(|file| file.display().to_string()).collect()
+    springfit_foundation::file::files_in(&folder, "toml")
+        .unwrap()
+        .iter()
+        .map(|file| file.display().to_string())
+        .collect()
 }
 
 /// A new file is tested by being there.

@@ -1,16 +1,16 @@
 //! Coarse networks for fine bodies: where the points of one mesh lie in another, and what a network fitted to a finer body gains.
 
-use springfit::material::{Material, State};
-use springfit::mesh::{BoxMesh, Embedding, Mesh};
-use springfit::model::{Entries, Support, finite_elements};
-use springfit::solve::System;
-use springfit::study::{Outcome, Scene, SupportPart, run};
-use springfit::whole::{Pressure, varied_loads};
+use springfit_bodies::model::{Entries, Support, finite_elements};
+use springfit_bodies::solve::System;
+use springfit_element::material::{Material, State};
+use springfit_identify::whole::{Pressure, varied_loads};
+use springfit_mesh::mesh::{BoxMesh, Embedding, Mesh};
+use springfit_studies::study::{Outcome, Scene, SupportPart, run};
 use std::sync::Arc;
 
 /// A box with its corner at the origin, m.
 pub fn block(element: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    let element = Arc::new(springfit::element::Element::load(element).unwrap());
+    let element = Arc::new(springfit_element::element::Element::load(element).unwrap());
     BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; size.len()] }.build().unwrap()
 }
 
@@ -264,9 +264,12 @@ fn masses_give_the_frequencies_of_a_finer_body() {
         }
     }
     // The files of the network have them.
-    let file = springfit::report::NetworkFile::of(&outcome, &outcome.fits[1]);
+    let file = springfit_report::report::NetworkFile::of(&outcome, &outcome.fits[1]);
     assert_eq!(file.masses().unwrap(), masses);
-    assert_eq!(springfit::report::NetworkFile::of(&outcome, &outcome.fits[0]).masses(), outcome.masses.as_deref());
+    assert_eq!(
+        springfit_report::report::NetworkFile::of(&outcome, &outcome.fits[0]).masses(),
+        outcome.masses.as_deref()
+    );
 }
 
 /// A material without density, and more frequencies than there are, are refused.
@@ -319,7 +322,7 @@ fn finer_meshes_of_other_bodies_are_refused() {
         std::fs::write(&path, text).unwrap();
         let mut notes = Vec::new();
         let found = run(&Scene::load(&path).unwrap(), &mut |event| {
-            if let springfit::study::Event::Note(words) = event {
+            if let springfit_studies::study::Event::Note(words) = event {
                 notes.push(words.to_string());
             }
         });

@@ -1,9 +1,9 @@
 //! The command line as a whole: help, completions, manual pages, schemas, JSON, the width of tables, and what is written where.
 
 use serde_json::Value;
-use springfit::element::SHIPPED;
-use springfit::fit::published::Method;
-use springfit::study::{Forecast, Scene, run};
+use springfit_element::element::SHIPPED;
+use springfit_fit::fit::published::Method;
+use springfit_studies::study::{Forecast, Scene, run};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -2,11 +2,11 @@
 
 use crate::kit::{prints, said, springfit};
 use serde_json::{Value, json};
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, element_errors, fit_cells};
-use springfit::material::Material;
-use springfit::springs::Springs;
-use springfit::study::{CaseRecord, Comparing, random_shapes};
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells};
+use springfit_studies::study::{CaseRecord, Comparing, random_shapes};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -24,7 +24,7 @@ objective = "spectral"
 nonnegative = [true]
 "#;
 
-fn comparing(text: &str) -> springfit::error::Result<Comparing> {
+fn comparing(text: &str) -> springfit_foundation::error::Result<Comparing> {
     Comparing::parse(text, Path::new("c.toml"))
 }
 

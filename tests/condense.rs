@@ -2,15 +2,15 @@
 
 use crate::shapes::{Random, distorted};
 use nalgebra::{DMatrix, DVector, Matrix2};
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     CellFits, ClosedForm, ExactFit, Fit, Higher, Objective, Weight, condense, element_errors, fit_cells, fit_element,
     fit_exact, plain,
 };
-use springfit::material::{Hooke, Material, Moduli, Stiffness};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
-use springfit::study::{StabilityRow, Verdict, stability};
+use springfit_studies::study::{StabilityRow, Verdict, stability};
 use std::path::Path;
 use std::process::Command;
 

@@ -1,7 +1,7 @@
 //! What fits and models cost: which costs a run has, and that each is of what it says.
 
-use springfit::report::{Cost, Figure, Picture, Report, RunFolder, Table, open_scene_outputs, write_outputs};
-use springfit::study::{FitOutcome, Outcome, Scene, Times, run};
+use springfit_report::report::{Cost, Figure, Picture, Report, RunFolder, Table, open_scene_outputs, write_outputs};
+use springfit_studies::study::{FitOutcome, Outcome, Scene, Times, run};
 use std::path::Path;
 use tempfile::TempDir;
 

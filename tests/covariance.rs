@@ -5,15 +5,15 @@ use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
 use proptest::prelude::*;
-use springfit::element::{Element, SpringKind, permutations};
-use springfit::fit::{
+use springfit_element::element::{Element, SpringKind, permutations};
+use springfit_element::material::Moduli;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, condition, constants_in, constants_of_kind,
     distance_from_optimum, fit_cells, fit_element,
 };
-use springfit::material::Moduli;
-use springfit::scalar::DoubleDouble;
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
+use springfit_foundation::scalar::DoubleDouble;
 use std::sync::{Arc, OnceLock};
 
 /// Elements of so many nodes at most: those of more are no other case, and take long.
@@ -214,7 +214,7 @@ fn expect_finite(subject: usize, (seed, [flat, size, young]): (u64, [f64; 3]), c
 fn relative_fits_of_thin_triangles_are_optima() {
     let element = Element::load("tri3").unwrap();
     let springs = Springs::select(&element, None).unwrap();
-    let moduli = springfit::material::Material::for_body(2, 10e3, 0.3, None, None).unwrap().moduli();
+    let moduli = springfit_element::material::Material::for_body(2, 10e3, 0.3, None, None).unwrap().moduli();
     let (sine, cosine) = 0.7f64.sin_cos();
     for height in [1e-4, 1e-5, 1e-7] {
         let x: Vec<f64> = [[0.0, 0.0], [1.0, 0.0], [0.4, height]]
@@ -321,8 +321,9 @@ fn regular_elements_are_exact_towards_the_incompressible() {
         let table = element.rational_tabulation().unwrap();
         let exact_x: Vec<BigRational> = x.iter().map(|x| rational(*x)).collect();
         for nu in RATIOS {
-            let plane = (element.dimension() == 2).then_some(springfit::material::Plane::Strain);
-            let material = springfit::material::Material::for_body(element.dimension(), 1.0, nu, plane, None).unwrap();
+            let plane = (element.dimension() == 2).then_some(springfit_element::material::Plane::Strain);
+            let material =
+                springfit_element::material::Material::for_body(element.dimension(), 1.0, nu, plane, None).unwrap();
             let exact_moduli = exact_moduli(nu);
             for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::new(0.5).unwrap())] {
                 let exact = constants_in(weight, &springs, &table, &exact_x, &exact_moduli).unwrap();

@@ -1,9 +1,9 @@
 //! Curved cells that fold between their quadrature points: against dense sampling, on all shipped elements.
 
 use nalgebra::DMatrix;
-use springfit::element::{Cell, Element, JacobianBounds, Quadrature, SHIPPED, Tabulation};
-use springfit::mesh::{Below, Gate, MeshArrays};
-use springfit::report;
+use springfit_element::element::{Cell, Element, JacobianBounds, Quadrature, SHIPPED, Tabulation};
+use springfit_mesh::mesh::{Below, Gate, MeshArrays};
+use springfit_report::report;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

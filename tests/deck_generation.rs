@@ -1,7 +1,7 @@
 //! Nodes and elements that the keywords of Abaqus make of others: `*NGEN`, `*NFILL`, `*NCOPY`, `*ELGEN` and `*ELCOPY`, beside bodies in closed form.
 
-use springfit::mesh::{Mesh, MeshSource};
-use springfit::model::content;
+use springfit_bodies::model::content;
+use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::f64::consts::PI;
 
 fn source(text: &str) -> MeshSource {

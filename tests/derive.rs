@@ -3,11 +3,11 @@
 use crate::shapes::elements;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
-use springfit::element::Element;
-use springfit::fit::{ClosedForm, ExactFit, Fit, Higher, Objective, Weight, fit_element, fit_exact};
-use springfit::material::{Hooke, Material, Moduli, Stiffness};
-use springfit::springs::Springs;
-use springfit::symbolic::Scope;
+use springfit_element::element::Element;
+use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{ClosedForm, ExactFit, Fit, Higher, Objective, Weight, fit_element, fit_exact};
+use springfit_foundation::symbolic::Scope;
 use std::process::Command;
 
 fn ratio(above: i64, below: i64) -> BigRational {
@@ -36,7 +36,7 @@ fn formulas_agree_with_the_numerical_fits() {
             let springs = Springs::select(&element, groups).unwrap();
             let Ok(form) = ClosedForm::new(&element, &springs, true) else { continue };
             let at = [&lengths[..d], &lengths[3..]].concat();
-            let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+            let number = |f: &springfit_foundation::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
             let x: Vec<f64> = form.positions.iter().map(number).collect();
             for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::new(0.5).unwrap())] {
                 if element.nodes() > 4 && weight != Weight::None {
@@ -92,7 +92,7 @@ fn formulas_of_springs_on_functions_agree_with_the_numerical_fits() {
         let form = ClosedForm::new(&element, &springs, true).unwrap();
         assert!(form.classes.len() >= least, "{name}: {}", form.classes.len());
         let at = [&lengths[..element.dimension()], &lengths[3..]].concat();
-        let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+        let number = |f: &springfit_foundation::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
         let x: Vec<f64> = form.positions.iter().map(number).collect();
         for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::new(0.5).unwrap())] {
             let Ok(fit) = form.fit(weight) else { continue };
@@ -158,13 +158,13 @@ fn orthotropic_formulas_agree_with_numerical_fits_and_isotropic_formulas() {
         }
         let hooke = Hooke::Anisotropic(Stiffness::new(d, &entries).unwrap());
         let at = [&lengths[..d], &lengths[3..]].concat();
-        let exact = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap();
+        let exact = |f: &springfit_foundation::symbolic::Fraction| f.evaluate(&at).unwrap();
         let x: Vec<f64> = form.positions.iter().map(|f| exact(f).to_f64().unwrap()).collect();
         for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::new(0.5).unwrap())] {
             let numbers =
                 fit_element(&element, &springs, &x, hooke.clone(), &Fit::new(Objective::Frobenius(weight))).unwrap();
             let (fit, plain) = (form.fit(weight).unwrap(), isotropic.fit(weight).unwrap());
-            let combined = |coefficients: &[springfit::symbolic::Fraction], values: &[i64]| -> BigRational {
+            let combined = |coefficients: &[springfit_foundation::symbolic::Fraction], values: &[i64]| -> BigRational {
                 coefficients.iter().zip(values).map(|(f, value)| exact(f) * ratio(*value, 1)).sum()
             };
             for (class, constants) in form.classes.iter().zip(&fit.constants) {
@@ -237,7 +237,7 @@ fn the_square_is_that_of_the_paper() {
 }
 
 /// `λ = Eν/(1 − ν²)`, `μ = E/(2(1 + ν))` at ν = 1/3 and E = 1.
-fn at_one_third(pair: &[springfit::symbolic::Fraction], lengths: &[BigRational]) -> BigRational {
+fn at_one_third(pair: &[springfit_foundation::symbolic::Fraction], lengths: &[BigRational]) -> BigRational {
     let at = [lengths, &[ratio(1, 3)]].concat();
     pair[0].evaluate(&at).unwrap() * ratio(3, 8) + pair[1].evaluate(&at).unwrap() * ratio(3, 8)
 }
@@ -400,7 +400,7 @@ fn formulas_of_exact_networks_agree_with_their_numbers() {
         let d = element.dimension();
         let form = form(name, None, true);
         let at = [&lengths[..d], &lengths[3..]].concat();
-        let number = |f: &springfit::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
+        let number = |f: &springfit_foundation::symbolic::Fraction| f.evaluate(&at).unwrap().to_f64().unwrap();
         let x: Vec<f64> = form.positions.iter().map(number).collect();
         let exact = form.exact();
         let material = Material::for_body(d, 2.0, 0.25, None, None).unwrap();

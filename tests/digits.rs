@@ -1,20 +1,20 @@
 //! Digits that ill-conditioned problems keep: contrast, bounded and tied constants on flat shapes, springs on functions.
 
 use crate::shapes::{Random, distorted};
-use springfit::dynamics::{LinearSolver, Motion, Options, Simulation};
-use springfit::element::Element;
-use springfit::error::ErrorKind;
-use springfit::fit::{
+use springfit_bodies::dynamics::{LinearSolver, Motion, Options, Simulation};
+use springfit_bodies::model::{LengthSpring, Network, Support};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Moduli, Plane};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, bounded_constants, constants_of_kind, distance_from_optimum,
     fit_cells, fit_element,
 };
-use springfit::material::{Material, Moduli, Plane};
-use springfit::model::{LengthSpring, Network, Support};
-use springfit::scalar::{DoubleDouble, Real};
-use springfit::solve::System;
-use springfit::springs::Springs;
-use springfit::study::{Family, StabilityRow, Verdict, stability};
-use springfit::symbolic::{Differentiable, Jet, Scope};
+use springfit_foundation::error::ErrorKind;
+use springfit_foundation::scalar::{DoubleDouble, Real};
+use springfit_foundation::symbolic::{Differentiable, Jet, Scope};
+use springfit_studies::study::{Family, StabilityRow, Verdict, stability};
 use std::path::Path;
 
 /// Springs in a row of constants 1 and `ratio` alternately, pulled at the end: what is left, and the error of the end's way, which is

@@ -2,9 +2,9 @@
 
 use crate::shapes::bodies::{gmsh_text, grid, mapped};
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
-use springfit::mesh::{Mesh, Selection};
-use springfit::model::{finite_elements, lumped_masses};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::model::{finite_elements, lumped_masses};
+use springfit_mesh::mesh::{Mesh, Selection};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::fs;
 use std::path::Path;
 

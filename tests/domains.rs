@@ -4,16 +4,16 @@
 use crate::shapes::Random;
 use crate::shapes::statics::{compliance, membrane};
 use nalgebra::{DMatrix, DVector};
-use springfit::element::Element;
-use springfit::error::ErrorKind;
-use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
-use springfit::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{
+use springfit_bodies::model::{
     Elastic, Entries, Lumping, Network, Support, edge_springs, finite_elements, lumped_masses, patch_springs,
 };
-use springfit::solve::{System, lowest_modes};
-use springfit::study::{Scene, SpringOwners, network_material};
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_element::element::Element;
+use springfit_element::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
+use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
+use springfit_foundation::error::ErrorKind;
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{Scene, SpringOwners, network_material};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,16 +1,16 @@
 //! The public functions of the fits, called with what is wrong: they return errors and do not panic, and no constant that they
 //! return is infinite or not a number.
 
-use springfit::element::Element;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::fit::published::{self, Method};
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, Moduli, State};
+use springfit_element::springs::{Force, Springs};
+use springfit_fit::fit::published::{self, Method};
+use springfit_fit::fit::{
     Balance, CellFits, ClosedForm, Fit, Higher, MotionWeight, Objective, Rest, SampledFit, Sampling, Search, Solver,
     Source, Topology, Weight, condition, constants_in, constants_of_kind, distance_from_optimum, element_errors,
     fit_cells, fit_element, fit_sampled,
 };
-use springfit::material::{Energy, Material, Moduli, State};
-use springfit::springs::{Force, Springs};
+use springfit_foundation::error::{Error, ErrorKind, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 

@@ -1,19 +1,19 @@
 //! Motion of models with lumped masses: against closed forms, conservation laws and orders of convergence.
 
 use crate::messages::reads;
-use springfit::dynamics::largest_square;
-use springfit::dynamics::{
+use springfit_bodies::dynamics::largest_square;
+use springfit_bodies::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome,
 };
-use springfit::element::{Element, SHIPPED};
-use springfit::fit::{Fit, Higher, Objective, Weight, fit_cells};
-use springfit::material::{Energy, Material, State};
-use springfit::mesh::{BoxMesh, DiscMesh, Mesh};
-use springfit::model::{
+use springfit_bodies::model::{
     Body, Elastic, Entries, LengthSpring, Lumping, Network, Response, Support, lumped_masses, masses,
 };
-use springfit::solve::{System, lowest_modes};
-use springfit::springs::Springs;
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::{Energy, Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Higher, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{BoxMesh, DiscMesh, Mesh};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -728,7 +728,7 @@ fn lumped_masses_are_positive() {
         let points = element.positions.clone();
         // The reference cell itself, pulled to another shape.
         let points: Vec<f64> = points.iter().enumerate().map(|(i, x)| x * (1.0 + 0.3 * (i % d) as f64)).collect();
-        let block = springfit::mesh::CellBlock { element: Arc::new(element), connectivity: (0..nodes).collect() };
+        let block = springfit_mesh::mesh::CellBlock { element: Arc::new(element), connectivity: (0..nodes).collect() };
         let mesh = Mesh::of_cells(d, points, vec![block]);
         let rows = masses(&mesh, 1000.0, 0.5);
         let hrz = lumped_masses(&mesh, 1000.0, 0.5, Lumping::Hrz);
@@ -884,7 +884,7 @@ fn faults_are_named() {
     )
     .unwrap();
     assert!(Curve::parse("2*x").is_err());
-    let two = springfit::symbolic::Scope::new(&["t", "x"]).expression("t*x").unwrap();
+    let two = springfit_foundation::symbolic::Scope::new(&["t", "x"]).expression("t*x").unwrap();
     reads(&Curve::of(&two).unwrap_err().to_string(), "curve: … found one of more variables").unwrap();
     // A spring that pushes away as it is stretched: no linear step of a second.
     let (released, _) = pair(-10.0);

@@ -2,12 +2,12 @@
 
 use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{Support, finite_elements};
-use springfit::solve::System;
-use springfit::springs::Springs;
-use springfit::stiffness::{Fault, Geometry};
+use springfit_bodies::model::{Support, finite_elements};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::{Fault, Geometry};
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::sync::Arc;
 
 fn geometry(element: &Element, x: &[f64]) -> Geometry {
@@ -237,8 +237,8 @@ fn interior_share(mesh: &Mesh, face: &[usize]) -> f64 {
     let d = mesh.dimension;
     let mut unit = vec![0.0; d];
     unit[0] = 1.0;
-    let traction = springfit::model::Action::traction(&unit);
-    let f = springfit::model::nodal_forces(mesh, &Selection::Group("xmax".into()), &traction, 1.0).unwrap();
+    let traction = springfit_bodies::model::Action::traction(&unit);
+    let f = springfit_bodies::model::nodal_forces(mesh, &Selection::Group("xmax".into()), &traction, 1.0).unwrap();
     let area: f64 = f.iter().sum();
     assert!((area - 1.0).abs() < 1e-12, "the face has the area {area}");
     let interior = |p: &&usize| mesh.point(**p)[1..].iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9);

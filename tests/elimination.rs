@@ -4,11 +4,11 @@
 use faer::Side;
 use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::{Pair, SymbolicSparseColMat};
-use springfit::element::Element;
-use springfit::material::{Material, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{Support, finite_elements};
-use springfit::solve::{System, factor_cost};
+use springfit_bodies::model::{Support, finite_elements};
+use springfit_bodies::solve::{System, factor_cost};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
 use std::sync::Arc;
 
 /// `Σ c²` over the columns of the factor by approximate minimum degree, for one unknown per point.

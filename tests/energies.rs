@@ -4,7 +4,7 @@ use crate::messages::reads;
 
 use crate::shapes::Random;
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use springfit::material::{Energy, Material, Moduli, SHIPPED, State};
+use springfit_element::material::{Energy, Material, Moduli, SHIPPED, State};
 
 fn solid(young: f64, poisson: f64) -> Material {
     Material::new(young, poisson, State::Solid).unwrap()

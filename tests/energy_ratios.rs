@@ -1,11 +1,11 @@
 //! The least and largest energy of a network over that of the body, beside dense generalized eigenvalues.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use springfit::mesh::Mesh;
-use springfit::model::{Entries, Support, finite_elements};
-use springfit::report::{self, Report, Table};
-use springfit::solve::{Standing, System};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::model::{Entries, Support, finite_elements};
+use springfit_bodies::solve::{Standing, System};
+use springfit_mesh::mesh::Mesh;
+use springfit_report::report::{self, Report, Table};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 
 const BODY: &str = r#"
@@ -145,6 +145,6 @@ fn missing_displacements_have_their_reason() {
     assert!(load.displacement.is_none());
     let reason = load.unsolved.as_ref().unwrap();
     assert!(reason.contains("a motion that releases energy") && reason.contains("method = \"cholesky\""), "{reason}");
-    let notes = springfit::report::notes(&outcome).join("\n");
+    let notes = springfit_report::report::notes(&outcome).join("\n");
     assert!(notes.contains(&format!("no displacements are given ({reason})")), "{notes}");
 }

@@ -1,10 +1,10 @@
 //! Errors for programs: their kind, their place and their source.
 
-use springfit::element::Element;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::mesh::{BoxMesh, Field, Mesh, MeshSource, gmsh};
-use springfit::study::{Event, Scene, run};
-use springfit::symbolic::Scope;
+use springfit_element::element::Element;
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_foundation::symbolic::Scope;
+use springfit_mesh::mesh::{BoxMesh, Field, Mesh, MeshSource, gmsh};
+use springfit_studies::study::{Event, Scene, run};
 use std::error::Error as _;
 use std::io;
 use std::path::Path;
@@ -53,8 +53,8 @@ fn each_fault_has_its_kind() {
     for (kind, error) in [
         (ErrorKind::Io, failed(Scene::load(Path::new("none.toml")))),
         (ErrorKind::Io, failed(Element::load("none.toml"))),
-        (ErrorKind::Io, failed(springfit::write_whole(folder.path(), b""))),
-        (ErrorKind::Io, failed(springfit::check_folder(&large))),
+        (ErrorKind::Io, failed(springfit_foundation::file::write_whole(folder.path(), b""))),
+        (ErrorKind::Io, failed(springfit_foundation::file::check_folder(&large))),
         (ErrorKind::Syntax, failed(scene("[mesh"))),
         (ErrorKind::Syntax, named("\"xi\" }", "\"xi*\" }")),
         (ErrorKind::Syntax, expression("2 x")),

@@ -3,19 +3,19 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::{DMatrix, DVector};
-use springfit::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
-use springfit::element::Element;
-use springfit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
-use springfit::material::{Energy, Material, Moduli, Plane, State};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{
+use springfit_bodies::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
+use springfit_bodies::model::{
     Body, Elastic, Lumping, Network, Support, fibre_springs, finite_elements, lumped_masses, patch_springs,
 };
-use springfit::report::{NetworkFile, network_json};
-use springfit::solve::{System, lowest_modes};
-use springfit::springs::Measure;
-use springfit::stiffness::Geometry;
-use springfit::study::{Scene, run};
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, Moduli, Plane, State};
+use springfit_element::springs::Measure;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_report::report::{NetworkFile, network_json};
+use springfit_studies::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -54,7 +54,7 @@ fn network(mesh: &Mesh, material: Material, fit: ExactFit) -> Network {
     Network::assemble(mesh, &[cells(mesh, material, fit)])
 }
 
-fn dense(size: usize, entries: &springfit::model::Entries) -> DMatrix<f64> {
+fn dense(size: usize, entries: &springfit_bodies::model::Entries) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(size, size);
     for entry in entries {
         matrix[(entry.row, entry.col)] += entry.val;
@@ -70,7 +70,7 @@ fn force_at_rest(network: &Network, mesh: &Mesh) -> f64 {
     let mut force = vec![0.0; mesh.points.len()];
     assert!(network.forces(&mesh.points, &mut force));
     let d = mesh.dimension;
-    let tension = |s: &springfit::model::LengthSpring| {
+    let tension = |s: &springfit_bodies::model::LengthSpring| {
         let [a, b] = s.points.map(|p| DVector::from_column_slice(mesh.point(p)));
         s.pull((a - b).norm())[1].abs()
     };

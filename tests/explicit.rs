@@ -2,8 +2,10 @@
 //! alike on any number of threads.
 
 use crate::dynamics::{cube, scattered};
-use springfit::dynamics::{Curve, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, StepOutcome};
-use springfit::model::{
+use springfit_bodies::dynamics::{
+    Curve, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, StepOutcome,
+};
+use springfit_bodies::model::{
     BlockStiffness, Elastic, LengthSpring, Lumping, Network, Precision, Response, Support, lumped_masses,
 };
 

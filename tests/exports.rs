@@ -1,11 +1,11 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
-use springfit::engine::{Engine, Setting};
-use springfit::error::ErrorKind;
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
-use springfit::model::Elastic;
-use springfit::report::{Division, NetworkFile, NetworkRecord, Parts};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::engine::{Engine, Setting};
+use springfit_bodies::model::Elastic;
+use springfit_foundation::error::ErrorKind;
+use springfit_report::report::{Division, NetworkFile, NetworkRecord, Parts};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -536,7 +536,7 @@ fn springs_by_their_parts_are_the_network() {
     let outcome = outcome(SCENE);
     for fit in outcome.fits.iter().filter(|fit| fit.fit.name != "patches") {
         let record = NetworkFile::of(&outcome, fit).record();
-        let network = springfit::report::Parts::of(&record).unwrap().network(3);
+        let network = springfit_report::report::Parts::of(&record).unwrap().network(3);
         let points = &outcome.mesh.points;
         let moved: Vec<f64> = points.iter().enumerate().map(|(i, x)| x + 0.05 * (i as f64).sin()).collect();
         let (mut own, mut other) = (vec![0.0; points.len()], vec![0.0; points.len()]);

@@ -2,9 +2,9 @@
 
 use crate::messages::reads;
 use proptest::prelude::*;
-use springfit::error::ErrorKind;
-use springfit::mesh::vtk::{Array, Grid, write};
-use springfit::mesh::{Annotations, Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
+use springfit_foundation::error::ErrorKind;
+use springfit_mesh::mesh::vtk::{Array, Grid, write};
+use springfit_mesh::mesh::{Annotations, Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

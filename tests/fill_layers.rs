@@ -3,8 +3,8 @@
 use crate::fills::brick;
 use crate::kit::{said, springfit};
 use crate::smooth_fills::ball;
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
 use std::fs;
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -16,7 +16,7 @@ fn fill(
     cell: f64,
     boundary: FillBoundary,
     layers: FillLayers,
-) -> springfit::error::Result<(Mesh, Filled)> {
+) -> springfit_foundation::error::Result<(Mesh, Filled)> {
     let element = Element::shipped(SHIPPED.iter().find(|s| s.name == "tet4").unwrap()).unwrap();
     let mesh =
         FillMesh { element: Arc::new(element), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }

@@ -1,10 +1,10 @@
 //! Closed surfaces that are filled with cells.
 
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
-use springfit::model::{Action, nodal_forces};
-use springfit::report::{Report, notes_beside_summary};
-use springfit::study::{Scene, run};
+use springfit_bodies::model::{Action, nodal_forces};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
+use springfit_report::report::{Report, notes_beside_summary};
+use springfit_studies::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ fn element(name: &str) -> Arc<Element> {
     Arc::new(Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap())
 }
 
-fn fill(source: &MeshSource, name: &str, cell: f64) -> springfit::error::Result<Mesh> {
+fn fill(source: &MeshSource, name: &str, cell: f64) -> springfit_foundation::error::Result<Mesh> {
     let (boundary, layers) = (FillBoundary::Stepped, FillLayers::Refuse);
     FillMesh { element: element(name), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
         .build(source, 1.0)

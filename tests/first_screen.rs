@@ -1,7 +1,7 @@
 //! What a run prints first: one row for each fit with its verdict, and notes once.
 
-use springfit::report::{Report, Table, groups_beside_summary, notes_beside_summary};
-use springfit::study::{FitEntry, Outcome, Scene, run};
+use springfit_report::report::{Report, Table, groups_beside_summary, notes_beside_summary};
+use springfit_studies::study::{FitEntry, Outcome, Scene, run};
 use std::path::Path;
 use std::process::Command;
 

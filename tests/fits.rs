@@ -3,15 +3,15 @@
 use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::{Hooke, Material, Moduli};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element, plain,
 };
-use springfit::material::{Hooke, Material, Moduli};
-use springfit::mesh::BoxMesh;
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
-use springfit::study::FitEntry;
+use springfit_mesh::mesh::BoxMesh;
+use springfit_studies::study::FitEntry;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 use springfit::export::target_named;
-use springfit::report::{NetworkFile, Parts};
-use springfit::study::{Outcome, Scene, run};
+use springfit_report::report::{NetworkFile, Parts};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -40,14 +40,14 @@ fn written(
     points: &[[f64; 3]],
     triangles: &[[usize; 3]],
     rest: &str,
-) -> springfit::error::Result<Scene> {
+) -> springfit_foundation::error::Result<Scene> {
     let mut text: String = points.iter().map(|x| format!("v {:?} {:?} {:?}\n", x[0], x[1], x[2])).collect();
     triangles.iter().for_each(|c| text += &format!("f {} {} {}\n", c[0] + 1, c[1] + 1, c[2] + 1));
     std::fs::write(folder.join("sheet.obj"), text).unwrap();
     Scene::parse(&format!("[mesh]\nfile = \"sheet.obj\"\n{rest}"), &folder.join("sheet.toml"))
 }
 
-fn outcome(points: &[[f64; 3]], triangles: &[[usize; 3]], rest: &str) -> springfit::error::Result<Outcome> {
+fn outcome(points: &[[f64; 3]], triangles: &[[usize; 3]], rest: &str) -> springfit_foundation::error::Result<Outcome> {
     let folder = TempDir::new().unwrap();
     run(&written(folder.path(), points, triangles, rest)?, &mut |_| {})
 }

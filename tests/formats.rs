@@ -1,10 +1,10 @@
 //! Meshes that Gmsh, meshio, trimesh, VTK and TetGen have written (`meshes/formats.py`), in the formats of other programs,
 //! beside the same meshes in the formats of Gmsh; and damage to them.
 
-use springfit::element::{Quadrature, Tabulation};
-use springfit::mesh::{MESH_FORMATS, Mesh, MeshSource, NumberOrigin, listed_endings};
-use springfit::model::content;
-use springfit::stiffness::each_cell;
+use springfit_bodies::model::content;
+use springfit_element::element::{Quadrature, Tabulation};
+use springfit_element::stiffness::each_cell;
+use springfit_mesh::mesh::{MESH_FORMATS, Mesh, MeshSource, NumberOrigin, listed_endings};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ fn mesh(file: &str) -> Mesh {
     Mesh::resolve(&MeshSource::read(&path(file)).unwrap(), &[], 1.0).unwrap()
 }
 
-fn parse(bytes: &[u8], ending: &str) -> springfit::error::Result<MeshSource> {
+fn parse(bytes: &[u8], ending: &str) -> springfit_foundation::error::Result<MeshSource> {
     MeshSource::parse(bytes, ending)
 }
 
@@ -50,7 +50,7 @@ fn error(text: &str, ending: &str) -> String {
 
 /// The element and the positions of the nodes of each cell, sorted.
 fn cells(mesh: &Mesh) -> Vec<(String, Vec<f64>)> {
-    let of = |block: &springfit::mesh::CellBlock| {
+    let of = |block: &springfit_mesh::mesh::CellBlock| {
         let name = block.element.name.clone();
         block
             .cells()

@@ -2,8 +2,8 @@
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};
-use springfit::scalar::Scalar;
-use springfit::symbolic::{Fraction, Polynomial};
+use springfit_foundation::scalar::Scalar;
+use springfit_foundation::symbolic::{Fraction, Polynomial};
 
 /// Numbers of a linear congruence, the same each time.
 struct Random(u64);

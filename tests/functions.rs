@@ -3,12 +3,12 @@
 use crate::messages::reads;
 use crate::shapes::{Random, distorted};
 use nalgebra::Matrix3;
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::fit::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
-use springfit::material::{Energy, Material};
-use springfit::springs::{AskedForces, Force, ForceFunction, Law, Springs};
-use springfit::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_element::springs::{AskedForces, Force, ForceFunction, Law, Springs};
+use springfit_element::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
+use springfit_fit::fit::{DeformationFamily, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled};
+use springfit_foundation::error::{Error, Result};
 use std::sync::Arc;
 
 /// `P = μ (F − F⁻ᵀ) + λ ln J F⁻ᵀ`, as materials/neo-hookean.toml has its energy.

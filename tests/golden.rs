@@ -1,10 +1,10 @@
 //! Published and derived figures for single elements.
 
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
-use springfit::material::{Material, State};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
 
 const SQUARE: [f64; 8] = [-1., -1., 1., -1., 1., 1., -1., 1.];
 const STRESS: State = State::PlaneStress { thickness: 1.0 };

@@ -1,13 +1,13 @@
 //! Derivatives of spring constants: products with the Jacobian in both directions are transposes, for every element and objective.
 
 use crate::shapes::{Random, distorted, elements};
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::Moduli;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     CellFunction, CellNumbers, ExactFit, Fit, GradientFit, Higher, Inputs, Objective, VolumeSprings, Weight,
 };
-use springfit::material::Moduli;
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
 
 /// The objectives that have derivatives, for an element.
 fn fits(element: &Element) -> Vec<(GradientFit, Springs)> {

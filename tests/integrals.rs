@@ -3,12 +3,12 @@
 use crate::shapes::{Random, elements};
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
-use springfit::element::{Element, Integrand, Quadrature, Tabulation};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh, Selection};
-use springfit::model::{Action, Component, Lumping, lumped_masses, masses, nodal_forces};
-use springfit::stiffness::Geometry;
-use springfit::study::random_shapes;
-use springfit::symbolic::Scope;
+use springfit_bodies::model::{Action, Component, Lumping, lumped_masses, masses, nodal_forces};
+use springfit_element::element::{Element, Integrand, Quadrature, Tabulation};
+use springfit_element::stiffness::Geometry;
+use springfit_foundation::symbolic::Scope;
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh, Selection};
+use springfit_studies::study::random_shapes;
 use std::sync::Arc;
 
 fn one_cell(element: &Element, points: Vec<f64>) -> Mesh {

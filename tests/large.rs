@@ -1,10 +1,10 @@
 //! Scenes whose material has a law: both models at large deformation, and fits to sampled forces.
 
-use springfit::element::Element;
-use springfit::material::{Material, Plane};
-use springfit::report;
-use springfit::solve::Newton;
-use springfit::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
+use springfit_bodies::solve::Newton;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Plane};
+use springfit_report::report;
+use springfit_studies::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
 use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -150,14 +150,14 @@ fn the_study_of_stretches_has_all_its_parts() {
 fn a_load_that_is_reached_in_part_is_not_shown_as_the_whole() {
     let (_folder, scene) = bar("[[fit]]\nobjective = \"exact\"\nenergy = \"stable-neo-hookean\"", &[]);
     let settings = ["newton.iterations=4", "newton.steps=2", "load[0].traction=[0, 0, -0.9]"];
-    let settings = settings.map(|setting| springfit::study::Setting::parse(setting).unwrap());
+    let settings = settings.map(|setting| springfit_studies::study::Setting::parse(setting).unwrap());
     let text = std::fs::read_to_string(scene.path()).unwrap();
     let scene = Scene::parse_with(&text, scene.path(), &settings).unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
     let followed = outcome.loads[0].followed.unwrap();
     assert!(followed.load > 0.0 && followed.load < 1.0, "{followed:?}");
     let names =
-        |grid: springfit::mesh::vtk::Grid| grid.point_data.into_iter().map(|array| array.name).collect::<Vec<_>>();
+        |grid: springfit_mesh::mesh::vtk::Grid| grid.point_data.into_iter().map(|array| array.name).collect::<Vec<_>>();
     let mesh = names(report::displacement_grid(&outcome));
     let network = names(report::network_grid(&report::NetworkFile::of(&outcome, &outcome.fits[0])));
     for names in [mesh, network] {

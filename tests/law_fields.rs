@@ -1,7 +1,7 @@
 //! Laws at large deformation whose numbers and fibres vary from cell to cell.
 
 use crate::messages::reads;
-use springfit::study::{Outcome, Scene, run};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -55,7 +55,7 @@ fn fields_are_regions_of_cells() {
                       [[material]]\nyoung = 2e3\npoisson = 0.3\nlaw = \"neo-hookean\"\n");
     assert!(difference(&field, &regions) < 1e-9, "{:e}", difference(&field, &regions));
     // Numbers of the key, of the file of the law, and as a field of one value.
-    let shipped = springfit::material::Energy::load("fibre", field.material.isotropic(0, 0).unwrap()).unwrap();
+    let shipped = springfit_element::material::Energy::load("fibre", field.material.isotropic(0, 0).unwrap()).unwrap();
     let default: Vec<(&str, f64)> = shipped.parameters().collect();
     assert_eq!(default, [("growth", 1.0), ("stiffness", 0.5)]);
     let base = "[material]\nyoung = 1e3\npoisson = 0.3\nlaw = \"fibre\"\n";

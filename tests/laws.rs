@@ -1,6 +1,6 @@
 //! Laws of force: their forces, slopes and energies, and the texts that are none.
 
-use springfit::springs::Law;
+use springfit_element::springs::Law;
 
 /// Laws with closed forms: the cubic, the exponential, one that pulls only.
 #[test]

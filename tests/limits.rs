@@ -1,9 +1,9 @@
 //! What is too large is refused before it is tried, and outputs that cannot be written before the work.
 
-use springfit::error::ErrorKind;
-use springfit::model::Network;
-use springfit::report::{NetworkFile, network_csv, network_json, open_scene_outputs};
-use springfit::study::{Scene, run};
+use springfit_bodies::model::Network;
+use springfit_foundation::error::ErrorKind;
+use springfit_report::report::{NetworkFile, network_csv, network_json, open_scene_outputs};
+use springfit_studies::study::{Scene, run};
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
@@ -194,9 +194,12 @@ fn outputs_that_cannot_be_written_are_found_before_the_work() {
     let scene = Scene::parse(&scene(1, "", more), Path::new("scene.toml")).unwrap();
     let made = TempDir::new().unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
-    let written =
-        springfit::report::write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, made.path()).unwrap())
-            .unwrap();
+    let written = springfit_report::report::write_outputs(
+        &outcome,
+        scene.output(),
+        open_scene_outputs(&scene, made.path()).unwrap(),
+    )
+    .unwrap();
     assert_eq!(written.len(), 10, "{written:?}");
     for path in written {
         let folder = TempDir::new().unwrap();

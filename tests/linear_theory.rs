@@ -2,11 +2,11 @@
 
 use crate::shapes::{Random, elements};
 use nalgebra::DMatrix;
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Deformation, finite_elements};
-use springfit::report::{Report, notes, tables};
-use springfit::study::{Outcome, Scene, converge, run};
+use springfit_bodies::model::{Deformation, finite_elements};
+use springfit_element::element::Element;
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_report::report::{Report, notes, tables};
+use springfit_studies::study::{Outcome, Scene, converge, run};
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -145,7 +145,7 @@ displacement = ["free", 0.01]
 "#;
     let outcome = outcome(&format!("{BEAM}{loads}"));
     let points = outcome.mesh.points.len();
-    let dense = |entries: springfit::model::Entries| {
+    let dense = |entries: springfit_bodies::model::Entries| {
         let mut matrix = DMatrix::<f64>::zeros(points, points);
         for entry in entries {
             matrix[(entry.row, entry.col)] += entry.val;

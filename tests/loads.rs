@@ -1,10 +1,10 @@
 //! Which sides, cells or points a total force is shared over, and that sides which no cell has are no part of a load.
 
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Gate, Group, ListedSides, Mesh, Selection, gmsh};
-use springfit::model::{Action, nodal_forces};
-use springfit::study::{Outcome, Scene, run};
-use springfit::symbolic::Scope;
+use springfit_bodies::model::{Action, nodal_forces};
+use springfit_element::element::Element;
+use springfit_foundation::symbolic::Scope;
+use springfit_mesh::mesh::{BoxMesh, Gate, Group, ListedSides, Mesh, Selection, gmsh};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -200,7 +200,7 @@ fn a_traction_on_a_sheet_in_space_is_said_to_act_on_its_outline() {
              [[load]]\nname = \"pull\"\nwhere = \"x > 0.1\"\n{load}\n"
         );
         let scene = Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
-        springfit::report::notes(&springfit::study::run(&scene, &mut |_| {}).unwrap())
+        springfit_report::report::notes(&springfit_studies::study::run(&scene, &mut |_| {}).unwrap())
     };
     let is_told = |notes: &[String]| notes.iter().any(|note| note.contains("traction pull acts on the outline"));
     assert!(is_told(&scene("traction = [1, 0, 0]")));

@@ -2,15 +2,15 @@
 
 use crate::shapes::statics::{compliance, membrane};
 use nalgebra::DMatrix;
-use springfit::element::Element;
-use springfit::fit::{ExactFit, VolumeSprings, fit_exact};
-use springfit::material::{Material, Plane, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{
+use springfit_bodies::model::{
     Entries, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs, smoothed_pressure,
 };
-use springfit::solve::{System, lowest_modes};
-use springfit::study::{Scene, run};
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Plane, State};
+use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -248,9 +248,9 @@ fn a_spring_on_a_linear_simplex_is_that_of_its_point() {
     for element in ["tri3", "tet4", "hex8"] {
         let [points, cells] = ["points", "cells"].map(|volume| outcome(element, volume));
         let is_same = element != "hex8";
-        let ratio = |of: &springfit::study::Outcome| of.fits[0].stability.as_ref().unwrap().energy_ratio;
-        let notes = |of: &springfit::study::Outcome| springfit::report::notes(of);
-        let springs = |of: &springfit::study::Outcome| -> Vec<[f64; 2]> {
+        let ratio = |of: &springfit_studies::study::Outcome| of.fits[0].stability.as_ref().unwrap().energy_ratio;
+        let notes = |of: &springfit_studies::study::Outcome| springfit_report::report::notes(of);
+        let springs = |of: &springfit_studies::study::Outcome| -> Vec<[f64; 2]> {
             of.fits[0].network.others.iter().map(|spring| [spring.constant, spring.rest]).collect()
         };
         assert_eq!(springs(&points) == springs(&cells), is_same, "{element}");
@@ -271,7 +271,7 @@ fn a_body_of_one_cell_across_that_bends_is_told() {
              load = [{{ name = \"load\", group = \"xmax\", traction = {traction} }}]\n{more}"
         );
         let scene = Scene::parse(&text, Path::new("bar.toml")).unwrap();
-        springfit::report::notes(&run(&scene, &mut |_| {}).unwrap()).join("\n")
+        springfit_report::report::notes(&run(&scene, &mut |_| {}).unwrap()).join("\n")
     };
     let words = "about one cell across and bends under load";
     for element in ["tet4", "hex8"] {
@@ -306,7 +306,7 @@ fn frequencies_are_off_those_of_elements_that_do_not_lock() {
     assert!(!found.iter().zip(&expected).any(differ), "{found:?} {expected:?}");
     let cells = locks.frequencies[0].consistent.clone().unwrap();
     assert!(cells[0] > 1.3 * found[0], "{cells:?} {found:?}");
-    let notes = |outcome: &springfit::study::Outcome| springfit::report::notes(outcome).join("\n");
+    let notes = |outcome: &springfit_studies::study::Outcome| springfit_report::report::notes(outcome).join("\n");
     let words = "natural frequencies are compared with those of elements that are too stiff";
     assert!(!notes(&locks).contains(words), "{}", notes(&locks));
     let of_cells = solved("tet4", 0.49, "reference = { from = \"cells\" }\n");
@@ -325,7 +325,7 @@ fn what_is_compared_with_cells_that_lock_is_told() {
         let outcome = run(&Scene::parse(&text, Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap();
         (
             outcome.loads.iter().map(|load| load.measured.is_some()).collect::<Vec<_>>(),
-            springfit::report::notes(&outcome).join("\n"),
+            springfit_report::report::notes(&outcome).join("\n"),
         )
     };
     let pull = "{ name = \"pull\", group = \"xmax\", traction = [100, 0, 0] }";

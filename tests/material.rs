@@ -2,15 +2,15 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
-use springfit::element::Element;
-use springfit::fit::{CellFits, ExactFit, fit_exact};
-use springfit::material::Material;
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::Network;
-use springfit::report;
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
-use springfit::study::{
+use springfit_bodies::model::Network;
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{CellFits, ExactFit, fit_exact};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_report::report;
+use springfit_studies::study::{
     FitEntry, FitOutcome, Lattice, NetworkMaterial, Outcome, Recipe, Reference, Scene, SpringOwners, fit_mesh,
     network_material, run,
 };
@@ -415,7 +415,7 @@ fn sheets_that_meet_or_lie_over_others_are_the_material() {
             let outcome = run(&scene, &mut |_| {}).unwrap();
             let material = Material::for_body(2, 1e4, 0.3, None, Some(1.0)).unwrap();
             is_material(&outcome.fits[0].as_material, material, &format!("{name} {thickness}"));
-            let notes = springfit::report::notes(&outcome).join("\n");
+            let notes = springfit_report::report::notes(&outcome).join("\n");
             assert!(!notes.contains("is not the material"), "{notes}");
             // The four cells of the second layer and those below them; sheets that meet are not told.
             assert_eq!(outcome.mesh.quality.overlapping, if name == "sheet" { 8 } else { 0 });

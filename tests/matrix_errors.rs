@@ -2,15 +2,15 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::DMatrix;
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_bodies::model::{Entries, Network, finite_elements};
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     CellFits, ExactEnergy, ExactFit, Fit, Objective, Rest, VolumeSprings, Weight, element_errors, fit_cells, fit_exact,
 };
-use springfit::material::Material;
-use springfit::mesh::{CellBlock, Mesh};
-use springfit::model::{Entries, Network, finite_elements};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
+use springfit_mesh::mesh::{CellBlock, Mesh};
 use springfit_numerics::dense::eigenvalues;
 use std::sync::Arc;
 

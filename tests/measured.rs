@@ -4,12 +4,12 @@
 use crate::kit::{self, prints};
 use crate::shapes::elements;
 use nalgebra::DMatrix;
-use springfit::element::Element;
-use springfit::fit::{Fit, GivenStiffness, Objective, Weight, condense, fit_element, plain};
-use springfit::material::{Hooke, Material, State};
-use springfit::report::{SpecimenOptions, read_matrix, read_specimen};
-use springfit::springs::Springs;
-use springfit::study::{MeasureOptions, MeasuredNetwork, NamedLattice, measure};
+use springfit_element::element::Element;
+use springfit_element::material::{Hooke, Material, State};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, GivenStiffness, Objective, Weight, condense, fit_element, plain};
+use springfit_report::report::{SpecimenOptions, read_matrix, read_specimen};
+use springfit_studies::study::{MeasureOptions, MeasuredNetwork, NamedLattice, measure};
 use std::fs;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -483,7 +483,7 @@ fn the_limit_of_an_engine_is_measured() {
     );
     let path = folder.path().join("b.json");
     let file = read_specimen(&path, &SpecimenOptions::default()).unwrap();
-    let setting = springfit::engine::Setting::usual(springfit::engine::Engine::Xpbd);
+    let setting = springfit_bodies::engine::Setting::usual(springfit_bodies::engine::Engine::Xpbd);
     let count = file.specimen.count();
     let options = MeasureOptions {
         hull: true,
@@ -544,7 +544,7 @@ fn matrices_of_elements_have_the_constants_of_the_elements() {
         let given = GivenStiffness::new(read_matrix(&path).unwrap(), x.clone(), d).unwrap();
         let mut objectives = vec![Objective::Frobenius(Weight::None), Objective::Frobenius(Weight::OffDiagonal)];
         if element.nodes() <= 8 {
-            objectives.push(Objective::Spectral(springfit::fit::MotionWeight::None));
+            objectives.push(Objective::Spectral(springfit_fit::fit::MotionWeight::None));
         }
         for objective in objectives {
             let fit = Fit::new(objective);

@@ -2,10 +2,10 @@
 
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
-use springfit::calibration::clamped_order;
-use springfit::material::{Material, State};
-use springfit::report;
-use springfit::study::{FoundModuli, FoundModulus, ModuliSearch, Outcome, Scene, run};
+use springfit_element::material::{Material, State};
+use springfit_identify::calibration::clamped_order;
+use springfit_report::report;
+use springfit_studies::study::{FoundModuli, FoundModulus, ModuliSearch, Outcome, Scene, run};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::Path;
@@ -55,7 +55,7 @@ const LOADS: [(&str, &str); 3] = [
     ("squeeze", "where = \"x > 0.999\"\ntraction = [-100, 20, 0]"),
 ];
 
-fn outcome(folder: &Path, name: &str, text: &str) -> springfit::error::Result<Outcome> {
+fn outcome(folder: &Path, name: &str, text: &str) -> springfit_foundation::error::Result<Outcome> {
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     run(&Scene::load(&path)?, &mut |_| {})
@@ -132,7 +132,7 @@ impl World {
         finer: Option<usize>,
         sigmas: Option<&[f64]>,
         keys: &str,
-    ) -> springfit::error::Result<Outcome> {
+    ) -> springfit_foundation::error::Result<Outcome> {
         outcome(self.folder.path(), "own.toml", &self.scene(size, finer, sigmas, keys))
     }
 }

@@ -1,8 +1,8 @@
 //! Measures of one's own.
 
-use springfit::element::Element;
+use springfit_element::element::Element;
 
-fn triangle(measure: &str) -> springfit::error::Result<Element> {
+fn triangle(measure: &str) -> springfit_foundation::error::Result<Element> {
     let file = std::fs::read_to_string("examples/elements/tri3_coupled.toml").unwrap();
     let own = "abs((x1 - x0)*(y2 - y0) - (x2 - x0)*(y1 - y0))/sqrt((x1 - x0)^2 + (y1 - y0)^2)";
     assert!(file.contains(own));

@@ -1,8 +1,8 @@
 //! Reads one bar of hexahedra and tetrahedra from every kind of mesh file, whole, cut short and damaged.
 
 use proptest::prelude::*;
-use springfit::mesh::vtk::{Array, Grid, write};
-use springfit::mesh::{Field, Format, Mesh, MeshSource, SourceBlock, gmsh, vtk};
+use springfit_mesh::mesh::vtk::{Array, Grid, write};
+use springfit_mesh::mesh::{Field, Format, Mesh, MeshSource, SourceBlock, gmsh, vtk};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -53,7 +53,7 @@ fn bytes_of(file: &str) -> Vec<u8> {
     fs::read(folder().join(file)).unwrap()
 }
 
-fn parse(file: &str, bytes: &[u8]) -> springfit::error::Result<MeshSource> {
+fn parse(file: &str, bytes: &[u8]) -> springfit_foundation::error::Result<MeshSource> {
     match file.rsplit('.').next().unwrap() {
         "msh" => gmsh::parse(bytes),
         "vtu" => vtk::parse_xml(bytes),

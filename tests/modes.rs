@@ -2,12 +2,12 @@
 
 use crate::messages::reads;
 use nalgebra::DMatrix;
-use springfit::element::{Element, SHIPPED};
-use springfit::material::Material;
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
-use springfit::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
-use springfit::study::Scene;
+use springfit_bodies::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
+use springfit_bodies::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::Material;
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
+use springfit_studies::study::Scene;
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ struct Model {
 }
 
 impl Model {
-    fn new(entries: &springfit::model::Entries, support: &Support, masses: Vec<f64>, dimension: usize) -> Model {
+    fn new(entries: &springfit_bodies::model::Entries, support: &Support, masses: Vec<f64>, dimension: usize) -> Model {
         let system = System::new(entries, support).unwrap();
         let factor = system.factorize().unwrap().unwrap();
         Model { system, factor, masses, dimension }
@@ -248,7 +248,7 @@ fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
         let held: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
         let mut support = Support::free(&mesh);
         support.fix(&held, &(0..d).collect::<Vec<_>>(), d);
-        let lumped = springfit::model::lumped_masses(&mesh, 2.0, 1.0, springfit::model::Lumping::Hrz);
+        let lumped = springfit_bodies::model::lumped_masses(&mesh, 2.0, 1.0, springfit_bodies::model::Lumping::Hrz);
         let model = Model::new(&finite_elements(&mesh, material.moduli()), &support, lumped.clone(), d);
         let consistent = ConsistentMasses::of_mesh(&mesh, 2.0, 1.0).unwrap();
         assert_near(consistent.total(), lumped.iter().sum(), 1e-12);
@@ -295,7 +295,7 @@ fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
 fn faults_of_a_mass_matrix_are_named() {
     let mesh = bar([1.0; 3], [1; 3]);
     let matrix = ConsistentMasses::of_mesh(&mesh, 1.0, 1.0).unwrap();
-    let of = |found: springfit::error::Result<ConsistentMasses>| found.unwrap_err().to_string();
+    let of = |found: springfit_foundation::error::Result<ConsistentMasses>| found.unwrap_err().to_string();
     reads(&of(matrix.blended(&[1.0; 8], 1.5)), "share: … from 0 to 1, found 1.5").unwrap();
     reads(&of(matrix.blended(&[1.0; 7], 0.5)), "masses: … 8, one for each point, found 7").unwrap();
     reads(&of(matrix.blended(&[f64::NAN; 8], 0.5)), "masses: … point 0, found NaN").unwrap();

@@ -1,19 +1,19 @@
 //! Moduli that networks have as materials, against published and derived figures.
 
 use crate::shapes::{elements, materials};
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight};
-use springfit::material::{Material, Plane};
-use springfit::springs::Springs;
-use springfit::study::{EffectiveModuli, Lattice};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Plane};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight};
+use springfit_studies::study::{EffectiveModuli, Lattice};
 use std::sync::Arc;
 
 const FROBENIUS: Fit = Fit {
     objective: Objective::Frobenius(Weight::None),
     tied: false,
     nonnegative: false,
-    solver: springfit::fit::Solver::Native,
-    rest: springfit::fit::Rest::Mesh,
+    solver: springfit_fit::fit::Solver::Native,
+    rest: springfit_fit::fit::Rest::Mesh,
     gap: 0.0,
 };
 
@@ -44,7 +44,7 @@ fn finite_elements_have_the_moduli_of_the_material() {
             let moduli = lattice.of_elements(material).unwrap();
             let (e, nu) = (material.young(), material.poisson());
             // Plane strain is the plane stress of E/(1 − ν²), ν/(1 − ν).
-            let plane_strain = matches!(material.state(), springfit::material::State::PlaneStrain { .. });
+            let plane_strain = matches!(material.state(), springfit_element::material::State::PlaneStrain { .. });
             let (e, nu) = if plane_strain { (e / (1.0 - nu * nu), nu / (1.0 - nu)) } else { (e, nu) };
             close(&moduli, e, nu, 1.0, 1e-8 * e);
             assert!((moduli.poisson - nu).abs() < 1e-11 && (moduli.zener - 1.0).abs() < 1e-11, "{}", element.name);
@@ -109,15 +109,15 @@ fn exact_springs_have_the_moduli_of_the_material() {
 fn bodies_have_the_moduli_of_what_they_are_made_of() {
     let scene = |name: &str| {
         let path = format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let scene = springfit::study::Scene::load(path.as_ref()).unwrap();
+        let scene = springfit_studies::study::Scene::load(path.as_ref()).unwrap();
         let first = scene.fits()[..1].to_vec();
-        let output = springfit::study::Output { moduli: true, ..scene.output().clone() };
-        springfit::study::run(&scene.without_loads().with_fits(first).with_output(output), &mut |_| {}).unwrap()
+        let output = springfit_studies::study::Output { moduli: true, ..scene.output().clone() };
+        springfit_studies::study::run(&scene.without_loads().with_fits(first).with_output(output), &mut |_| {}).unwrap()
     };
     for name in ["cube_tet", "cube_hex"] {
         let outcome = scene(name);
-        let entries = springfit::model::finite_elements(&outcome.mesh, outcome.material.moduli());
-        let found = springfit::study::moduli_of_body(&outcome.mesh, &entries).unwrap().unwrap();
+        let entries = springfit_bodies::model::finite_elements(&outcome.mesh, outcome.material.moduli());
+        let found = springfit_studies::study::moduli_of_body(&outcome.mesh, &entries).unwrap().unwrap();
         close(&found, 1e4, 0.3, 1.0, 1e-5);
         assert!((found.poisson - 0.3).abs() < 1e-9 && (found.zener - 1.0).abs() < 1e-9, "{found:?}");
     }
@@ -135,13 +135,13 @@ fn the_moduli_of_a_whole_network_in_plane_strain_are_those_of_the_solid() {
     let text = "[mesh]\nbox = { element = \"tri3\", size = [1, 1], cells = [3, 3] }\n\
                 [material]\nyoung = 10e3\npoisson = 0.3\nplane = \"strain\"\nthickness = 0.5\n\
                 [[fit]]\nobjective = \"exact\"\n[output]\nmoduli = true\n";
-    let scene = springfit::study::Scene::parse(text, std::path::Path::new("scene.toml")).unwrap();
-    let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
-    let record = &springfit::report::Report::of(&outcome).fits[0];
+    let scene = springfit_studies::study::Scene::parse(text, std::path::Path::new("scene.toml")).unwrap();
+    let outcome = springfit_studies::study::run(&scene, &mut |_| {}).unwrap();
+    let record = &springfit_report::report::Report::of(&outcome).fits[0];
     let (whole, sampled) = (record.effective_young.unwrap(), record.as_material.young.unwrap());
     assert!((whole - 1e4).abs() < 1e-5 && (sampled - 1e4).abs() < 1e-5, "{whole} {sampled}");
     let (whole, sampled) = (record.effective_poisson.unwrap(), record.as_material.poisson.unwrap());
     assert!((whole - 0.3).abs() < 1e-9 && (sampled - 0.3).abs() < 1e-9, "{whole} {sampled}");
-    let notes = springfit::report::notes(&outcome).join("\n");
+    let notes = springfit_report::report::notes(&outcome).join("\n");
     assert!(notes.contains("the whole network has E = 1.0000e4 Pa, nu = 0.300"), "{notes}");
 }

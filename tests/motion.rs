@@ -2,9 +2,9 @@
 
 use crate::kit::{said, springfit};
 use crate::messages::reads;
-use springfit::mesh::MeshSource;
-use springfit::report;
-use springfit::study::{Event, ModelMotion, MotionEnding, Outcome, Scene, run, stages};
+use springfit_mesh::mesh::MeshSource;
+use springfit_report::report;
+use springfit_studies::study::{Event, ModelMotion, MotionEnding, Outcome, Scene, run, stages};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};

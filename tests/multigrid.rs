@@ -1,10 +1,10 @@
 //! Conjugate gradients with multigrid answer as a factor does, for bodies and for networks of every standing.
 
-use springfit::error::ErrorKind;
-use springfit::mesh::Mesh;
-use springfit::model::{BlockStiffness, Support, finite_elements};
-use springfit::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
-use springfit::study::{Hold, Outcome, Scene, run};
+use springfit_bodies::model::{BlockStiffness, Support, finite_elements};
+use springfit_bodies::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
+use springfit_foundation::error::ErrorKind;
+use springfit_mesh::mesh::Mesh;
+use springfit_studies::study::{Hold, Outcome, Scene, run};
 use std::fs;
 use std::path::Path;
 

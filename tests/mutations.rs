@@ -1,12 +1,12 @@
 //! Meshes that random changes have spoilt: each fault is an error, or is counted by its name. No sound mesh has one.
 
 use crate::shapes::Random;
-use springfit::element::{Cell, Element, SHIPPED, Side};
-use springfit::error::Result;
-use springfit::mesh::{
+use springfit_bodies::model::{Support, unheld_bodies};
+use springfit_element::element::{Cell, Element, SHIPPED, Side};
+use springfit_foundation::error::Result;
+use springfit_mesh::mesh::{
     Annotations, Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock,
 };
-use springfit::model::{Support, unheld_bodies};
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::path::Path;

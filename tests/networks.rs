@@ -1,15 +1,15 @@
 //! Network files: what is written is read again, explains itself, and is refused in one line where it is wrong.
 
 use crate::report::{LARGE, LINEAR};
-use springfit::element::{Element, SHIPPED};
-use springfit::model::{Elastic, MeasureSpring, displaced};
-use springfit::report::{
+use springfit_bodies::model::{Elastic, MeasureSpring, displaced};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::springs::Law;
+use springfit_foundation::symbolic::Scope;
+use springfit_report::report::{
     FORMAT, MeasureKind, NETWORK_VERSION, NetworkFile, NetworkFormat, NetworkRecord, SpringRecord, network_json,
     network_schema, points_csv, read_network,
 };
-use springfit::springs::Law;
-use springfit::study::{Outcome, Scene, run};
-use springfit::symbolic::Scope;
+use springfit_studies::study::{Outcome, Scene, run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -71,14 +71,14 @@ fn measure(network: &NetworkRecord, spring: &SpringRecord, x: &[f64]) -> f64 {
             Scope::new(&names).expression(measure.expression.as_ref().unwrap()).unwrap().evaluate(&values)
         }
         MeasureKind::Squares => {
-            let square = |cell: &springfit::report::ShareRecord| {
+            let square = |cell: &springfit_report::report::ShareRecord| {
                 let [a, b] = [0, 1].map(|i| at(spring.points[cell.nodes[i]]));
                 cell.share * a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
             };
             measure.cells.iter().map(square).sum()
         }
         MeasureKind::Turn => {
-            let turn = |cell: &springfit::report::ShareRecord| {
+            let turn = |cell: &springfit_report::report::ShareRecord| {
                 let [apex, a, b, director] =
                     [0, 1, 2, 3].map(|i| nalgebra::Vector3::from_column_slice(at(spring.points[cell.nodes[i]])));
                 let edge = (b - a).normalize();

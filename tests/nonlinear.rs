@@ -2,14 +2,14 @@
 
 use crate::shapes::{Random, distorted, elements};
 use nalgebra::Matrix3;
-use springfit::element::{Element, SpringKind};
-use springfit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
-use springfit::material::{Energy, Material, Plane, SHIPPED, State};
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
-use springfit::solve::{Ending, Newton, System};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
+use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
+use springfit_bodies::solve::{Ending, Newton, System};
+use springfit_element::element::{Element, SpringKind};
+use springfit_element::material::{Energy, Material, Plane, SHIPPED, State};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::sync::Arc;
 
 fn cube(name: &str, cells: usize) -> Mesh {

@@ -2,16 +2,16 @@
 
 use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector};
-use springfit::element::Element;
-use springfit::error::ErrorKind;
-use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
-use springfit::material::Material;
-use springfit::mesh::{BoxMesh, Mesh, MeshSource};
-use springfit::model::{Elastic, LengthSpring, Network, Support};
-use springfit::positive::{PositiveFit, PositiveOutcome, Route, nearest_positive};
-use springfit::solve::System;
-use springfit::study::{FittedKind, Scene, run};
+use springfit_bodies::model::{Elastic, LengthSpring, Network, Support};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::Material;
+use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
+use springfit_foundation::error::ErrorKind;
+use springfit_identify::positive::{PositiveFit, PositiveOutcome, Route, nearest_positive};
+use springfit_mesh::mesh::{BoxMesh, Mesh, MeshSource};
 use springfit_numerics::dense::least_squares;
+use springfit_studies::study::{FittedKind, Scene, run};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -69,7 +69,8 @@ fn largest(values: &[f64]) -> f64 {
 
 /// The largest force of a spring at rest.
 fn pull(network: &Network, mesh: &Mesh) -> f64 {
-    let length = |s: &LengthSpring| springfit::springs::distance(mesh.point(s.points[0]), mesh.point(s.points[1]));
+    let length =
+        |s: &LengthSpring| springfit_element::springs::distance(mesh.point(s.points[0]), mesh.point(s.points[1]));
     network.lengths.iter().map(|s| s.constant.abs() * length(s)).fold(0.0, f64::max)
 }
 
@@ -290,7 +291,7 @@ fn wrong_networks_are_refused() {
     assert_eq!((error.kind(), error.key()), (ErrorKind::Unsupported, Some("across")), "{error}");
 }
 
-fn scene(fit: &str) -> springfit::error::Result<Scene> {
+fn scene(fit: &str) -> springfit_foundation::error::Result<Scene> {
     let text = format!(
         "[mesh]\nfile = \"cylinder_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\n\
          objective = \"exact\"\n{fit}\n[[fix]]\ngroup = \"fixed\"\n[[load]]\ngroup = \"load\"\ntraction = [1000, 0, 1000]\n"

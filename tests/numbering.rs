@@ -2,10 +2,10 @@
 
 use crate::shapes::Random;
 use serde_json::Value;
-use springfit::mesh::{Mesh, MeshSource};
-use springfit::model::Network;
-use springfit::report::{NetworkFile, Report, network_csv, network_grid, network_json, report, summary};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::model::Network;
+use springfit_mesh::mesh::{Mesh, MeshSource};
+use springfit_report::report::{NetworkFile, Report, network_csv, network_grid, network_json, report, summary};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -167,7 +167,7 @@ fn points_of_notes_are_those_of_files() {
         );
         let outcome = run(&Scene::parse(&text, Path::new("/scene.toml")).unwrap(), &mut |_| {}).unwrap();
         assert_eq!(Report::of(&outcome).fits[0].loose_nodes, [2, 3]);
-        let notes = springfit::report::notes(&outcome).join("\n");
+        let notes = springfit_report::report::notes(&outcome).join("\n");
         let [a, b] = names;
         for part in [format!("Moving freely: {word}s {a} ("), format!("), {b} (")] {
             assert!(notes.contains(&part), "{part}: {notes}");

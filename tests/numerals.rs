@@ -1,6 +1,6 @@
 //! Numbers as text are those of the standard library and of `serde_json`.
 
-use springfit::text::{push_exponential, push_list, push_number};
+use springfit_foundation::text::{push_exponential, push_list, push_number};
 
 /// Bits in no order (xorshift; Marsaglia, J. Stat. Softw. 8, 2003).
 fn bits(count: usize) -> impl Iterator<Item = u64> {

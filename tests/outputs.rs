@@ -1,8 +1,8 @@
 //! The files that a run writes.
 
-use springfit::model::{Lumping, lumped_masses};
-use springfit::report::{NetworkFile, notes, open_scene_outputs, tables, write_outputs};
-use springfit::study::{Scene, run};
+use springfit_bodies::model::{Lumping, lumped_masses};
+use springfit_report::report::{NetworkFile, notes, open_scene_outputs, tables, write_outputs};
+use springfit_studies::study::{Scene, run};
 use std::path::Path;
 
 const SCENE: &str = r#"[mesh]
@@ -53,9 +53,9 @@ fn files_have_the_masses_with_which_the_run_computes() {
         // The frequencies of the same springs with the masses of the file.
         let (support, d) = (outcome.support.as_ref().unwrap(), outcome.mesh.dimension);
         let entries = outcome.fits[0].network.stiffness(&outcome.mesh.points);
-        let system = springfit::solve::System::new(&entries, support).unwrap();
+        let system = springfit_bodies::solve::System::new(&entries, support).unwrap();
         let factor = system.cholesky().unwrap().unwrap();
-        let modes = springfit::solve::lowest_modes(&system, &factor, file.masses().unwrap(), d, 1).unwrap();
+        let modes = springfit_bodies::solve::lowest_modes(&system, &factor, file.masses().unwrap(), d, 1).unwrap();
         let found = outcome.frequencies[1].frequencies.as_ref().unwrap()[0];
         assert!((modes.frequencies()[0] / found - 1.0).abs() < 1e-9, "{element}");
     }

@@ -1,9 +1,9 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
-use springfit::model::LengthSpring;
-use springfit::report::page::{PageRecord, page_html};
-use springfit::report::{Report, open_scene_outputs, write_outputs};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::model::LengthSpring;
+use springfit_report::report::page::{PageRecord, page_html};
+use springfit_report::report::{Report, open_scene_outputs, write_outputs};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 
 fn outcome(scene: &str) -> Outcome {

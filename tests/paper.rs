@@ -1,9 +1,9 @@
 //! The experiments of the paper, run again by one command, and the published methods and gauges that they need of scenes.
 
 use crate::messages::reads;
-use springfit::error::Error;
-use springfit::report;
-use springfit::study::{Event, GaugeResult, Index, Paper, PaperRow, Scene, compare_scene, run, run_paper};
+use springfit_foundation::error::Error;
+use springfit_report::report;
+use springfit_studies::study::{Event, GaugeResult, Index, Paper, PaperRow, Scene, compare_scene, run, run_paper};
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;

@@ -1,7 +1,7 @@
 //! Images and grids of VTK in pieces, put together by their places.
 
 use crate::voxels::{cells, error, label};
-use springfit::mesh::MeshSource;
+use springfit_mesh::mesh::MeshSource;
 
 /// An image of labels as the pieces of parallel programs: cells from `bounds[k][i]` to `bounds[k][i + 1]` along each axis. Labels belong to
 /// cells, or to points, of which neighbouring pieces share some.

@@ -2,16 +2,16 @@
 
 use crate::shapes::Random;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
-use springfit::element::Element;
-use springfit::material::{CellMap, Energy, Hooke, Material, Plane};
-use springfit::mesh::{CellBlock, Mesh};
-use springfit::model::{
+use springfit_bodies::model::{
     BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
     hinge_flexure, lumped_masses,
 };
-use springfit::report::{HeldRecord, NetworkFile, Parts};
-use springfit::solve::{Ending, Newton, System, lowest_modes};
-use springfit::springs::{Measure, Turns};
+use springfit_bodies::solve::{Ending, Newton, System, lowest_modes};
+use springfit_element::element::Element;
+use springfit_element::material::{CellMap, Energy, Hooke, Material, Plane};
+use springfit_element::springs::{Measure, Turns};
+use springfit_mesh::mesh::{CellBlock, Mesh};
+use springfit_report::report::{HeldRecord, NetworkFile, Parts};
 use std::sync::Arc;
 
 /// Ways to divide squares into triangles.
@@ -85,7 +85,7 @@ fn of_plate(mesh: &Mesh, w: impl Fn(f64, f64) -> f64, slope: impl Fn(usize, f64,
     u
 }
 
-fn product(entries: &springfit::model::Entries, u: &[f64]) -> Vec<f64> {
+fn product(entries: &springfit_bodies::model::Entries, u: &[f64]) -> Vec<f64> {
     let mut f = vec![0.0; u.len()];
     for entry in entries {
         f[entry.row] += entry.val * u[entry.col];
@@ -259,12 +259,12 @@ fn hinged_middle(kind: Kind, n: usize, poisson: f64, is_clamped: bool) -> f64 {
 /// A membrane with hinges.
 fn hinged(mesh: &Mesh, poisson: f64) -> Network {
     let material = of_unit_stiffness(poisson, 0.01);
-    let fit = springfit::fit::ExactFit::default();
+    let fit = springfit_fit::fit::ExactFit::default();
     let membrane = exact_network(mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
     membrane.joined(BendingSprings::Hinges.of(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli()))))
 }
 
-fn middle_of(mesh: &Mesh, entries: &springfit::model::Entries, is_clamped: bool) -> f64 {
+fn middle_of(mesh: &Mesh, entries: &springfit_bodies::model::Entries, is_clamped: bool) -> f64 {
     let on_rim = |p: usize| mesh.point(p)[..2].iter().any(|x| *x < 1e-9 || *x > 1.0 - 1e-9);
     let held: Vec<usize> = (0..mesh.node_count()).filter(|&p| on_rim(p)).collect();
     let mut support = Support::free(mesh);
@@ -449,7 +449,7 @@ fn free_plates_vibrate_as_ritz_says() {
 fn the_network_is_the_finite_elements() {
     let mesh = sheet(Kind::Jitter, [1.0, 0.7], [5, 4], 0.02);
     let material = Material::for_body(2, 1e4, 0.3, Some(Plane::Stress), Some(0.02)).unwrap();
-    let fit = springfit::fit::ExactFit::default();
+    let fit = springfit_fit::fit::ExactFit::default();
     let membrane = exact_network(&mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
     let plate = bending_springs(&mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli())));
     let network: Network = membrane.joined(plate);
@@ -628,7 +628,7 @@ fn directors_do_not_shorten_explicit_steps() {
             let flat = Mesh::of_cells(3, mesh.points[..3 * mesh.node_count()].to_vec(), mesh.blocks.clone());
             let material = Material::for_body(2, 1e6, 0.3, Some(Plane::Stress), Some(t)).unwrap();
             let step = |mesh: &Mesh| {
-                let fit = springfit::fit::ExactFit::default();
+                let fit = springfit_fit::fit::ExactFit::default();
                 let membrane = exact_network(mesh, &material.into(), &fit, &vec![false; mesh.point_count()]).unwrap();
                 let network =
                     membrane.joined(bending_springs(mesh, &CellMap::Uniform(Hooke::Isotropic(material.moduli()))));
@@ -652,8 +652,8 @@ fn directors_add_no_mass() {
              density = 1000\nbending = \"{bending}\"\n[[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"xmin\"\n[[fix]]\nwhere = \"x > -1\"\naxes = [\"z\"]\n\
              [output]\nfrequencies = 2\n"
         );
-        let scene = springfit::study::Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
-        let outcome = springfit::study::run(&scene, &mut |_| {}).unwrap();
+        let scene = springfit_studies::study::Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap();
+        let outcome = springfit_studies::study::run(&scene, &mut |_| {}).unwrap();
         let found = &outcome.frequencies[0];
         [found.consistent.clone().unwrap(), found.frequencies.clone().unwrap()].concat()
     };

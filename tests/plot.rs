@@ -1,10 +1,10 @@
 //! Figures and tables for a paper, from the folder of a run.
 
-use springfit::report::{
+use springfit_report::report::{
     Axis, CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder,
     Series, Shape, Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
 };
-use springfit::study::{Scene, converge, run};
+use springfit_studies::study::{Scene, converge, run};
 use std::path::Path;
 use tempfile::TempDir;
 

@@ -2,16 +2,16 @@
 
 use crate::shapes::{Random, distorted, elements, materials};
 use rayon::prelude::*;
-use springfit::element::{Element, SpringKind};
-use springfit::fit::{
+use springfit_bodies::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
+use springfit_element::element::{Element, SpringKind};
+use springfit_element::material::{Material, State};
+use springfit_element::springs::{Law, Measure, Patch, Springs, Squares, Turns};
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     CellFits, ExactEnergy, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells, fit_exact,
 };
-use springfit::material::{Material, State};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
-use springfit::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
-use springfit::springs::{Law, Measure, Patch, Springs, Squares, Turns};
-use springfit::stiffness::Geometry;
+use springfit_foundation::scalar::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::sync::Arc;
 
 /// Rounding of a force, as a share of what its springs would pull if they measured from zero: dozens of operations, each of 1e-16.
@@ -22,7 +22,7 @@ fn sizes(network: &Network, x: &[f64]) -> Vec<f64> {
     let (d, mut sizes) = (network.dimension, vec![0.0; x.len()]);
     for spring in &network.lengths {
         let ends = spring.points.map(|p| &x[p * d..(p + 1) * d]);
-        let length = springfit::springs::distance(ends[0], ends[1]);
+        let length = springfit_element::springs::distance(ends[0], ends[1]);
         for p in spring.points {
             sizes[p * d..(p + 1) * d]
                 .iter_mut()

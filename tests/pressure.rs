@@ -2,15 +2,15 @@
 
 use crate::shapes::bodies::{grid, mapped, patch, sphere};
 use crate::shapes::{Random, distorted, elements};
-use springfit::element::Element;
-use springfit::material::{CellMap, Energy, Material, State};
-use springfit::mesh::{CellBlock, CellIndex, Mesh, Selection};
-use springfit::model::{
+use springfit_bodies::model::{
     Action, Body, Cavity, Component, Elastic, PressedFaces, Support, displaced, finite_elements, nodal_forces,
 };
-use springfit::solve::{Applied, Ending, Newton, System};
-use springfit::study::{Scene, run};
-use springfit::symbolic::Scope;
+use springfit_bodies::solve::{Applied, Ending, Newton, System};
+use springfit_element::element::Element;
+use springfit_element::material::{CellMap, Energy, Material, State};
+use springfit_foundation::symbolic::Scope;
+use springfit_mesh::mesh::{CellBlock, CellIndex, Mesh, Selection};
+use springfit_studies::study::{Scene, run};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 use std::sync::Arc;
@@ -606,7 +606,7 @@ fn sides_inside_a_body_are_refused() {
             side.sort_unstable();
             side
         });
-        let group = springfit::mesh::Group { points: inner.clone(), sides: sides.collect(), ..Default::default() };
+        let group = springfit_mesh::mesh::Group { points: inner.clone(), sides: sides.collect(), ..Default::default() };
         mesh.groups.insert("inner".into(), group);
         let part = Selection::Group("inner".into());
         let pressure = Component::Constant(1.0);

@@ -1,6 +1,6 @@
 //! Programs have the values of the expressions that they are made from.
 
-use springfit::symbolic::{Expr, Program, Scope};
+use springfit_foundation::symbolic::{Expr, Program, Scope};
 
 #[test]
 fn a_program_has_the_values_of_its_expression() {

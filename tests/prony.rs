@@ -1,15 +1,15 @@
 //! Springs that forget: creep, relaxation and large shear against closed forms, objectivity, dissipation, and every wrong key.
 
 use crate::messages::reads;
-use springfit::dynamics::{
+use springfit_bodies::dynamics::{
     BranchForm, Decay, Integrator, LargeMemory, LinearMemory, Memory, Motion, Options, RelaxingPart, Simulation,
 };
-use springfit::element::Element;
-use springfit::fit::{ExactFit, ModulusTest, ShearSprings};
-use springfit::material::{Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{MaterialPoints, Support, displaced, exact_network, finite_elements, lumped_masses};
-use springfit::study::{Event, ModelMotion, MotionEnding, Outcome, Record, Scene, run};
+use springfit_bodies::model::{MaterialPoints, Support, displaced, exact_network, finite_elements, lumped_masses};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, State};
+use springfit_fit::fit::{ExactFit, ModulusTest, ShearSprings};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{Event, ModelMotion, MotionEnding, Outcome, Record, Scene, run};
 use std::f64::consts::TAU;
 use std::path::Path;
 use std::sync::Arc;

@@ -2,9 +2,9 @@
 
 use crate::messages::reads;
 use nalgebra::Complex;
-use springfit::fit::{DampingKind, DampingTest, ratio_of_decay};
-use springfit::report::Table;
-use springfit::study::{ComplexModulus, DynamicModuli, Outcome, Scene, run};
+use springfit_fit::fit::{DampingKind, DampingTest, ratio_of_decay};
+use springfit_report::report::Table;
+use springfit_studies::study::{ComplexModulus, DynamicModuli, Outcome, Scene, run};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -441,9 +441,9 @@ fn a_scene_takes_measured_damping() {
             assert!(off < 1.05 * measured.largest_difference && off < 0.003, "{off} {measured:?}");
         }
     }
-    let report = springfit::report::Report::of(&found);
+    let report = springfit_report::report::Report::of(&found);
     assert_eq!((report.damping, report.dynamic_moduli), (found.damping.clone(), found.dynamic_moduli.clone()));
-    let tables = Table::all(&springfit::report::Report::of(&found));
+    let tables = Table::all(&springfit_report::report::Report::of(&found));
     let table = |name: &str| tables.iter().find(|table| table.name == name).unwrap();
     assert_eq!(table("damping").rows.len(), 1);
     assert!(table("damping").notes.iter().any(|note| note.contains("constant over the band")));

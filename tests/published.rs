@@ -6,14 +6,14 @@ use crate::messages::reads;
 
 use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
-use springfit::element::{Cell, Element, SpringKind};
-use springfit::fit::published::{self, Method, Ratio, Shape, Unmet, unmet};
-use springfit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_element};
-use springfit::material::{Material, Plane};
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
-use springfit::model::{Elastic, Entries, Network};
-use springfit::springs::Springs;
-use springfit::study::{EffectiveModuli, Lattice};
+use springfit_bodies::model::{Elastic, Entries, Network};
+use springfit_element::element::{Cell, Element, SpringKind};
+use springfit_element::material::{Material, Plane};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::published::{self, Method, Ratio, Shape, Unmet, unmet};
+use springfit_fit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_element};
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_studies::study::{EffectiveModuli, Lattice};
 use std::sync::Arc;
 
 const THIRD: f64 = 1.0 / 3.0;
@@ -399,7 +399,7 @@ fn maciels_springs_have_one_constant() {
         assert!(network.others.is_empty());
         // The energy of a dilatation, ½ k Σ l², is that of E at ν = 1/(d + 1): ½ d² K V with K = E (d + 1)/(2 d).
         let squares: f64 = network.lengths.iter().map(|s| s.rest * s.rest).sum();
-        let volume: f64 = springfit::model::masses(&mesh, 1.0, 1.0).iter().sum();
+        let volume: f64 = springfit_bodies::model::masses(&mesh, 1.0, 1.0).iter().sum();
         close(first * squares / volume, (d * (d + 1)) as f64 / 2.0, 1e-12);
     }
 }
@@ -561,7 +561,7 @@ fn constants_follow_the_cell() {
         for (a, b) in own.lengths.iter().zip(&other.lengths) {
             close(a.constant, b.constant, 1e-13 * size);
         }
-        for permutation in springfit::element::permutations(element.cell, &element.positions) {
+        for permutation in springfit_element::element::permutations(element.cell, &element.positions) {
             // The mirror images turn the cell inside out.
             let mut mesh = single(&element, &x);
             mesh.blocks[0].connectivity = permutation;

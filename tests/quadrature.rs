@@ -1,6 +1,6 @@
 //! Quadrature rules integrate what they promise.
 
-use springfit::element::{Cell, Quadrature};
+use springfit_element::element::{Cell, Quadrature};
 
 fn factorial(n: usize) -> f64 {
     (1..=n).map(|i| i as f64).product()

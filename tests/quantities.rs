@@ -1,8 +1,8 @@
 //! Quantities with units, and what is assumed of a body that an input does not describe.
 
 use crate::kit::{said, springfit};
-use springfit::quantity::Quantity;
-use springfit::symbolic::Scope;
+use springfit_foundation::quantity::Quantity;
+use springfit_foundation::symbolic::Scope;
 use std::fs;
 use tempfile::TempDir;
 
@@ -56,7 +56,7 @@ fn options_and_keys_take_the_same_units() {
         let more = ["--thickness", thickness, "--density", density, "--objective", "offdiag", "-o", name];
         let output = springfit(folder.path(), &[&options[..], &more].concat());
         assert!(output.status.success(), "{}", said(&output));
-        let mut network = springfit::report::read_network(&folder.path().join(name)).unwrap();
+        let mut network = springfit_report::report::read_network(&folder.path().join(name)).unwrap();
         // They differ in the command alone.
         assert!(network.provenance.command.take().is_some_and(|command| command.contains(young)));
         network

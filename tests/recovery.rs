@@ -1,11 +1,11 @@
 //! What the linear cells of a body that bends lack of its energy, estimated from the jumps of their strains, is what quadratic elements on smaller cells
 //! have more.
 
-use springfit::element::Element;
-use springfit::material::{Material, MaterialMap};
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{Action, Support, finite_elements, lacking_energy, nodal_forces};
-use springfit::solve::System;
+use springfit_bodies::model::{Action, Support, finite_elements, lacking_energy, nodal_forces};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, MaterialMap};
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::sync::Arc;
 
 fn body(element: &str, size: &[f64], cells: &[usize]) -> Mesh {

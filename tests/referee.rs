@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use springfit::referee::ENGINES;
-use springfit::report::{
+use springfit_report::report::{
     Factor, FoundRow, RefereeRecord, RefereeRow, RepairRecord, Telling, referee_svg, referee_text,
 };
 use std::fs;

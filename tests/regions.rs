@@ -1,14 +1,14 @@
 //! Bodies of several materials, by region and from place to place: against bars and beams in closed form, and cell by cell against the
 //! fit of that cell alone.
 
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, element_errors, fit_cells, fit_element};
-use springfit::material::{BlockValues, CellMap, Hooke, Material, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{cell_means, finite_elements};
-use springfit::report::Report;
-use springfit::springs::{Measure, Springs};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::model::{cell_means, finite_elements};
+use springfit_element::element::Element;
+use springfit_element::material::{BlockValues, CellMap, Hooke, Material, State};
+use springfit_element::springs::{Measure, Springs};
+use springfit_fit::fit::{Fit, Objective, element_errors, fit_cells, fit_element};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_report::report::Report;
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -544,8 +544,8 @@ fn the_material_of_samples_is_told_from_that_of_the_body() {
     assert_close(record.young.unwrap(), young, 1e-9);
     assert_close(record.poisson.unwrap(), poisson, 1e-9);
     let told = format!("not of the body; finite elements have E = {young:.4e} Pa, nu = {poisson:.3} there.");
-    assert!(springfit::report::tables(&found).contains(&told), "{}", springfit::report::tables(&found));
+    assert!(springfit_report::report::tables(&found).contains(&told), "{}", springfit_report::report::tables(&found));
     let one = outcome(&bar("hex8", [1, 1, 3], "[material]\nyoung = 2e3\npoisson = 0.3\n", EXACT));
-    assert!(!springfit::report::tables(&one).contains("differ from cell to cell"));
+    assert!(!springfit_report::report::tables(&one).contains("differ from cell to cell"));
     assert_eq!(Report::of(&one).fits[0].as_material.asked_young, Some(2e3));
 }

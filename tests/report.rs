@@ -1,9 +1,9 @@
 //! `report.json`: every key is that of a documented record, whatever the kinds of fits.
 
 use serde_json::Value;
-use springfit::report::{Report, VERSION, report};
-use springfit::study::{KindRecord, Scene, run};
 use springfit_report::report::parts::{Note, Weight, grouped, ordered};
+use springfit_report::report::{Report, VERSION, report};
+use springfit_studies::study::{KindRecord, Scene, run};
 use std::path::Path;
 
 /// Everything that a linear scene may have: fits to the stiffness, published and to the whole object, a gauge, a motion.

@@ -3,19 +3,19 @@
 use crate::fits::{Case, LARGE, case, cases, weights};
 use crate::shapes::{Random, distorted, materials};
 use nalgebra::{DMatrix, DVector};
-use springfit::element::Element;
-use springfit::error::{Error, ErrorKind};
-use springfit::fit::{
+use springfit_bodies::model::{Elastic, Network, RestTension};
+use springfit_element::element::Element;
+use springfit_element::material::Moduli;
+use springfit_element::springs::{Force, Springs};
+use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Rest, Search, Solver, Weight, element_errors, fit_cells,
     fit_element,
 };
-use springfit::material::Moduli;
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{Elastic, Network, RestTension};
-use springfit::report::Report;
-use springfit::springs::{Force, Springs};
-use springfit::study::{NamedFit, Scene, run};
+use springfit_foundation::error::{Error, ErrorKind};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
 use springfit_numerics::dense::least_squares;
+use springfit_report::report::Report;
+use springfit_studies::study::{NamedFit, Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -416,7 +416,7 @@ fn zero_rest_lengths_make_simplices_exact() {
                 let Moduli { mu, .. } = material.moduli();
                 for weight in weights() {
                     let (k, t) = subject.solve(&frobenius(weight, Rest::Zero)).unwrap();
-                    let mut geometry = springfit::stiffness::Geometry::new(&element.tabulation);
+                    let mut geometry = springfit_element::stiffness::Geometry::new(&element.tabulation);
                     geometry.set(&element.tabulation, &x).unwrap();
                     let d = element.dimension();
                     for (s, &[a, b]) in springs.pairs().iter().enumerate() {
@@ -526,7 +526,7 @@ fn networks_have_the_tangent_of_their_cells() {
             let tension = RestTension::of(&network, &mesh.points);
             assert!(tension.unbalanced <= 1e-10, "{name}: {tension:?}");
             constant_forces += tension.steady;
-            let dense = |entries: springfit::model::Entries| {
+            let dense = |entries: springfit_bodies::model::Entries| {
                 let mut matrix = DMatrix::<f64>::zeros(size, size);
                 for entry in entries {
                     matrix[(entry.row, entry.col)] += entry.val;

@@ -2,16 +2,16 @@
 
 use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
-use springfit::element::{Element, SpringKind};
-use springfit::material::{Energy, Material, State};
-use springfit::mesh::{CellBlock, Mesh, Selection};
-use springfit::model::{
+use springfit_bodies::model::{
     Action, BendingSprings, Body, Component, Elastic, Network, Support, bending_springs, displaced, exact_network,
     finite_elements, lumped_masses, nodal_forces,
 };
-use springfit::solve::{Ending, Newton, System, lowest_modes};
-use springfit::study::{Scene, run};
-use springfit::symbolic::Scope;
+use springfit_bodies::solve::{Ending, Newton, System, lowest_modes};
+use springfit_element::element::{Element, SpringKind};
+use springfit_element::material::{Energy, Material, State};
+use springfit_foundation::symbolic::Scope;
+use springfit_mesh::mesh::{CellBlock, Mesh, Selection};
+use springfit_studies::study::{Scene, run};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ fn line(points: &[[f64; 3]]) -> Mesh {
 
 /// The exact network of bars with these springs on joints.
 fn network(mesh: &Mesh, springs: BendingSprings) -> Network {
-    let fit = springfit::fit::ExactFit::default();
+    let fit = springfit_fit::fit::ExactFit::default();
     let bars = exact_network(mesh, &material().into(), &fit, &vec![false; mesh.point_count()]).unwrap();
     bars.joined(springs.of(mesh, &material().moduli().into()))
 }
@@ -328,7 +328,7 @@ fn rods_vibrate_as_beams() {
 }
 
 /// The scene of a cantilever of 8 rods along x, in a folder with its deck, with these lines in the material and this rest.
-fn scene(folder: &Path, material: &str, rest: &str) -> springfit::error::Result<Scene> {
+fn scene(folder: &Path, material: &str, rest: &str) -> springfit_foundation::error::Result<Scene> {
     let mut deck = "*NODE\n".to_string();
     (0..9).for_each(|i| deck += &format!("{}, {}, 0, 0\n", i + 1, 0.125 * i as f64));
     deck += "*ELEMENT, TYPE=B31, ELSET=ALL\n";
@@ -342,7 +342,7 @@ fn scene(folder: &Path, material: &str, rest: &str) -> springfit::error::Result<
 }
 
 /// The displacements of the network under the first load.
-fn answer(material: &str, rest: &str) -> springfit::error::Result<Vec<f64>> {
+fn answer(material: &str, rest: &str) -> springfit_foundation::error::Result<Vec<f64>> {
     let folder = TempDir::new().unwrap();
     let outcome = run(&scene(folder.path(), material, rest)?, &mut |_| {})?;
     Ok(outcome.fits[0].loads[0].displacement.as_deref().cloned().unwrap())

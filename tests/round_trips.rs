@@ -2,8 +2,8 @@
 
 use crate::shapes::Random;
 use proptest::prelude::*;
-use springfit::report::{MeasureKind, NETWORK_FORMATS, NetworkFile, NetworkFormat, NetworkRecord, read_network};
-use springfit::study::{Outcome, Scene, run};
+use springfit_report::report::{MeasureKind, NETWORK_FORMATS, NetworkFile, NetworkFormat, NetworkRecord, read_network};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::collections::HashMap;
 use std::fs;
 use std::io::Read;
@@ -148,8 +148,8 @@ proptest! {
         let real = |name: &str| reals(&array(&npz, name).1);
         let whole = |name: &str| integers(&array(&npz, name).1);
         let d = written.record.dimension;
-        let is_length = |spring: &&springfit::report::SpringRecord| written.record.measures[spring.measure].kind == MeasureKind::Length;
-        let of = |value: fn(&springfit::report::SpringRecord) -> f64, lengths: bool| -> Vec<f64> {
+        let is_length = |spring: &&springfit_report::report::SpringRecord| written.record.measures[spring.measure].kind == MeasureKind::Length;
+        let of = |value: fn(&springfit_report::report::SpringRecord) -> f64, lengths: bool| -> Vec<f64> {
             written.record.springs.iter().filter(|s| is_length(s) == lengths).map(value).collect()
         };
         prop_assert_eq!(real("k"), of(|s| s.constant, true));

@@ -4,18 +4,18 @@ use crate::messages::reads;
 
 use crate::shapes::{Random, distorted};
 use nalgebra::{DMatrix, DVector};
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_bodies::model::{Action, Body, Elastic, Network, Support, nodal_forces};
+use springfit_bodies::solve::{Ending, Newton};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, Plane, State};
+use springfit_element::springs::{Force, Law, Springs};
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{
     Balance, CellFits, DeformationFamily, Fit, Higher, Norm, Objective, SampledFit, SampledFits, Sampling, Source,
     Weight, Weights, fit_cells, fit_sampled,
 };
-use springfit::material::{Energy, Material, Plane, State};
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{Action, Body, Elastic, Network, Support, nodal_forces};
-use springfit::solve::{Ending, Newton};
-use springfit::springs::{Force, Law, Springs};
-use springfit::stiffness::Geometry;
-use springfit::study::{Scene, displacement_error, run};
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
+use springfit_studies::study::{Scene, displacement_error, run};
 use std::sync::Arc;
 
 fn every(element: &Element) -> Vec<String> {
@@ -196,7 +196,7 @@ fn free_rest_lengths_are_positive_and_better() {
         let network = Network::assemble(&mesh, std::slice::from_ref(&free.fits));
         for spring in &network.lengths {
             let [a, b] = spring.points.map(|p| mesh.point(p));
-            let length = springfit::springs::distance(a, b);
+            let length = springfit_element::springs::distance(a, b);
             let share = spring.rest / length;
             assert!((0.5 - 1e-12..=2.0 + 1e-12).contains(&share), "{name}: {share}");
         }
@@ -405,7 +405,7 @@ fn shapes_of_a_list_that_are_left_out_are_counted() {
     };
     for (keys, is_left_out) in [("count = 79", true), ("count = 80", false), ("", false)] {
         let outcome = ran(&format!("gradients = \"list.csv\"\n{keys}")).unwrap();
-        let notes = springfit::report::notes(&outcome);
+        let notes = springfit_report::report::notes(&outcome);
         let says = notes.iter().any(|note| note.contains("the first 79 of the 80 shapes of the list"));
         assert_eq!(says, is_left_out, "{keys}: {notes:?}");
         let count = outcome.fits[0].kind.sampled().map(|sampled| sampled.shapes);

@@ -3,13 +3,13 @@
 use crate::messages::reads;
 use crate::sampled::{law, sampled};
 use crate::shapes::{Random, distorted};
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_element::springs::{Force, Springs};
+use springfit_fit::fit::{
     Norm, ResidualFunction, ResidualObjective, SampledFit, SampledFits, Sampling, Weights, fit_sampled,
 };
-use springfit::material::{Energy, Material};
-use springfit::springs::{Force, Springs};
+use springfit_foundation::error::{Error, Result};
 use std::fmt;
 use std::sync::Arc;
 

@@ -1,10 +1,10 @@
 //! Sampled fits of scenes: shapes of other runs and of files, sets, errors by family, data as tables, and learning curves.
 
-use springfit::fit::Spread;
-use springfit::material::{Energy, EnergyMap, Material, MaterialMap};
-use springfit::mesh::NamedState;
-use springfit::report;
-use springfit::study::{FitEntry, LargeBody, NamedFit, Outcome, Reference, Scene, learning_curve, run};
+use springfit_element::material::{Energy, EnergyMap, Material, MaterialMap};
+use springfit_fit::fit::Spread;
+use springfit_mesh::mesh::NamedState;
+use springfit_report::report;
+use springfit_studies::study::{FitEntry, LargeBody, NamedFit, Outcome, Reference, Scene, learning_curve, run};
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -14,7 +14,7 @@ const BODY: &str = "[mesh]\nbox = { element = \"tet4\", size = [0.1, 0.02, 0.02]
     [[load]]\nname = \"bend\"\ngroup = \"xmax\"\ntraction = [0, 0, 3]\n";
 
 /// The outcome of a scene in a folder, whose files are written into `out`.
-fn ran(folder: &Path, text: &str) -> Result<Outcome, springfit::error::Error> {
+fn ran(folder: &Path, text: &str) -> Result<Outcome, springfit_foundation::error::Error> {
     let path = folder.join("scene.toml");
     std::fs::write(&path, text).unwrap();
     let scene = Scene::load(&path)?;
@@ -226,7 +226,7 @@ fn cells_of_several_materials_have_their_places() {
     let two = found(
         "[[material]]\nwhere = \"x > 1.1 && x < 2.9\"\nyoung = 1e4\npoisson = 0.3\n[[material]]\nyoung = 3e4\npoisson = 0.3\n",
     );
-    let names = |outcome: &springfit::study::SampledOutcome| -> Vec<(String, usize)> {
+    let names = |outcome: &springfit_studies::study::SampledOutcome| -> Vec<(String, usize)> {
         outcome.families.iter().map(|family| (family.family.clone(), family.shapes)).collect()
     };
     assert_eq!(names(&one), [("bending".to_string(), 5), ("biaxial".to_string(), 5)]);
@@ -240,7 +240,7 @@ fn cells_of_several_materials_have_their_places() {
     }
     assert!((one.trained.max - two.trained.max).abs() < 1e-9);
     // Cells that are alike are told once for each material: the first of the outer ones, and the first of the inner ones.
-    let cells = |outcome: &springfit::study::SampledOutcome| -> std::collections::BTreeSet<usize> {
+    let cells = |outcome: &springfit_studies::study::SampledOutcome| -> std::collections::BTreeSet<usize> {
         outcome.errors[0].iter().map(|error| error.cell).collect()
     };
     assert_eq!(cells(&one), [0].into());

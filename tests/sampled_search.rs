@@ -2,10 +2,10 @@
 
 use crate::sampled::{law, sampled};
 use crate::shapes::{Random, distorted};
-use springfit::element::Element;
-use springfit::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights, fit_sampled};
-use springfit::material::{Energy, Material};
-use springfit::springs::Springs;
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights, fit_sampled};
 use std::sync::Arc;
 
 /// Generic cells, each node moved at random: at least 95 of 100 searches end at an optimum that no step improves.

@@ -3,15 +3,15 @@
 use crate::messages::reads;
 use crate::shapes::{Random, distorted};
 use nalgebra::{Matrix3, Vector3};
-use springfit::element::Element;
-use springfit::error::Result;
-use springfit::fit::{
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, Plane};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
+use springfit_fit::fit::{
     DeformationFamily, Design, Part, SampledFit, SampledFits, Sampling, Source, Weights, fit_sampled,
 };
-use springfit::material::{Energy, Material, Plane};
-use springfit::random::{Latin, Sobol};
-use springfit::springs::Springs;
-use springfit::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
+use springfit_foundation::error::Result;
+use springfit_foundation::random::{Latin, Sobol};
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 

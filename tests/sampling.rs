@@ -1,9 +1,9 @@
 //! Which shapes of a list a sampled fit sees.
 
-use springfit::element::Element;
-use springfit::fit::{SampledFit, SampledFits, Sampling, Source, fit_sampled};
-use springfit::material::{Energy, Material, Plane};
-use springfit::springs::Springs;
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, Plane};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{SampledFit, SampledFits, Sampling, Source, fit_sampled};
 use std::sync::Arc;
 
 /// Every shape is either fitted or held out: a change of one that is fitted changes the constants, of one that is held out its

@@ -2,9 +2,9 @@
 
 use crate::shapes::Random;
 use crate::smooth_fills::{ball, torus};
-use springfit::element::{Element, SHIPPED};
-use springfit::error::Result;
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Repair};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_foundation::error::Result;
+use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Repair};
 use std::f64::consts::PI;
 use std::sync::Arc;
 

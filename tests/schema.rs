@@ -1,7 +1,9 @@
 //! The JSON Schemas: every shipped file satisfies that of its kind, and what a reader refuses, a schema refuses as well.
 
 use serde_json::{Value, json};
-use springfit::{element, material, report, study};
+use springfit_element::{element, material};
+use springfit_report::report;
+use springfit_studies::study;
 use std::fs;
 use std::path::{Path, PathBuf};
 

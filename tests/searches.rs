@@ -1,11 +1,11 @@
 //! General searches that may switch springs off.
 
 use nalgebra::DMatrix;
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Search, Solver, Topology, Weight, fit_element};
-use springfit::material::{Material, Moduli};
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Moduli};
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{Fit, Objective, Search, Solver, Topology, Weight, fit_element};
 
 const SEARCHES: [Search; 2] = [Search::ParticleSwarm, Search::SimulatedAnnealing];
 const FROBENIUS: Objective = Objective::Frobenius(Weight::None);

@@ -1,10 +1,10 @@
 //! What a condition selects is chosen once, on the mesh of the scene, and is the same part of the body on every finer mesh.
 
 use crate::shapes::elements;
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Group, Mesh, Selection};
-use springfit::study::{Outcome, Scene, converge, run};
-use springfit::symbolic::{Predicate, Scope};
+use springfit_element::element::Element;
+use springfit_foundation::symbolic::{Predicate, Scope};
+use springfit_mesh::mesh::{BoxMesh, Group, Mesh, Selection};
+use springfit_studies::study::{Outcome, Scene, converge, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -85,7 +85,7 @@ fn predicate(text: &str, dimension: usize) -> Predicate {
 }
 
 fn content(mesh: &Mesh) -> f64 {
-    springfit::model::masses(mesh, 1.0, 1.0).iter().sum()
+    springfit_bodies::model::masses(mesh, 1.0, 1.0).iter().sum()
 }
 
 /// Halved cells and cells with quadratic functions fill the same body, for every element whose nodes are corners; a condition between the points
@@ -142,7 +142,7 @@ fn finer_meshes_have_the_parts_of_the_coarse_one() {
 }
 
 /// A fit to the whole object under these supports, beside a finer body.
-fn whole(keys: &str) -> springfit::error::Result<Outcome> {
+fn whole(keys: &str) -> springfit_foundation::error::Result<Outcome> {
     let text = format!(
         "[mesh]\nscale = \"cm\"\nbox = {{ element = \"tet4\", size = [5, 2, 2], cells = [5, 2, 2] }}\n\
          [material]\nyoung = 5e3\npoisson = 0.3\n[reference]\nrefine = 1\n[[fix]]\ngroup = \"xmin\"\n\

@@ -1,11 +1,11 @@
 //! `--set`: values of a scene's keys that are given on the command line.
 
 use crate::kit::{said, springfit};
-use springfit::error::{Error, Result};
-use springfit::mesh::Mesh;
-use springfit::model::Network;
-use springfit::report::network_csv;
-use springfit::study::{Scene, Setting, run};
+use springfit_bodies::model::Network;
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh::Mesh;
+use springfit_report::report::network_csv;
+use springfit_studies::study::{Scene, Setting, run};
 use std::path::Path;
 use tempfile::TempDir;
 

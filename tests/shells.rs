@@ -2,16 +2,16 @@
 
 use crate::shapes::Random;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use springfit::element::Element;
-use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
-use springfit::material::{Anisotropy, CellMap, Energy, Hooke, LinearMaterial, Material, MaterialMap, Plane};
-use springfit::mesh::{CellBlock, Mesh};
-use springfit::model::{
+use springfit_bodies::model::{
     Body, Elastic, Entries, Network, Support, bending_springs, edge_springs, exact_network, finite_elements,
 };
-use springfit::report::{NetworkFile, Parts};
-use springfit::solve::System;
-use springfit::study::{Scene, converge, run};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::{Anisotropy, CellMap, Energy, Hooke, LinearMaterial, Material, MaterialMap, Plane};
+use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
+use springfit_mesh::mesh::{CellBlock, Mesh};
+use springfit_report::report::{NetworkFile, Parts};
+use springfit_studies::study::{Scene, converge, run};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -507,7 +507,7 @@ fn scenes_have_strains_on_edges() {
     };
     let found = outcome("bending = \"plate\"", 1.0, "[[fit]]\nname = \"cells\"\nobjective = \"exact\"\n");
     let corner = 3 * (9 * 9 - 1) + 2;
-    let of = |outcome: &springfit::study::Outcome, fit: usize| {
+    let of = |outcome: &springfit_studies::study::Outcome, fit: usize| {
         outcome.fits[fit].loads[0].displacement.as_ref().unwrap()[corner]
     };
     for (fit, on_edges) in [(0, true), (1, false)] {

@@ -1,8 +1,8 @@
 //! Sides of cells: those on the boundary and those of groups, as a search through all sides finds them.
 
 use crate::shapes::Random;
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{BoxMesh, CellIndex, Mesh, MeshSource, Selection, SideIndex};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{BoxMesh, CellIndex, Mesh, MeshSource, Selection, SideIndex};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

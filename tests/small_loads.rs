@@ -1,12 +1,12 @@
 //! Newton's method under loads of any size: the rounding of the internal forces is no end of it.
 
-use springfit::element::Element;
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::{Energy, Material};
-use springfit::mesh::{BoxMesh, Mesh, Selection};
-use springfit::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
-use springfit::solve::{Ending, Equilibrium, Newton, System};
-use springfit::springs::Springs;
+use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
+use springfit_bodies::solve::{Ending, Equilibrium, Newton, System};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::sync::Arc;
 
 fn block(name: &str, origin: f64) -> Mesh {

@@ -1,14 +1,19 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
-use springfit::study::{Scene, run};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
+use springfit_studies::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
-fn fill(source: &MeshSource, name: &str, cell: f64, boundary: FillBoundary) -> springfit::error::Result<Mesh> {
+fn fill(
+    source: &MeshSource,
+    name: &str,
+    cell: f64,
+    boundary: FillBoundary,
+) -> springfit_foundation::error::Result<Mesh> {
     let element = Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap();
     let (spacing, layers) = (FillSpacing::Edge(cell), FillLayers::Refuse);
     FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: false }.build(source, 1.0)

@@ -3,9 +3,9 @@
 use crate::kit::{said, springfit};
 use crate::messages::reads;
 use crate::shapes::{elements, with_angles};
-use springfit::element::Element;
-use springfit::report;
-use springfit::study::{Family, Scene, StabilityRow, Verdict, stability, stability_of_scene};
+use springfit_element::element::Element;
+use springfit_report::report;
+use springfit_studies::study::{Family, Scene, StabilityRow, Verdict, stability, stability_of_scene};
 use std::fs;
 use std::path::Path;
 use std::process::Output;

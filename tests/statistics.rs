@@ -1,7 +1,7 @@
 //! Statistics of comparisons against enumeration, closed forms and figures of SciPy 1.17.
 
 use crate::shapes::Random;
-use springfit::study::statistics::{
+use springfit_studies::study::statistics::{
     Paired, Quantiles, Verdict, adjust, mean_ranks, median, median_interval, ratio_interval, signed_rank,
 };
 

@@ -5,17 +5,17 @@ use crate::whole::compare_with_differences;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
-use springfit::fit::solvers::{Normal, solve_nonnegative};
-use springfit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
-use springfit::material::{Energy, EnergyMap, Material, State};
-use springfit::mesh::{CellIndex, Group, Mesh};
-use springfit::model::{Body, Deformation, Elastic, Support, displaced, exact_network};
-use springfit::solve::Newton;
-use springfit::study::{Outcome, Scene, run};
-use springfit::whole::{
+use springfit_bodies::model::{Body, Deformation, Elastic, Support, displaced, exact_network};
+use springfit_bodies::solve::Newton;
+use springfit_element::material::{Energy, EnergyMap, Material, State};
+use springfit_fit::fit::solvers::{Normal, solve_nonnegative};
+use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
+use springfit_identify::whole::{
     Displacements, GaussNewton, ModuliParts, ModuliSharing, NodalLoad, Object, Stretched, StretchedLoads, Target,
     Wanted, WholeSettings, fit_whole, made_loads,
 };
+use springfit_mesh::mesh::{CellIndex, Group, Mesh};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -147,7 +147,7 @@ fn moduli_come_back_at_large_deformation() {
         target.displacement = found.displacement;
     }
     let wanted = Wanted { trained, ..Wanted::default() };
-    let method = springfit::whole::DescentMethod::GaussNewton(GaussNewton::PRECISE);
+    let method = springfit_identify::whole::DescentMethod::GaussNewton(GaussNewton::PRECISE);
     let settings = WholeSettings { regularizations: vec![0.0], iterations: 50, method, ..WholeSettings::default() };
     let found = fit_whole(&object, &wanted, &settings, None, &mut |_| true).unwrap();
     let worst = found.theta.iter().zip(&truth).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Compensated sums.
 
-use springfit::scalar::Sum;
+use springfit_foundation::scalar::Sum;
 
 /// Ten million tenths, of which a plain sum is off by 1e-4; and a term that is gone when the large ones are.
 #[test]

@@ -1,7 +1,7 @@
 //! `[sweep]` and `springfit sweep`: which studies a design has, and that their table is the same however it was made.
 
 use serde_json::{Value, json};
-use springfit::study::{InMemory, Scene, Sweep, run};
+use springfit_studies::study::{InMemory, Scene, Sweep, run};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -29,7 +29,7 @@ traction = [1, 0]
 /// Seven studies, of which the last three fail: Poisson's ratio of plane stress is below 1.
 const GRID: &str = "[sweep.over]\nmaterial.poisson = [0.0, 0.2, 0.4, 0.45, 1.0, 1.5, 2.0]\n";
 
-fn sweep(table: &str) -> springfit::error::Result<Sweep> {
+fn sweep(table: &str) -> springfit_foundation::error::Result<Sweep> {
     Sweep::parse(&format!("{SCENE}{table}"), Path::new("s.toml"), &[], &InMemory::default())
 }
 

@@ -1,6 +1,6 @@
 //! The symmetry of reference cells.
 
-use springfit::element::{Cell, permutations};
+use springfit_element::element::{Cell, permutations};
 
 /// The orders of the groups: 2, 6, 8, 24, 48, the wedge's 6 · 2, the pyramid's 8; of the rational pentagon its mirror.
 #[test]

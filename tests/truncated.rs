@@ -2,13 +2,15 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::{grid, mapped};
-use springfit::engine::{Ceiling, Engine, Frames, Order, Sequence, Setting, Sweep, Truncated, TruncatedModel, colours};
-use springfit::fit::{Fit, Objective, Weight, fit_cells};
-use springfit::material::Material;
-use springfit::mesh::Mesh;
-use springfit::model::{Elastic, Network, Support, masses};
-use springfit::springs::Springs;
-use springfit::whole::{Displacements, LeastSquares, Object, Target, Unknowns};
+use springfit_bodies::engine::{
+    Ceiling, Engine, Frames, Order, Sequence, Setting, Sweep, Truncated, TruncatedModel, colours,
+};
+use springfit_bodies::model::{Elastic, Network, Support, masses};
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
+use springfit_identify::whole::{Displacements, LeastSquares, Object, Target, Unknowns};
+use springfit_mesh::mesh::Mesh;
 use std::process::Command;
 
 /// A bent and distorted bar of tetrahedra that is held at one end, with springs on lengths and on volumes.
@@ -292,7 +294,7 @@ fn many_sweeps_answer_like_the_equations() {
     let force = bar.force(7);
     let entries = bar.network.stiffness(&bar.mesh.points);
     let equations =
-        springfit::solve::Equations::factored(&entries, &bar.support, &bar.mesh.points, 3).unwrap().unwrap();
+        springfit_bodies::solve::Equations::factored(&entries, &bar.support, &bar.mesh.points, 3).unwrap().unwrap();
     let (exact, _) = equations.solve(&force).unwrap();
     for (engine, few) in [(Engine::Xpbd, 10), (Engine::Vbd, 1)] {
         let usual = Setting::usual(engine);

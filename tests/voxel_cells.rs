@@ -1,7 +1,7 @@
 //! Voxels that are divided into tetrahedra.
 
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{CellIndex, Mesh, MeshSource, Selection, VoxelMesh};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{CellIndex, Mesh, MeshSource, Selection, VoxelMesh};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,7 +1,7 @@
 //! Voxels, lattices of points and polygons: files that NumPy and VTK have written (`meshes/grids.py`), arrays of any shape, and faults.
 
 use proptest::prelude::*;
-use springfit::mesh::{Mesh, MeshSource};
+use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -27,8 +27,9 @@ pub(super) fn cells(source: &MeshSource) -> Vec<(String, Vec<String>, Vec<i64>)>
     let mut all = Vec::new();
     for (number, block) in mesh.blocks.iter().enumerate() {
         for (cell, nodes) in block.cells().enumerate() {
-            let has =
-                |group: &springfit::mesh::Group| group.cells.iter().any(|at| (at.block, at.cell) == (number, cell));
+            let has = |group: &springfit_mesh::mesh::Group| {
+                group.cells.iter().any(|at| (at.block, at.cell) == (number, cell))
+            };
             let groups = mesh.groups.iter().filter(|(_, group)| has(group)).map(|(name, _)| name.clone()).collect();
             let x = nodes.iter().flat_map(|&p| mesh.point(p)).map(|x| (x * 1048576.0).round() as i64).collect();
             all.push((block.element.name.clone(), groups, x));

@@ -3,19 +3,19 @@
 use crate::coarse::block;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
-use springfit::fit::{CellFits, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells};
-use springfit::material::{CellMap, Hooke, LinearMaterial, Material, MaterialMap};
-use springfit::mesh::{CellIndex, Group, Mesh, vtk};
-use springfit::model::{Network, Support, exact_network, finite_elements, masses};
-use springfit::report;
-use springfit::solve::{Equations, Newton, System, lowest_modes};
-use springfit::springs::Springs;
-use springfit::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
-use springfit::whole::{
+use springfit_bodies::model::{Network, Support, exact_network, finite_elements, masses};
+use springfit_bodies::solve::{Equations, Newton, System, lowest_modes};
+use springfit_element::material::{CellMap, Hooke, LinearMaterial, Material, MaterialMap};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{CellFits, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells};
+use springfit_identify::whole::{
     Balanced, BodyRegions, DescentMethod, Determination, Displacements, Frequencies, GaussNewton, LeastSquares,
     ModuliParts, ModuliSharing, NodalLoad, Object, Pressure, Target, Unknowns, Validation, Wanted, Weighing, WholeFit,
     WholeSettings, fit_whole, made_loads, ninety_five, raise_idle, random_loads, varied_loads,
 };
+use springfit_mesh::mesh::{CellIndex, Group, Mesh, vtk};
+use springfit_report::report;
+use springfit_studies::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;
@@ -52,7 +52,7 @@ impl Body {
 
     fn fits(&self, objective: Objective, bulk: bool) -> Vec<CellFits> {
         let fit = Fit { nonnegative: true, ..Fit::new(objective) };
-        let of_block = |block: &springfit::mesh::CellBlock| {
+        let of_block = |block: &springfit_mesh::mesh::CellBlock| {
             let every: Vec<String> = block.element.springs.iter().map(|g| g.name.clone()).collect();
             let springs = Springs::select(&block.element, bulk.then_some(&every)).unwrap();
             let (points, cells) = (&self.mesh.points, &block.connectivity);
@@ -436,12 +436,12 @@ fn derivatives_are_those_of_differences_at_large_deformation() {
     let (_folder, scene) = written(SOFT);
     let body = Body::new(&scene, "zmin");
     for law in ["k*s", "k1*s + k3*s^3"] {
-        let law = std::sync::Arc::new(springfit::springs::Law::parse(law).unwrap());
+        let law = std::sync::Arc::new(springfit_element::springs::Law::parse(law).unwrap());
         let mut fits = body.fits(PLAIN, false);
         for fit in &mut fits {
             let count = law.parameters.len();
             fit.parameters = fit.constants.iter().flat_map(|k| vec![0.3 * k; count]).collect();
-            fit.force = springfit::springs::Force::Laws(vec![law.clone(); fit.springs.names().len()]);
+            fit.force = springfit_element::springs::Force::Laws(vec![law.clone(); fit.springs.names().len()]);
         }
         let network = Network::assemble(&body.mesh, &fits);
         // Differences over 2e-4 lose four digits of the displacements.

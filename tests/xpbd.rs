@@ -1,11 +1,11 @@
 //! The loops that are exported for a user's own engine: they come to rest where the theory of early ended sweeps says, and take no other file.
 
-use springfit::engine::{Engine, Order, Setting, Sweep, Truncated, TruncatedModel};
-use springfit::error::ErrorKind;
 use springfit::export::{TARGETS, target_named, write_files};
-use springfit::model::Support;
-use springfit::report::{NetworkFile, NetworkRecord};
-use springfit::study::{Outcome, Scene, run};
+use springfit_bodies::engine::{Engine, Order, Setting, Sweep, Truncated, TruncatedModel};
+use springfit_bodies::model::Support;
+use springfit_foundation::error::ErrorKind;
+use springfit_report::report::{NetworkFile, NetworkRecord};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

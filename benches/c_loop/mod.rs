@@ -1,13 +1,13 @@
 //! A network in motion by `Simulation::step` and by a plain loop in C, `explicit.c`, that is compiled for this machine.
 
 use crate::clock::clock;
-use springfit::dynamics::{Integrator, Motion, Options, Simulation, StepOutcome};
-use springfit::element::Element;
-use springfit::fit::{ExactEnergy, ExactFit, fit_exact};
-use springfit::material::{Material, State};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{LengthSpring, Network, Precision, masses};
-use springfit::springs::Measure;
+use springfit_bodies::dynamics::{Integrator, Motion, Options, Simulation, StepOutcome};
+use springfit_bodies::model::{LengthSpring, Network, Precision, masses};
+use springfit_element::element::Element;
+use springfit_element::material::{Material, State};
+use springfit_element::springs::Measure;
+use springfit_fit::fit::{ExactEnergy, ExactFit, fit_exact};
+use springfit_mesh::mesh::{BoxMesh, Mesh};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;

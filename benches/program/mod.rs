@@ -3,7 +3,7 @@
 mod plain;
 
 use crate::{Figures, Row};
-use springfit::mesh::Mesh;
+use springfit_mesh::mesh::Mesh;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};

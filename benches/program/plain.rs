@@ -1,6 +1,6 @@
 //! The exact network of linear tetrahedra by a plain loop: from a binary file of Gmsh to a table of springs, without checks.
 
-use springfit::text::{push_exponential, push_list, push_whole};
+use springfit_foundation::text::{push_exponential, push_list, push_whole};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 

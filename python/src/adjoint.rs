@@ -10,12 +10,14 @@ use crate::network::Network;
 use crate::progress::alone;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::element::SpringKind;
-use springfit::error::{Error, Result};
-use springfit::mesh::Mesh;
-use springfit::model::{self, CompressedRows, Elastic, Entries, LengthSpring, MeasureSpring, NetworkNumbers, Support};
-use springfit::report::NetworkFacts;
-use springfit::solve::System;
+use springfit_bodies::model::{
+    self, CompressedRows, Elastic, Entries, LengthSpring, MeasureSpring, NetworkNumbers, Support,
+};
+use springfit_bodies::solve::System;
+use springfit_element::element::SpringKind;
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh::Mesh;
+use springfit_report::report::NetworkFacts;
 use std::sync::Arc;
 
 /// A list of numbers of NumPy.

@@ -3,7 +3,7 @@
 use crate::error::{invalid, raised};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyComplex, PyFloat, PyInt, PyNone, PyString};
-use springfit::quantity::Quantity;
+use springfit_foundation::quantity::Quantity;
 
 /// Reads a real number.
 ///

@@ -5,15 +5,15 @@ use crate::error::{invalid, raised};
 use crate::progress::{alone, apart};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::error::{Error, Result};
-use springfit::material::CellMap;
-use springfit::mesh::{Mesh, Selection};
-use springfit::model::{
+use springfit_bodies::model::{
     self, Action, BlockStiffness, CompressedRows, Deformation, Elastic, Support, nodal_forces, unheld_bodies,
     unheld_parts,
 };
-use springfit::report::{NetworkFacts, NetworkFile};
-use springfit::study::{FitOutcome, Outcome};
+use springfit_element::material::CellMap;
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh::{Mesh, Selection};
+use springfit_report::report::{NetworkFacts, NetworkFile};
+use springfit_studies::study::{FitOutcome, Outcome};
 use std::sync::Arc;
 
 /// The springs with their points, and what is known beside them. Copies share it.

@@ -7,9 +7,9 @@ use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::Error;
-use springfit::mesh::Scattered;
-use springfit::study::{self, Controls, Readings, Scene, Seen};
+use springfit_foundation::error::Error;
+use springfit_mesh::mesh::Scattered;
+use springfit_studies::study::{self, Controls, Readings, Scene, Seen};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ pub fn calibrate(
             readings.entry(load.clone()).or_default().reactions.push(reaction);
         }
     }
-    let mesh = mesh.map(|mesh| springfit::mesh::Mesh::clone(&mesh.mesh));
+    let mesh = mesh.map(|mesh| springfit_mesh::mesh::Mesh::clone(&mesh.mesh));
     progress::run(py, progress, move |told| {
         let found = study::calibrate_with(&scene, mesh, &readings, &Controls::default(), told);
         let found = found.map_err(|error| unwritten(error, own.as_deref()))?;

@@ -4,7 +4,7 @@ use crate::error::invalid;
 use crate::value::{inline, table};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::study::FitEntry;
+use springfit_studies::study::FitEntry;
 use toml::Value;
 
 /// The entry that has these keys.

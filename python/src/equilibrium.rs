@@ -2,9 +2,9 @@
 
 use crate::body::Body;
 use crate::factorized::loose;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::model::{Elastic, Entries, Support, displaced, inverted};
-use springfit::solve::{Applied, Ending, Newton};
+use springfit_bodies::model::{Elastic, Entries, Support, displaced, inverted};
+use springfit_bodies::solve::{Applied, Ending, Newton};
+use springfit_foundation::error::{Error, ErrorKind, Result};
 
 /// What acts on a network.
 pub struct Loads {

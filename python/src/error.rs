@@ -5,7 +5,7 @@ use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
-use springfit::error::{Error, ErrorKind};
+use springfit_foundation::error::{Error, ErrorKind};
 use std::error::Error as _;
 use std::io;
 use std::path::Path;

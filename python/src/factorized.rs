@@ -7,10 +7,10 @@ use numpy::ndarray::Array3;
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use springfit::error::{Error, Result};
-use springfit::model::{CompressedRows, Deformation, Support};
-use springfit::report::beyond_linear;
-use springfit::solve::{Factor, System};
+use springfit_bodies::model::{CompressedRows, Deformation, Support};
+use springfit_bodies::solve::{Factor, System};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::beyond_linear;
 use std::sync::Arc;
 
 /// The share of the forces that a solution may leave; a network that leaves more has a motion without stiffness.

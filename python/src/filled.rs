@@ -7,9 +7,9 @@ use crate::mesh::Mesh;
 use crate::progress::alone;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::error::{Error, Result};
-use springfit::mesh::{self, Format, Group, MeshSource, NumberOrigin, SourceBlock, VoxelMesh};
-use springfit::study::{FillEntry, MeshLength};
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh::{self, Format, Group, MeshSource, NumberOrigin, SourceBlock, VoxelMesh};
+use springfit_studies::study::{FillEntry, MeshLength};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -12,10 +12,12 @@ use crate::stated::Stated;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::{Error, Result};
-use springfit::material::MaterialMap;
-use springfit::model::{self, BlockStiffness, CompressedRows, ConsistentMasses, Lumping, Support, lumped_masses};
-use springfit::study::{
+use springfit_bodies::model::{
+    self, BlockStiffness, CompressedRows, ConsistentMasses, Lumping, Support, lumped_masses,
+};
+use springfit_element::material::MaterialMap;
+use springfit_foundation::error::{Error, Result};
+use springfit_studies::study::{
     Controls, Event, FitEntry, NamedFit, Outcome, Reference, WholeBody, fit_without_errors, learning_curve as learn,
     point_masses,
 };
@@ -23,11 +25,11 @@ use std::borrow::Cow;
 
 /// The material of the mesh, and the fit of these keys for it, with functions in place of some of them.
 fn posed<'a>(
-    mesh: &'a springfit::mesh::Mesh,
+    mesh: &'a springfit_mesh::mesh::Mesh,
     entry: &FitEntry,
     stated: &Stated,
     functions: Option<&Functions>,
-) -> Result<(Cow<'a, springfit::mesh::Mesh>, MaterialMap, NamedFit)> {
+) -> Result<(Cow<'a, springfit_mesh::mesh::Mesh>, MaterialMap, NamedFit)> {
     entry.check()?;
     let (mesh, map) = stated.on(mesh)?;
     let uniform = || {

@@ -10,12 +10,12 @@ use numpy::ndarray::ArrayD;
 use numpy::{IntoPyArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use springfit::error::{Error, Result};
-use springfit::fit::{ResidualFunction, ResidualObjective};
-use springfit::material::Material;
-use springfit::springs::Law;
-use springfit::stiffness::{EnergyFunction, StressFunction};
-use springfit::study::FitFunctions;
+use springfit_element::material::Material;
+use springfit_element::springs::Law;
+use springfit_element::stiffness::{EnergyFunction, StressFunction};
+use springfit_fit::fit::{ResidualFunction, ResidualObjective};
+use springfit_foundation::error::{Error, Result};
+use springfit_studies::study::FitFunctions;
 use std::sync::Arc;
 
 /// The step of a difference of the fourth order in an entry of F: its error and that of rounding are some 1e-12 of the moduli.

@@ -4,11 +4,13 @@ use crate::arrays::{places, rows};
 use crate::error::{invalid, raised};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::element::{Element, SpringKind, coordinate_names};
-use springfit::error::Error;
-use springfit::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
-use springfit::report::{MeasureKind, MeasureRecord, Measuring, ShareRecord, TermRecord, cell_terms, simplex_term};
-use springfit::springs::{BEND_POINTS, HINGE_POINTS, Law, Measure, distance};
+use springfit_bodies::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
+use springfit_element::element::{Element, SpringKind, coordinate_names};
+use springfit_element::springs::{BEND_POINTS, HINGE_POINTS, Law, Measure, distance};
+use springfit_foundation::error::Error;
+use springfit_report::report::{
+    MeasureKind, MeasureRecord, Measuring, ShareRecord, TermRecord, cell_terms, simplex_term,
+};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

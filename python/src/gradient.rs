@@ -9,11 +9,11 @@ use crate::progress::{alone, apart};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::fit::{CellFits, CellFunction, CellNumbers, GradientFit, Inputs, fit_cells, fit_exact};
-use springfit::material::{BlockValues, Hooke, Material, Moduli, Plane};
-use springfit::springs::{Force, Measure, Springs};
-use springfit::study::Recipe;
+use springfit_element::material::{BlockValues, Hooke, Material, Moduli, Plane};
+use springfit_element::springs::{Force, Measure, Springs};
+use springfit_fit::fit::{CellFits, CellFunction, CellNumbers, GradientFit, Inputs, fit_cells, fit_exact};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_studies::study::Recipe;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ type GivenInputs<'py> = (PyReadonlyArray2<'py, f64>, Numbers<'py>, Numbers<'py>)
 
 /// How the constants follow from a cell.
 pub struct CellRule {
-    pub element: Arc<springfit::element::Element>,
+    pub element: Arc<springfit_element::element::Element>,
     pub springs: Springs,
     recipe: Recipe,
     plane: Option<Plane>,

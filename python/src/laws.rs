@@ -6,7 +6,7 @@ use numpy::IntoPyArray;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use springfit::springs::{AskedForces, ForceFunction};
+use springfit_element::springs::{AskedForces, ForceFunction};
 
 /// An argument of a law of force.
 #[derive(Debug, Clone, Copy)]

@@ -6,8 +6,8 @@ use crate::progress::alone;
 use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::fit::{Choices, Fit, GivenFit, GivenStiffness, Objective, condense};
-use springfit::report;
+use springfit_fit::fit::{Choices, Fit, GivenFit, GivenStiffness, Objective, condense};
+use springfit_report::report;
 use std::path::PathBuf;
 
 /// Springs, constants, errors in the Frobenius and the 2-norm, whether they are unique and reached, the gap, and how many rows were condensed.

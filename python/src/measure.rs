@@ -6,12 +6,12 @@ use crate::mesh::Mesh;
 use crate::progress::alone;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::error::{Error, Result};
-use springfit::material::Plane;
-use springfit::model::{LengthSpring, Network, Specimen, Support};
-use springfit::report::{ContentPart, Parts, SpecimenOptions, read_specimen};
-use springfit::springs::distance;
-use springfit::study::{EngineEntry, MeasureOptions, measure};
+use springfit_bodies::model::{LengthSpring, Network, Specimen, Support};
+use springfit_element::material::Plane;
+use springfit_element::springs::distance;
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::{ContentPart, Parts, SpecimenOptions, read_specimen};
+use springfit_studies::study::{EngineEntry, MeasureOptions, measure};
 use std::path::PathBuf;
 
 /// Springs on the contents of simplices: their points, constants and rest contents.
@@ -151,7 +151,7 @@ impl GivenNetwork<'_> {
                     format!("one of {} points", own.point_count()),
                 ));
             }
-            specimen.mesh = Some(springfit::mesh::Mesh::clone(own));
+            specimen.mesh = Some(springfit_mesh::mesh::Mesh::clone(own));
         }
         Ok(specimen)
     }

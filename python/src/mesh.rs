@@ -9,9 +9,9 @@ use crate::progress::alone;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::Result;
-use springfit::mesh::{self, BoxMesh, Gate, MeshArrays, MeshSource};
-use springfit::model::masses;
+use springfit_bodies::model::masses;
+use springfit_foundation::error::Result;
+use springfit_mesh::mesh::{self, BoxMesh, Gate, MeshArrays, MeshSource};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -160,7 +160,7 @@ impl Mesh {
         let own: Vec<Element> = elements.iter().map(|element| Element::clone(element)).collect();
         let asked: Vec<_> = own.iter().map(|element| element.0.clone()).collect();
         let mesh = alone(py, move || {
-            springfit::range::positive("scale", scale, "metres per mesh unit")?;
+            springfit_foundation::range::positive("scale", scale, "metres per mesh unit")?;
             let mut source = MeshSource::read(&path)?;
             source.space = space.or(source.space);
             mesh::Mesh::resolve_within(&source, &asked, scale, Some(gate)).map_err(|error| error.in_file(&path))

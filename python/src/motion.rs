@@ -8,11 +8,11 @@ use crate::progress::{calling, run_functions};
 use numpy::ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use springfit::dynamics::{
+use springfit_bodies::dynamics::{
     Dampers, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, Step, StepOutcome,
 };
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::model::{Elastic, displaced};
+use springfit_bodies::model::{Elastic, displaced};
+use springfit_foundation::error::{Error, ErrorKind, Result};
 use std::sync::Arc;
 
 /// A displacement of this multiple of the size of the body means that the motion has diverged.
@@ -71,7 +71,7 @@ pub fn simulate<'py>(py: Python<'py>, body: &Body, keys: MotionKeys) -> PyResult
     let (body, ends) = (body.clone(), Arc::new(Ends::default()));
     let MotionKeys { gravity, step, steps, every, rayleigh, ratio, callback, .. } = keys;
     let own = ends.clone();
-    let work = move |_: &mut dyn FnMut(springfit::study::Event)| -> Result<States> {
+    let work = move |_: &mut dyn FnMut(springfit_studies::study::Event)| -> Result<States> {
         let (network, rest) = (body.network(), body.points());
         let dampers = match ratio {
             0.0 => None,
@@ -80,7 +80,7 @@ pub fn simulate<'py>(py: Python<'py>, body: &Body, keys: MotionKeys) -> PyResult
         let damping = Damping { mass: rayleigh[0], stiffness: rayleigh[1], dampers };
         let mut drive = Drive::default();
         if forces.iter().any(|f| *f != 0.0) {
-            drive = drive.forces(&forces, springfit::dynamics::Curve::constant(1.0));
+            drive = drive.forces(&forces, springfit_bodies::dynamics::Curve::constant(1.0));
         }
         if !gravity.is_empty() {
             drive = drive.gravity(&gravity);

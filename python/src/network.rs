@@ -22,13 +22,13 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::{Error, Result};
 use springfit::export::{target_named, with_warnings, write_files};
-use springfit::fit::{CellFits, Spread};
-use springfit::mesh;
-use springfit::model::Elastic;
-use springfit::report::{self, NetworkFormat, read_network};
-use springfit::study::{Outcome, matrix_errors};
+use springfit_bodies::model::Elastic;
+use springfit_fit::fit::{CellFits, Spread};
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh;
+use springfit_report::report::{self, NetworkFormat, read_network};
+use springfit_studies::study::{Outcome, matrix_errors};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -286,7 +286,7 @@ impl Network {
         }
         let written = apart(py, || {
             let format = NetworkFormat::of(&path)?;
-            springfit::check_file(&path)?;
+            springfit_foundation::file::check_file(&path)?;
             format.write(&path, &self.body.file())
         });
         written.map_err(|error| raised(py, error))

@@ -4,7 +4,7 @@ use crate::arrays::list;
 use crate::error::invalid;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use springfit::mesh::{Mesh, NumberOrigin, Numbering};
+use springfit_mesh::mesh::{Mesh, NumberOrigin, Numbering};
 
 /// What the numbers of points mean, and the numbers.
 pub type Numbers<'py> = (String, Bound<'py, PyArray1<u64>>);

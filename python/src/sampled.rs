@@ -3,8 +3,8 @@
 use crate::arrays::{list, matrix};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::fit::{CellStart, ShapeError};
-use springfit::study::SampledOutcome;
+use springfit_fit::fit::{CellStart, ShapeError};
+use springfit_studies::study::SampledOutcome;
 
 /// The errors at each shape of one cell of each shape; empty columns without `data`.
 pub fn shapes<'py>(py: Python<'py>, outcome: &SampledOutcome) -> PyResult<Bound<'py, PyDict>> {

@@ -5,8 +5,8 @@ use crate::error::invalid;
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use springfit::error::Result;
-use springfit::model::Elastic;
+use springfit_bodies::model::Elastic;
+use springfit_foundation::error::Result;
 
 /// From so many evaluations on it pays to sort the springs for them.
 const MANY: usize = 200;

@@ -3,7 +3,7 @@
 use crate::arrays::list;
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use springfit::model::CompressedRows;
+use springfit_bodies::model::CompressedRows;
 
 /// `data`, `indices` and `indptr` of a `csr_matrix`: without two entries at one place, and ascending in each row. Places have 32 bits where
 /// that is enough.

@@ -6,9 +6,9 @@ use crate::given_springs::values;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::element::{SpringKind, Tabulation, coordinate_names};
-use springfit::model::{MeasureSpring, Network};
-use springfit::springs::Measure;
+use springfit_bodies::model::{MeasureSpring, Network};
+use springfit_element::element::{SpringKind, Tabulation, coordinate_names};
+use springfit_element::springs::Measure;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 

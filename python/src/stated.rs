@@ -5,9 +5,9 @@ use crate::mesh::Mesh;
 use crate::value::value_of;
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use springfit::error::{Error, Result};
-use springfit::material::MaterialMap;
-use springfit::study::{CellValues, InMemory, Materials};
+use springfit_element::material::MaterialMap;
+use springfit_foundation::error::{Error, Result};
+use springfit_studies::study::{CellValues, InMemory, Materials};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -78,7 +78,10 @@ impl Stated {
     ///
     /// # Errors
     /// Those of [`Materials::on`].
-    pub fn on<'a>(&self, mesh: &'a springfit::mesh::Mesh) -> Result<(Cow<'a, springfit::mesh::Mesh>, MaterialMap)> {
+    pub fn on<'a>(
+        &self,
+        mesh: &'a springfit_mesh::mesh::Mesh,
+    ) -> Result<(Cow<'a, springfit_mesh::mesh::Mesh>, MaterialMap)> {
         let attached = self.materials.attached(mesh)?;
         let map = self.materials.on(&attached, Path::new(""), &self.memory);
         let map = map.map_err(|error| placed(error, &self.regions))?;
@@ -91,7 +94,7 @@ impl Stated {
     }
 
     /// What is assumed of the body.
-    pub fn assumption(&self, mesh: &springfit::mesh::Mesh) -> Option<String> {
+    pub fn assumption(&self, mesh: &springfit_mesh::mesh::Mesh) -> Option<String> {
         self.materials.assumption(mesh)
     }
 }

@@ -8,10 +8,10 @@ use crate::stated::{HeldByName, in_memory};
 use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::{Error, Result};
-use springfit::material::{Material, Plane};
-use springfit::report::{Report, comparison_values};
-use springfit::study::{self, Comparing, Event, Scene};
+use springfit_element::material::{Material, Plane};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::{Report, comparison_values};
+use springfit_studies::study::{self, Comparing, Event, Scene};
 use std::path::PathBuf;
 
 /// The path or the keys of a scene, the folder of its files, its keys with other values, and what it has in memory.
@@ -124,7 +124,7 @@ pub fn converge(
 #[pyfunction]
 #[pyo3(signature = (element=None, progress=None))]
 pub fn stability(py: Python, element: Option<PyRef<Element>>, progress: Option<Py<PyAny>>) -> PyResult<String> {
-    let element = element.map(|element| springfit::element::Element::clone(&element.0));
+    let element = element.map(|element| springfit_element::element::Element::clone(&element.0));
     progress::run(py, progress, move |told| written(serde_json::to_string(&study::stability(element, told)?)))
 }
 

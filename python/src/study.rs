@@ -11,9 +11,9 @@ use crate::value::{table, text};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::{Error, Result};
-use springfit::report;
-use springfit::study::{Controls, Outcome, Scene, Setting, run_with};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report;
+use springfit_studies::study::{Controls, Outcome, Scene, Setting, run_with};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -148,7 +148,7 @@ fn displacements<'py>(
     outcome: &Outcome,
 ) -> BTreeMap<String, BTreeMap<String, Bound<'py, PyArray2<f64>>>> {
     let d = outcome.mesh.dimension;
-    let of_load = |(place, load): (usize, &springfit::study::BodyLoad)| {
+    let of_load = |(place, load): (usize, &springfit_studies::study::BodyLoad)| {
         let body = load.is_reached().then(|| (String::new(), matrix(py, load.fem.clone(), d)));
         let mut models = BTreeMap::from_iter(body);
         for fit in &outcome.fits {

@@ -7,9 +7,9 @@ use crate::study::{dictionary_path, keyless, settings_of, text_of};
 use crate::value::table;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use springfit::error::Result;
-use springfit::report::{Line, StudyLines, StudyRecord, StudyTable};
-use springfit::study::{self, Setting, Study};
+use springfit_foundation::error::Result;
+use springfit_report::report::{Line, StudyLines, StudyRecord, StudyTable};
+use springfit_studies::study::{self, Setting, Study};
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 

@@ -4,7 +4,7 @@ use crate::arguments::{self, found};
 use crate::error::invalid;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
-use springfit::text::toml as quoted;
+use springfit_foundation::text::toml as quoted;
 use toml::{Table, Value};
 
 /// The most values inside each other; TOML is read to a similar depth.

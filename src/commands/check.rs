@@ -3,10 +3,11 @@
 use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::study::{self, Event};
-use springfit::{files_in, report};
+use springfit_element::element::Element;
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::file::files_in;
+use springfit_report::report;
+use springfit_studies::study::{self, Event};
 use std::path::Path;
 use std::process::ExitCode;
 

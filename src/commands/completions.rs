@@ -3,7 +3,7 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use clap_complete::{Shell, generate};
-use springfit::error::Result;
+use springfit_foundation::error::Result;
 use std::process::ExitCode;
 
 /// Write a shell's completion script to standard output

@@ -3,14 +3,14 @@
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::fit::{ClosedForm, Weight};
-use springfit::material::Plane;
-use springfit::report::Derivation;
-use springfit::springs::Springs;
-use springfit::study::Event;
-use springfit::unknown;
+use springfit_element::element::Element;
+use springfit_element::material::Plane;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{ClosedForm, Weight};
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::named::unknown;
+use springfit_report::report::Derivation;
+use springfit_studies::study::Event;
 use std::process::ExitCode;
 
 /// Print the exact closed forms of an element's stiffness and spring constants

@@ -4,10 +4,10 @@ use super::output::OutputOptions;
 use super::shipped::shipped_text;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::{Cell, Element, Outline, SHIPPED};
-use springfit::error::Result;
-use springfit::report;
-use springfit::study::Event;
+use springfit_element::element::{Cell, Element, Outline, SHIPPED};
+use springfit_foundation::error::Result;
+use springfit_report::report;
+use springfit_studies::study::Event;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -2,13 +2,13 @@
 
 use super::output::command;
 use super::scene_file::Settings;
+use crate::export::{target_list, target_named, used_gravity, with_warnings, write_files};
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::export::{target_list, target_named, used_gravity, with_warnings, write_files};
-use springfit::report::{NetworkFile, NetworkRecord, read_network};
-use springfit::study::{Controls, run_with};
-use springfit::unknown;
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::named::unknown;
+use springfit_report::report::{NetworkFile, NetworkRecord, read_network};
+use springfit_studies::study::{Controls, run_with};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -7,17 +7,17 @@ use super::output::{OutputOptions, command};
 use super::state::State;
 use crate::terminal::Terminal;
 use clap::{Args, ValueEnum};
-use springfit::Sum;
-use springfit::element::SpringKind;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::fit::VolumeSprings;
-use springfit::material::{CellMap, Material, MaterialMap, Moduli};
-use springfit::mesh::{Mesh, MeshSource, Selection, listed_endings};
-use springfit::model::{Support, is_exact, length_shares};
-use springfit::quantity::Quantity;
-use springfit::range;
-use springfit::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
-use springfit::study::{
+use springfit_bodies::model::{Support, is_exact, length_shares};
+use springfit_element::element::SpringKind;
+use springfit_element::material::{CellMap, Material, MaterialMap, Moduli};
+use springfit_fit::fit::VolumeSprings;
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_foundation::file::Sum;
+use springfit_foundation::quantity::Quantity;
+use springfit_foundation::range;
+use springfit_mesh::mesh::{Mesh, MeshSource, Selection, listed_endings};
+use springfit_report::report::{self, NetworkFile, NetworkFormat, NetworkShard, Shard, ShardRun};
+use springfit_studies::study::{
     BodyConstants, Controls, Event, FitEntry, Forecast, NamedFit, Outcome, Recipe, Reference, Stated, WholeBody,
     assumed, fit_mesh, fit_some, fit_without_errors, point_masses,
 };
@@ -111,8 +111,8 @@ impl Fit {
         }
         let elements = self.options.elements().iter().chain(&self.keys.law).map(PathBuf::from);
         let inputs: Vec<PathBuf> = MeshSource::files(&self.mesh).into_iter().chain(elements).collect();
-        springfit::check_apart(std::slice::from_ref(&self.output), &inputs)?;
-        springfit::check_file(&self.output)?;
+        springfit_foundation::file::check_apart(std::slice::from_ref(&self.output), &inputs)?;
+        springfit_foundation::file::check_file(&self.output)?;
         let given =
             |quantity: Quantity, key: &str, text: &str| quantity.parse(text).map_err(|e| e.under(format!("--{key}")));
         let asked =

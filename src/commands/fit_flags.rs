@@ -2,8 +2,8 @@
 
 use clap::Args;
 use serde_json::Value;
-use springfit::report::default_words;
-use springfit::study::{FitEntry, fit_schema};
+use springfit_report::report::default_words;
+use springfit_studies::study::{FitEntry, fit_schema};
 use std::sync::LazyLock;
 
 /// The fits of the schema, by which flags are explained.

@@ -2,9 +2,9 @@
 
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::generate::{LANGUAGES, Program, Recipe, language, language_of};
+use springfit_element::element::Element;
+use springfit_foundation::error::{Error, Result};
+use springfit_generate::generate::{LANGUAGES, Program, Recipe, language, language_of};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -73,8 +73,8 @@ impl Generate {
         let recipe = Recipe::named(&self.objective, self.volume.as_deref(), self.higher).map_err(Error::of_option)?;
         if let Some(output) = &self.output {
             let inputs: Vec<PathBuf> = vec![self.element.clone().into()];
-            springfit::check_apart(std::slice::from_ref(output), &inputs)?;
-            springfit::check_file(output)?;
+            springfit_foundation::file::check_apart(std::slice::from_ref(output), &inputs)?;
+            springfit_foundation::file::check_file(output)?;
         }
         let element = Element::load(&self.element)?;
         let program =
@@ -85,7 +85,7 @@ impl Generate {
         };
         let text = program.print(language).map_err(Error::of_option)?;
         match &self.output {
-            Some(path) => springfit::write_whole(path, text.as_bytes())?,
+            Some(path) => springfit_foundation::file::write_whole(path, text.as_bytes())?,
             None => terminal.print(&text)?,
         }
         Ok(ExitCode::SUCCESS)

@@ -5,9 +5,9 @@ use super::output::OutputOptions;
 use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::Result;
-use springfit::mesh::listed_endings;
-use springfit::report::NamedMesh;
+use springfit_foundation::error::Result;
+use springfit_mesh::mesh::listed_endings;
+use springfit_report::report::NamedMesh;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

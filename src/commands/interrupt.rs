@@ -1,7 +1,7 @@
 //! Interrupts: the program ends, and removes what it has begun to write. Work that has a result so far does with it what it can.
 
 use crate::terminal::tell;
-use springfit::study::Controls;
+use springfit_studies::study::Controls;
 use std::process::exit;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, OnceLock};
@@ -24,7 +24,7 @@ pub fn answer() {
     let _ = ctrlc::try_set_handler(|| match WORK.get().map_or(Answer::Ends, |ask| ask()) {
         Answer::EndsEarly(words) => tell(&format!("{words}; interrupt again to end at once")),
         Answer::Ends => {
-            springfit::abandon();
+            springfit_foundation::file::abandon();
             exit(130);
         }
     });

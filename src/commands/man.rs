@@ -3,8 +3,8 @@
 use crate::terminal::Terminal;
 use clap::Args;
 use clap_mangen::Man as Page;
-use springfit::error::{Error, Result};
-use springfit::unknown;
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::named::unknown;
 use std::process::ExitCode;
 
 /// Write the manual page of the program or of a command to standard output

@@ -4,9 +4,9 @@ use super::output::OutputOptions;
 use super::shipped::shipped_text;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::Result;
-use springfit::material::{Energy, SHIPPED};
-use springfit::report;
+use springfit_element::material::{Energy, SHIPPED};
+use springfit_foundation::error::Result;
+use springfit_report::report;
 use std::process::ExitCode;
 
 /// List the shipped hyperelastic materials, which "law" names, or print the file of one

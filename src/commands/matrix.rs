@@ -5,11 +5,11 @@ use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
 use serde::Serialize;
-use springfit::error::{Error, Result};
-use springfit::fit::{Choices, Fit, GivenFit, GivenStiffness, Objective, condense};
-use springfit::model::{LengthSpring, Network, Specimen};
-use springfit::report::{PointTable, read_matrix, read_points};
-use springfit::springs::distance;
+use springfit_bodies::model::{LengthSpring, Network, Specimen};
+use springfit_element::springs::distance;
+use springfit_fit::fit::{Choices, Fit, GivenFit, GivenStiffness, Objective, condense};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::{PointTable, read_matrix, read_points};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -66,7 +66,10 @@ struct Record<'a> {
 
 impl Matrix {
     pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
-        springfit::check_apart(std::slice::from_ref(&self.output), &[self.matrix.clone(), self.points.clone()])?;
+        springfit_foundation::file::check_apart(
+            std::slice::from_ref(&self.output),
+            &[self.matrix.clone(), self.points.clone()],
+        )?;
         let choices = Choices { weight: self.weight.as_deref(), ..Choices::default() };
         let objective = Objective::named(&self.objective, choices).map_err(Error::of_option)?;
         let fit = Fit { nonnegative: self.nonnegative, ..Fit::new(objective) };

@@ -5,15 +5,15 @@ use super::state::State;
 use crate::terminal::Terminal;
 use clap::Args;
 use serde::Serialize;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::material::Plane;
-use springfit::model::Specimen;
-use springfit::quantity::Quantity;
-use springfit::report::{
+use springfit_bodies::model::Specimen;
+use springfit_element::material::Plane;
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_foundation::quantity::Quantity;
+use springfit_foundation::symbolic::Scope;
+use springfit_report::report::{
     self, NetworkFile, NetworkFormat, SpecimenFile, SpecimenOptions, read_specimen, specimen_endings,
 };
-use springfit::study::{EngineEntry, MeasureOptions, MeasuredNetwork, NamedLattice, load_elements, measure};
-use springfit::symbolic::Scope;
+use springfit_studies::study::{EngineEntry, MeasureOptions, MeasuredNetwork, NamedLattice, load_elements, measure};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -225,7 +225,7 @@ impl Measure {
 /// Writes a network without cells, whose cells are its springs.
 pub fn write(specimen: &Specimen, path: &Path) -> Result<()> {
     let format = NetworkFormat::of(path).map_err(|e| e.at_key("--output"))?;
-    springfit::check_file(path)?;
+    springfit_foundation::file::check_file(path)?;
     let mesh = specimen.bars()?;
     let file = NetworkFile::bare(&mesh, &specimen.network);
     format.write(path, &file)?;

@@ -2,8 +2,8 @@
 
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::{Error, ErrorKind, Result};
-use springfit::report::merge_shards;
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::merge_shards;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -31,8 +31,8 @@ impl Merge {
             let found = self.output.display();
             return Err(Error::expected("--output", "a file ending in .csv", found).of_kind(ErrorKind::Unsupported));
         }
-        springfit::check_apart(std::slice::from_ref(&self.output), &self.shards)?;
-        springfit::check_file(&self.output)?;
+        springfit_foundation::file::check_apart(std::slice::from_ref(&self.output), &self.shards)?;
+        springfit_foundation::file::check_file(&self.output)?;
         let merged = merge_shards(&self.shards, &self.output)?;
         let shards = self.shards.len();
         terminal.print(&format!("{} springs of {shards} shards, {} with k < 0\n", merged.springs, merged.negative))?;

@@ -1,11 +1,11 @@
 //! Arguments that are meshes.
 
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::mesh::{Gate, Mesh, MeshSource};
-use springfit::quantity::Quantity;
-use springfit::range;
-use springfit::study::{FillEntry, MeshLength, check_unit, load_elements, unit_note};
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::quantity::Quantity;
+use springfit_foundation::range;
+use springfit_mesh::mesh::{Gate, Mesh, MeshSource};
+use springfit_studies::study::{FillEntry, MeshLength, check_unit, load_elements, unit_note};
 use std::path::Path;
 
 /// How a mesh file is read.

@@ -38,7 +38,7 @@ pub use output::typed_as;
 
 use crate::terminal::Terminal;
 use clap::Subcommand;
-use springfit::error::Result;
+use springfit_foundation::error::Result;
 use std::process::ExitCode;
 
 /// One list of the subcommands: their names, and who runs them.

@@ -3,14 +3,14 @@
 use super::mesh_file::MeshOptions;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::material::Material;
-use springfit::mesh::{Mesh, listed_endings};
-use springfit::quantity::Quantity;
-use springfit::range;
-use springfit::study::{DraftMaterial, DraftSource, DraftUnit, FillEntry, draft};
-use springfit::text::{not_a_line, printable};
-use springfit::{check_file, write_whole};
+use springfit_element::material::Material;
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::quantity::Quantity;
+use springfit_foundation::range;
+use springfit_foundation::text::{not_a_line, printable};
+use springfit_foundation::{file::check_file, file::write_whole};
+use springfit_mesh::mesh::{Mesh, listed_endings};
+use springfit_studies::study::{DraftMaterial, DraftSource, DraftUnit, FillEntry, draft};
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 

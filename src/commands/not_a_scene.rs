@@ -1,9 +1,9 @@
 //! What a file is that was given in the place of a scene, and which command takes it.
 
 use serde_json::Value;
-use springfit::error::Error;
-use springfit::mesh::MESH_FORMATS;
-use springfit::study::is_comparison;
+use springfit_foundation::error::Error;
+use springfit_mesh::mesh::MESH_FORMATS;
+use springfit_studies::study::is_comparison;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

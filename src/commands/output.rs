@@ -3,10 +3,10 @@
 use crate::terminal::{Terminal, json_text};
 use clap::Args;
 use serde::Serialize;
-use springfit::error::{Error, Result};
-use springfit::report::{self, Detail, Markup, Report, Table};
-use springfit::study::Outcome;
-use springfit::text::printable_lines;
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::text::printable_lines;
+use springfit_report::report::{self, Detail, Markup, Report, Table};
+use springfit_studies::study::Outcome;
 use std::ffi::OsString;
 use std::sync::OnceLock;
 

@@ -3,9 +3,9 @@
 use super::output::OutputOptions;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::report::{self, open_outputs};
-use springfit::study::{self, Index};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::{self, open_outputs};
+use springfit_studies::study::{self, Index};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

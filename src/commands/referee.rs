@@ -1,11 +1,11 @@
 //! `springfit referee`.
 
 use super::output::OutputOptions;
+use crate::referee::{RefereeOptions, engine_list, engine_named, referee};
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::error::Result;
-use springfit::referee::{RefereeOptions, engine_list, engine_named, referee};
-use springfit::report::{self, REFEREE_FILES, open_outputs};
+use springfit_foundation::error::Result;
+use springfit_report::report::{self, REFEREE_FILES, open_outputs};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -2,8 +2,8 @@
 
 use super::not_a_scene::explained;
 use clap::Args;
-use springfit::error::{Error, Result};
-use springfit::study::{Scene, Setting, Sweep};
+use springfit_foundation::error::{Error, Result};
+use springfit_studies::study::{Scene, Setting, Sweep};
 use std::path::Path;
 
 /// The option `--set` of a command that reads a scene.

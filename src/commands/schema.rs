@@ -2,8 +2,10 @@
 
 use crate::terminal::Terminal;
 use clap::{Args, ValueEnum};
-use springfit::error::Result;
-use springfit::{element, material, report, study};
+use springfit_element::{element, material};
+use springfit_foundation::error::Result;
+use springfit_report::report;
+use springfit_studies::study;
 use std::process::ExitCode;
 
 /// Write the JSON Schema of scenes, comparisons, elements, materials, networks or reports, for editors

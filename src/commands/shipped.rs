@@ -1,7 +1,7 @@
 //! The files that the program has inside.
 
-use springfit::error::Result;
-use springfit::unknown;
+use springfit_foundation::error::Result;
+use springfit_foundation::named::unknown;
 
 /// The text of the file with this name, from names and texts.
 ///

@@ -4,10 +4,10 @@ use super::output::OutputOptions;
 use super::scene_file::{Settings, is_scene};
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit::element::Element;
-use springfit::error::Result;
-use springfit::report;
-use springfit::study::{self, Event};
+use springfit_element::element::Element;
+use springfit_foundation::error::Result;
+use springfit_report::report;
+use springfit_studies::study::{self, Event};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

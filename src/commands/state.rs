@@ -1,7 +1,7 @@
 //! The plane state as an option.
 
 use clap::ValueEnum;
-use springfit::material::Plane;
+use springfit_element::material::Plane;
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum State {

@@ -5,8 +5,8 @@ use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
-use crate::error::Result;
-use crate::report::NetworkRecord;
+use springfit_foundation::error::Result;
+use springfit_report::report::NetworkRecord;
 
 /// The script moves the network itself, so that it holds what the arrays hold.
 const HOLDS: Holds = Holds {

@@ -6,11 +6,11 @@ use super::job::spatial;
 use super::prepared::longest_step;
 use super::rest::{affordable, cases, support};
 use super::target::Target;
-use crate::element::SpringKind;
-use crate::error::Result;
-use crate::model::{MeasureSpring, Network, Support};
-use crate::report::{Division, NetworkRecord, Parts};
-use crate::solve::System;
+use springfit_bodies::model::{MeasureSpring, Network, Support};
+use springfit_bodies::solve::System;
+use springfit_element::element::SpringKind;
+use springfit_foundation::error::Result;
+use springfit_report::report::{Division, NetworkRecord, Parts};
 
 impl Target {
     /// The network with springs on tetrahedra in place of those on hexahedra, where this program holds volumes of tetrahedra alone, and a sentence on how

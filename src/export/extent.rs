@@ -1,7 +1,7 @@
 //! The numbers of a network as other programs take them in.
 
-use crate::error::{Error, ErrorKind, Result};
-use crate::report::{NetworkRecord, Parts};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::{NetworkRecord, Parts};
 
 /// The largest number of single precision, in which some programs compute. Products of a few such numbers are finite in double
 /// precision: they are not written as infinity.

@@ -3,8 +3,8 @@
 //! Page of the book: *Sheets that bend*.
 
 use super::names::{named, ordered, sorted};
-use crate::error::{Error, ErrorKind, Result};
-use crate::report::{HingePart, NetworkRecord};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::{HingePart, NetworkRecord};
 use std::collections::{HashMap, HashSet};
 
 /// Springs on the angle between two triangles.

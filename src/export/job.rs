@@ -3,11 +3,11 @@
 use super::extent::check_parts;
 use super::hinges::{Hinges, check_angles, check_edges_of_hinges};
 use super::names::{named, ordered, sorted};
-use crate::engine::{Order, Sequence};
-use crate::error::{Error, ErrorKind, Result};
-use crate::network::QUADRILATERAL;
-use crate::report::{ContentPart, NetworkRecord, Parts};
-use crate::springs::{cross, dot, norm};
+use springfit_bodies::engine::{Order, Sequence};
+use springfit_element::springs::{cross, dot, norm};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_networks::network::QUADRILATERAL;
+use springfit_report::report::{ContentPart, NetworkRecord, Parts};
 use std::collections::{HashMap, HashSet};
 
 /// What a program holds besides springs between two points with masses.
@@ -295,7 +295,7 @@ pub(super) fn spatial(asked: Option<&[f64]>, network: &NetworkRecord) -> [f64; 3
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    crate::springs::distance(&a, &b)
+    springfit_element::springs::distance(&a, &b)
 }
 
 /// The area of a triangle times its unit normal.

@@ -5,10 +5,10 @@ use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::{Engine, Setting};
-use crate::error::Result;
-use crate::report::NetworkRecord;
 use serde::Serialize;
+use springfit_bodies::engine::{Engine, Setting};
+use springfit_foundation::error::Result;
+use springfit_report::report::NetworkRecord;
 
 /// A constraint has a compliance, the inverse of a constant above zero. Constraints that pull against each other at rest do not
 /// converge in a step: exact networks without negative springs were 27 times as soft.

@@ -4,8 +4,8 @@ use super::hinges::{FLAT, Hinges};
 use super::job::{Holds, Job, Tension};
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
-use crate::error::Result;
-use crate::report::{HingePart, NetworkRecord};
+use springfit_foundation::error::Result;
+use springfit_report::report::{HingePart, NetworkRecord};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 

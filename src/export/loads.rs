@@ -1,7 +1,7 @@
 //! The loads of a scene in files of JSON.
 
-use crate::report::{NetworkRecord, NodalLoadRecord};
 use serde::Serialize;
+use springfit_report::report::{NetworkRecord, NodalLoadRecord};
 use std::collections::HashMap;
 
 /// A load by its name.

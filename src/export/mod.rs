@@ -1,6 +1,6 @@
 //! Networks as the files and scripts of other programs.
 //!
-//! A target is a file here and a row of [`TARGETS`]; its script, where it has one, is in the folder `exports`.
+//! A target is a file here and a row of `TARGETS`; its script, where it has one, is in the folder `exports`.
 //!
 //! Page of the book: *Networks in other programs*.
 
@@ -29,8 +29,8 @@ pub use hinges::Hinges;
 pub use job::{Holds, Job, Tension, used_gravity};
 pub use target::{Content, NamedFile, Target, with_warnings, write_files};
 
-use crate::error::Result;
-use crate::unknown;
+use springfit_foundation::error::Result;
+use springfit_foundation::named::unknown;
 
 /// A new target is a row here.
 pub const TARGETS: [Target; 10] = [

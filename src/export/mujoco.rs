@@ -5,8 +5,8 @@ use super::job::{Holds, Job, Tension};
 use super::npz::arrays;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, script};
-use crate::error::Result;
-use crate::report::NetworkRecord;
+use springfit_foundation::error::Result;
+use springfit_report::report::NetworkRecord;
 
 /// A flex has the quadratic energy of its squared edge lengths: no tension edge by edge, and no springs elsewhere.
 const HOLDS: Holds = Holds {

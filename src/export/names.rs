@@ -1,6 +1,6 @@
 //! Points by their names, and without their order.
 
-use crate::report::NetworkRecord;
+use springfit_report::report::NetworkRecord;
 
 /// Points in words: by their numbers in the mesh file, or by their places in the network, which count from 0.
 pub(super) fn named(network: &NetworkRecord, points: &[usize]) -> String {

@@ -6,10 +6,10 @@ use super::names::named;
 use super::npz::arrays_with;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, dampers, mass_damping, script};
-use crate::engine::{Engine, Setting, point_colours};
-use crate::error::{Error, ErrorKind, Result};
-use crate::report::{ArrayFile, NetworkRecord};
-use crate::springs::{cross, norm};
+use springfit_bodies::engine::{Engine, Setting, point_colours};
+use springfit_element::springs::{cross, norm};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::{ArrayFile, NetworkRecord};
 use std::io::{self, Seek, Write};
 
 const HOLDS: Holds = Holds {

@@ -4,8 +4,8 @@ use super::extent::check_parts;
 use super::job::{Job, spatial};
 use super::relaxes::Relaxes;
 use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, content_dampers, script};
-use crate::error::Result;
-use crate::report::{ArrayFile, NetworkRecord, Parts, network_npz, network_npz_with};
+use springfit_foundation::error::Result;
+use springfit_report::report::{ArrayFile, NetworkRecord, Parts, network_npz, network_npz_with};
 use std::io::Cursor;
 
 /// What this program holds, and how a network is written for it.

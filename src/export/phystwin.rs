@@ -5,8 +5,8 @@ use super::job::{Holds, Job, Tension};
 use super::names::named;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
-use crate::error::{Error, ErrorKind, Result};
-use crate::report::{ArrayFile, LengthPart, NetworkRecord};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::{ArrayFile, LengthPart, NetworkRecord};
 use std::io::{self, Cursor};
 
 /// The stiffness of a spring is a logarithm, and its force is divided by its rest length.

@@ -5,9 +5,9 @@
 use super::job::spatial;
 use super::rest::support;
 use super::target::Target;
-use crate::dynamics::largest_square;
-use crate::error::Result;
-use crate::report::{NetworkRecord, NodalLoadRecord, Parts};
+use springfit_bodies::dynamics::largest_square;
+use springfit_foundation::error::Result;
+use springfit_report::report::{NetworkRecord, NodalLoadRecord, Parts};
 
 impl Target {
     /// The network that is written, and a sentence on each way in which it is another one than that of the fit.

@@ -3,10 +3,10 @@
 //! Theory: page *Springs that forget* of the book.
 
 use super::names::named;
-use crate::error::{Error, ErrorKind, Result};
-use crate::network::RelaxationRecord;
-use crate::report::{NetworkRecord, Parts};
-use crate::springs::distance;
+use springfit_element::springs::distance;
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_networks::network::RelaxationRecord;
+use springfit_report::report::{NetworkRecord, Parts};
 
 /// What a program does with stress that relaxes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,11 +4,11 @@
 
 use super::job::spatial;
 use super::target::{Stands, Target};
-use crate::error::{Error, ErrorKind, Result};
-use crate::model::{Network, Support};
-use crate::report::{NetworkRecord, NodalLoadRecord, Parts, of_locking};
-use crate::solve::{Ending, Newton, System, factor_cost_of, is_definite};
 use nalgebra::DMatrix;
+use springfit_bodies::model::{Network, Support};
+use springfit_bodies::solve::{Ending, Newton, System, factor_cost_of, is_definite};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_report::report::{NetworkRecord, NodalLoadRecord, Parts, of_locking};
 
 /// A spring of [`Stands::SquaredLengths`] pushes with `k/(2 L²) (L² − l²) l`, at most 0.192 k L, at `l = L/√3`. A spring of the network
 /// pushes as much at this share of its length; pressed further, cells of such a program give way until they are flat.

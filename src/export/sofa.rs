@@ -4,8 +4,8 @@ use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension};
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, mass_damping};
-use crate::error::Result;
-use crate::report::NetworkRecord;
+use springfit_foundation::error::Result;
+use springfit_report::report::NetworkRecord;
 use std::collections::HashSet;
 use std::fmt::Write;
 

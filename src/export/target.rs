@@ -2,11 +2,11 @@
 
 use super::extent::check_numbers;
 use super::relaxes::Relaxes;
-use crate::engine::{Engine, Setting};
-use crate::error::{Error, ErrorKind, Result};
-use crate::file::write_whole;
-use crate::mesh::vtk::{self, Grid};
-use crate::report::{MeasureKind, NetworkRecord, SpringRecord, open_outputs};
+use springfit_bodies::engine::{Engine, Setting};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_foundation::file::write_whole;
+use springfit_mesh::mesh::vtk::{self, Grid};
+use springfit_report::report::{MeasureKind, NetworkRecord, SpringRecord, open_outputs};
 use std::path::{Path, PathBuf};
 
 /// A file by its name.

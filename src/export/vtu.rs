@@ -2,9 +2,9 @@
 
 use super::relaxes::Relaxes;
 use super::target::{Content, EVERY_ENGINE, NamedFile, Stands, Target, nothing};
-use crate::error::{Error, Result};
-use crate::mesh::vtk::{Array, Grid};
-use crate::report::NetworkRecord;
+use springfit_foundation::error::{Error, Result};
+use springfit_mesh::mesh::vtk::{Array, Grid};
+use springfit_report::report::NetworkRecord;
 
 const LINE: u8 = 3;
 const POINTS: u8 = 2;
@@ -41,7 +41,7 @@ fn grid(network: &NetworkRecord) -> Grid {
         grid.push_cell(kind, &spring.points);
     }
     let scalar = |name: &str, values: Vec<f64>| Array { name: name.into(), components: 1, values };
-    let of = |value: fn(&crate::report::SpringRecord) -> f64| network.springs.iter().map(value).collect();
+    let of = |value: fn(&springfit_report::report::SpringRecord) -> f64| network.springs.iter().map(value).collect();
     grid.cell_data = vec![
         scalar("k", of(|s| s.constant)),
         scalar("rest", of(|s| s.rest)),

@@ -5,10 +5,10 @@ use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers, mass_damping};
-use crate::engine::{Engine, Setting, colours};
-use crate::error::Result;
-use crate::report::NetworkRecord;
 use serde::Serialize;
+use springfit_bodies::engine::{Engine, Setting, colours};
+use springfit_foundation::error::Result;
+use springfit_report::report::NetworkRecord;
 
 /// What is held is that of Jolt: constraints have compliances above zero and do not pull against each other at rest.
 const HOLDS: Holds = Holds {

@@ -1,10 +1,10 @@
 //! The standard bodies: their networks, where these rest by linear theory, and the energies of refined meshes.
 
-use crate::error::{Error, Result};
-use crate::model::finite_elements;
-use crate::report::{NetworkFile, NetworkRecord};
-use crate::solve::{System, lowest_modes};
-use crate::study::{Progress, Scene, Setting, converge, run};
+use springfit_bodies::model::finite_elements;
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_foundation::error::{Error, Result};
+use springfit_report::report::{NetworkFile, NetworkRecord};
+use springfit_studies::study::{Progress, Scene, Setting, converge, run};
 use std::path::Path;
 
 /// The scenes: tension, torsion and bending of a bar, shear of a block.

@@ -1,7 +1,7 @@
 //! The simulators, and what of each is measured.
 
-use crate::error::Result;
-use crate::unknown;
+use springfit_foundation::error::Result;
+use springfit_foundation::named::unknown;
 
 /// A program that runs the script of an engine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

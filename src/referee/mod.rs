@@ -12,13 +12,14 @@ mod trial;
 
 pub use engine::{ENGINES, Engine, Interpreter, Law, Solver, engine_list, engine_named};
 
-use crate::error::{Error, Result};
-use crate::file::create_folder;
-use crate::report::{EngineRecord, RefereeRecord, RefereeRow, Telling};
-use crate::study::Progress;
-use crate::{study::Event, unknown};
 use body::standard_bodies;
 use session::{Session, write_scripts};
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::file::create_folder;
+use springfit_foundation::named::unknown;
+use springfit_report::report::{EngineRecord, RefereeRecord, RefereeRow, Telling};
+use springfit_studies::study::Event;
+use springfit_studies::study::Progress;
 use std::path::{Path, PathBuf};
 use trial::Trial;
 

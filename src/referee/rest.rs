@@ -1,7 +1,7 @@
 //! When a body is at rest: the motion is damped at the critical damping of its slowest oscillation until nothing moves.
 
 use super::session::Session;
-use crate::error::Result;
+use springfit_foundation::error::Result;
 
 /// After the time T the slowest oscillation, which is damped critically, has fallen to `(1 + ω T) exp(−ω T)`: 8e-5.
 const DECAYS: f64 = 12.0;

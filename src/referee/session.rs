@@ -1,10 +1,10 @@
 //! A process in which an engine moves a body: a request in JSON on a line, and an answer on a line.
 
 use super::engine::Engine;
-use crate::error::{Error, ErrorKind, Result};
-use crate::file::write_whole;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_foundation::file::write_whole;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};

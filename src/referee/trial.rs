@@ -4,10 +4,10 @@ use super::body::{Case, StandardBody};
 use super::engine::{Engine, Law, Solver};
 use super::rest::{MOVING, Rest, STILL, come_to_rest, damping};
 use super::session::Session;
-use crate::error::Result;
 use crate::export::target_named;
-use crate::file::create_folder;
-use crate::report::{Factor, FoundRow, NetworkRecord, RefereeRecord, RefereeRow, RepairRecord, Telling};
+use springfit_foundation::error::Result;
+use springfit_foundation::file::create_folder;
+use springfit_report::report::{Factor, FoundRow, NetworkRecord, RefereeRecord, RefereeRow, RepairRecord, Telling};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

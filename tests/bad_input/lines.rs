@@ -1,8 +1,8 @@
 //! The line of a fault: every value of a scene is changed to others, and every error about it has the line of its key or of a table
 //! around it.
 
-use springfit::error::ErrorKind;
-use springfit::study::{Forecast, Scene};
+use springfit_foundation::error::ErrorKind;
+use springfit_studies::study::{Forecast, Scene};
 use std::path::Path;
 
 /// Values of other types, and one that is out of every range.

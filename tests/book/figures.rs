@@ -2,8 +2,8 @@
 
 use super::markdown::root;
 use super::printed::compare;
-use springfit::report::deformed;
-use springfit::study::{Scene, run};
+use springfit_report::report::deformed;
+use springfit_studies::study::{Scene, run};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;

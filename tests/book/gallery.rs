@@ -1,7 +1,7 @@
 //! The gallery shows thirteen scenes, each with its command and a picture that loads at once.
 
 use super::markdown::{page, root};
-use springfit::study::Scene;
+use springfit_studies::study::Scene;
 
 #[test]
 fn the_gallery_has_thirteen_scenes_with_command_and_picture() {

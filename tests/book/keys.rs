@@ -2,7 +2,9 @@
 
 use super::markdown::{Page, page};
 use serde_json::Value;
-use springfit::{element, material, report, study};
+use springfit_element::{element, material};
+use springfit_report::report;
+use springfit_studies::study;
 use std::path::Path;
 use std::process::Command;
 

@@ -1,8 +1,8 @@
 //! The tables of the reference list what the program knows, no more and no less.
 
 use super::markdown::{Page, page};
-use springfit::element::{SHIPPED, SpringKind};
-use springfit::study::{Scene, run};
+use springfit_element::element::{SHIPPED, SpringKind};
+use springfit_studies::study::{Scene, run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
@@ -124,7 +124,7 @@ fn the_page_of_the_command_line_has_every_command_and_option() {
 
 #[test]
 fn the_page_of_meshes_has_the_units_that_are_read() {
-    use springfit::quantity::Quantity;
+    use springfit_foundation::quantity::Quantity;
     let text = page("docs/src/reference/meshes.md").text;
     let quantities = [
         ("length, mesh unit", Quantity::Length),

@@ -1,9 +1,9 @@
 //! TOML blocks of the pages are read by the program.
 
 use super::markdown::{Block, Page, pages};
-use springfit::element::Element;
-use springfit::material::{Energy, Material, State};
-use springfit::study::{Comparing, Scene};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material, State};
+use springfit_studies::study::{Comparing, Scene};
 use std::path::Path;
 
 /// What a scene has around a part of one.

@@ -3,16 +3,16 @@
 //! The bytes choose the element, the fit and the moduli; the rest are places of nodes, node numbers and lengths, mostly right with some
 //! replaced.
 
-use springfit::element::Element;
-use springfit::fit::{
+use springfit_bodies::model::{LengthSpring, Network, Support};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Moduli};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{
     CellFits, ExactFit, Fit, Objective, Rest, Weight, bounded_constants, condition, constants_of_kind,
     distance_from_optimum, element_errors, fit_cells, fit_element, fit_exact,
 };
-use springfit::material::{Material, Moduli};
-use springfit::model::{LengthSpring, Network, Support};
-use springfit::scalar::DoubleDouble;
-use springfit::solve::System;
-use springfit::springs::Springs;
+use springfit_foundation::scalar::DoubleDouble;
 use std::sync::OnceLock;
 
 /// Small elements: each call takes less than a millisecond.

@@ -1,9 +1,9 @@
 //! An element or a material file: what has been accepted gives finite numbers.
 
-use springfit::element::Element;
-use springfit::fit::{Choices, Fit, Objective, fit_element};
-use springfit::material::{Energy, Material};
-use springfit::springs::Springs;
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{Choices, Fit, Objective, fit_element};
 
 /// Larger elements take long to fit.
 const MOST_NODES: usize = 10;

@@ -1,7 +1,7 @@
 //! A mesh of any format: the first byte says which of the endings that are read the rest has. The files of TetGen are parted by zeros.
 
 use super::meshes;
-use springfit::mesh::{MESH_FORMATS, MeshSource};
+use springfit_mesh::mesh::{MESH_FORMATS, MeshSource};
 
 pub fn check(bytes: &[u8]) {
     let Some((first, content)) = bytes.split_first() else { return };

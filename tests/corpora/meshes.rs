@@ -1,14 +1,14 @@
 //! What a mesh file gives is sound, as a source and as a mesh of the shipped elements.
 
-use springfit::element::{Element, SHIPPED};
-use springfit::mesh::{Mesh, MeshSource};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::sync::{Arc, OnceLock};
 
 pub fn check(bytes: &[u8], ending: &str) {
     check_result(MeshSource::parse(bytes, ending));
 }
 
-pub fn check_result(result: springfit::error::Result<MeshSource>) {
+pub fn check_result(result: springfit_foundation::error::Result<MeshSource>) {
     match result {
         Ok(source) => {
             check_source(&source);

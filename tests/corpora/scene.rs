@@ -1,6 +1,6 @@
 //! A scene: what has been accepted names parts that can be selected, and every fault prints as one line.
 
-use springfit::study::{Part, Scene};
+use springfit_studies::study::{Part, Scene};
 use std::path::Path;
 
 pub fn check(bytes: &[u8]) {

@@ -3,8 +3,8 @@
 use super::verdict::{Verdict, of_scene};
 use super::walk::{at, inline, is_numeric, key, numeric_keys, parse, places, text, with};
 use super::{EXTREMES, folder, values};
-use springfit::element::Element;
-use springfit::material::{Energy, Material};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
 use std::collections::BTreeSet;
 use std::fs::write;
 use std::path::Path;

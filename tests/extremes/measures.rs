@@ -3,11 +3,11 @@
 use super::samples::{EXPLICIT, LINEAR, MOTION};
 use super::verdict::{Verdict, of_scene};
 use super::{folder, problem};
-use springfit::fit::Spread;
-use springfit::mesh::Field;
-use springfit::report;
-use springfit::scalar::{distance, norm};
-use springfit::study::{MotionEnding, SampledOutcome, Scene, displacement_error, run};
+use springfit_fit::fit::Spread;
+use springfit_foundation::scalar::{distance, norm};
+use springfit_mesh::mesh::Field;
+use springfit_report::report;
+use springfit_studies::study::{MotionEnding, SampledOutcome, Scene, displacement_error, run};
 use std::path::Path;
 
 /// Powers of two scale exactly.

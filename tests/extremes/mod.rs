@@ -8,7 +8,7 @@ mod verdict;
 mod walk;
 
 use samples::{ALL, FILES};
-use springfit::study::Scene;
+use springfit_studies::study::Scene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -84,7 +84,8 @@ fn sweep(stride: usize) {
         let document = parse(scene);
         let sane = of_scene(scene, &path).unwrap_or_else(|e| panic!("{name}: {e}"));
         if sane == Verdict::Refused {
-            let error = Scene::parse(scene, &path).and_then(|scene| springfit::study::run(&scene, &mut |_| ())).err();
+            let error =
+                Scene::parse(scene, &path).and_then(|scene| springfit_studies::study::run(&scene, &mut |_| ())).err();
             wrong.push(format!(
                 "{name} is refused before it is changed: {}",
                 error.map_or_else(String::new, |e| e.to_string())

@@ -1,9 +1,9 @@
 //! What may become of a number: an error that names it, a status, or figures that are right.
 
-use springfit::error::Error;
-use springfit::mesh::Mesh;
-use springfit::report;
-use springfit::study::{MotionEnding, Outcome, Scene, run};
+use springfit_foundation::error::Error;
+use springfit_mesh::mesh::Mesh;
+use springfit_report::report;
+use springfit_studies::study::{MotionEnding, Outcome, Scene, run};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 

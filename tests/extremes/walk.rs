@@ -165,7 +165,9 @@ fn fields(read: Read, document: &Value, place: &[Step]) -> Vec<String> {
 #[test]
 fn the_keys_of_a_document_are_found() {
     let read = |text: &str| {
-        springfit::study::Scene::parse(text, std::path::Path::new("s.toml")).err().map(|e| e.problem().to_string())
+        springfit_studies::study::Scene::parse(text, std::path::Path::new("s.toml"))
+            .err()
+            .map(|e| e.problem().to_string())
     };
     let keys = numeric_keys(&read, &parse(super::samples::LINEAR));
     for key in ["mesh.scale", "mesh.box.size", "material.young", "material.density", "load[].traction", "fit[].higher"]

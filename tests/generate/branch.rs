@@ -2,14 +2,14 @@
 
 use super::programs::{list, run};
 use crate::shapes::{Random, distorted};
-use springfit::dynamics::{BranchForm, LargeMemory, Memory};
-use springfit::element::Element;
-use springfit::error::ErrorKind;
-use springfit::fit::ShearSprings;
-use springfit::generate::{Program, Recipe, language};
-use springfit::material::{Material, Relaxation, RelaxationTerm, State};
-use springfit::mesh::{CellBlock, Mesh};
-use springfit::model::MaterialPoints;
+use springfit_bodies::dynamics::{BranchForm, LargeMemory, Memory};
+use springfit_bodies::model::MaterialPoints;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Relaxation, RelaxationTerm, State};
+use springfit_fit::fit::ShearSprings;
+use springfit_foundation::error::ErrorKind;
+use springfit_generate::generate::{Program, Recipe, language};
+use springfit_mesh::mesh::{CellBlock, Mesh};
 use std::fmt::Write;
 use std::fs;
 use std::sync::Arc;

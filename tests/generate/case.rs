@@ -1,14 +1,14 @@
 //! Elements with objectives, and the numbers of the library for random cells of each.
 
 use crate::shapes::{Random, distorted, elements, materials};
-use springfit::element::Element;
-use springfit::error::Result;
-use springfit::fit::published::{self, Method};
-use springfit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, condition, fit_cells, fit_exact};
-use springfit::generate::{Program, Recipe, language};
-use springfit::material::{Material, Moduli};
-use springfit::springs::{Force, Springs};
-use springfit::stiffness::Geometry;
+use springfit_element::element::Element;
+use springfit_element::material::{Material, Moduli};
+use springfit_element::springs::{Force, Springs};
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::published::{self, Method};
+use springfit_fit::fit::{CellFits, ExactFit, Fit, Objective, VolumeSprings, condition, fit_cells, fit_exact};
+use springfit_foundation::error::Result;
+use springfit_generate::generate::{Program, Recipe, language};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! The example of the book.
 
-use springfit::element::Element;
-use springfit::generate::{Program, Recipe, language};
+use springfit_element::element::Element;
+use springfit_generate::generate::{Program, Recipe, language};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -1,11 +1,11 @@
 //! Objectives without a direct solution, and other wrong requests.
 
-use springfit::element::Element;
-use springfit::error::ErrorKind;
-use springfit::fit::Weight;
-use springfit::generate::{Program, Recipe, language, language_of};
+use springfit_element::element::Element;
+use springfit_fit::fit::Weight;
+use springfit_foundation::error::ErrorKind;
+use springfit_generate::generate::{Program, Recipe, language, language_of};
 
-fn refused(objective: &str, volume: Option<&str>, higher: Option<f64>) -> springfit::error::Error {
+fn refused(objective: &str, volume: Option<&str>, higher: Option<f64>) -> springfit_foundation::error::Error {
     Recipe::named(objective, volume, higher).unwrap_err()
 }
 

@@ -1,7 +1,7 @@
 //! What generated files say.
 
 use super::case::every;
-use springfit::generate::LANGUAGES;
+use springfit_generate::generate::LANGUAGES;
 
 /// Every spring is listed with its nodes and group, in every language, and files have a moderate size.
 #[test]

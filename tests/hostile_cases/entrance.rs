@@ -1,8 +1,8 @@
 //! Files as people have them: a name stands for what it names, nothing vanishes without a word, and what nobody needs is no reason to refuse.
 
 use super::springfit;
-use springfit::mesh::{Mesh, MeshSource, Selection};
-use springfit::study::{Scene, run};
+use springfit_mesh::mesh::{Mesh, MeshSource, Selection};
+use springfit_studies::study::{Scene, run};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn largest(folder: &Path, file: &str, text: &str, conditions: &str) -> (f64, Vec
     let u = &outcome.loads[0].fem;
     let d = outcome.mesh.dimension;
     let size = |u: &[f64]| u.iter().map(|x| x * x).sum::<f64>().sqrt();
-    (u.chunks_exact(d).map(size).fold(0.0, f64::max), springfit::report::notes(&outcome))
+    (u.chunks_exact(d).map(size).fold(0.0, f64::max), springfit_report::report::notes(&outcome))
 }
 
 fn assert_length(found: f64, expected: f64) {
@@ -146,7 +146,7 @@ fn read(text: &str, ending: &str) -> Mesh {
 }
 
 fn volume(mesh: &Mesh) -> f64 {
-    springfit::model::masses(mesh, 1.0, 1.0).iter().sum()
+    springfit_bodies::model::masses(mesh, 1.0, 1.0).iter().sum()
 }
 
 #[test]
@@ -456,7 +456,7 @@ fn pieces_inside_each_other_are_told() {
         }
         let nodes = |first: usize| (first..first + n).map(|p| p.to_string()).collect::<Vec<_>>().join(" ");
         text += &format!("CELLS 2 {}\n{n} {}\n{n} {}\nCELL_TYPES 2\n{cell} {cell}\n", 2 * n + 2, nodes(0), nodes(n));
-        springfit::report::mesh_notes(&read(&text, "vtk")).join("\n")
+        springfit_report::report::mesh_notes(&read(&text, "vtk")).join("\n")
     };
     let words = "have parts of another piece of the mesh inside: the body is there twice";
     for kind in [0, 1] {

@@ -1,6 +1,6 @@
 //! Small inputs that were once answered wrongly: each stands for a kind, which a test of its subject proves.
 
-use springfit::study::{Scene, Standard, run};
+use springfit_studies::study::{Scene, Standard, run};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,7 +1,7 @@
 //! Scenes as people write them: regions, materials by other constants, data in another unit, and the first scene of any file.
 
 use super::springfit;
-use springfit::study::{Outcome, Scene, run};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ const BOX: &str = "[mesh]\nbox = { element = \"hex8\", size = [4, 1, 1], cells =
 const REST: &str =
     "[[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\nforce = [1, 0, 0]\n";
 
-fn outcome(text: &str, folder: &Path) -> springfit::error::Result<Outcome> {
+fn outcome(text: &str, folder: &Path) -> springfit_foundation::error::Result<Outcome> {
     run(&Scene::parse(text, &folder.join("s.toml"))?, &mut |_| {})
 }
 
@@ -80,7 +80,7 @@ fn conditions_that_select_nothing_or_all_are_told() {
             && said.contains("the body extends from 0 to 4 m along x, from 0 to 1 m along y"),
         "{said}"
     );
-    let notes = |text: &str| springfit::report::notes(&solved(text)).join("\n");
+    let notes = |text: &str| springfit_report::report::notes(&solved(text)).join("\n");
     let load = REST.replace("group = \"xmax\"\nforce", "name = \"all\"\nwhere = \"x > -1\"\nforce");
     let said = notes(&format!("{BOX}{material}{load}"));
     assert!(said.contains("where = \"x > -1\" of the load all holds at all points of the body"), "{said}");
@@ -96,7 +96,7 @@ fn the_thickness_of_a_deck_is_offered() {
     let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n*SHELL SECTION, ELSET=P, MATERIAL=S\n0.002\n";
     fs::write(folder.path().join("plate.inp"), deck).unwrap();
     let text = "[mesh]\nfile = \"plate.inp\"\n[material]\nyoung = 1e9\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
-    let said = |text: &str| springfit::report::notes(&outcome(text, folder.path()).unwrap()).join("\n");
+    let said = |text: &str| springfit_report::report::notes(&outcome(text, folder.path()).unwrap()).join("\n");
     let words = "assumed to be 1 m; \"thickness\" in the material sets it, and the file states 0.002 in its unit";
     assert!(said(text).contains(words), "{}", said(text));
     assert!(!said(&text.replace("poisson", "thickness = 0.002\npoisson")).contains("assumed"), "{}", said(text));
@@ -153,7 +153,7 @@ fn material_data_in_another_unit_are_refused() {
         "{said}"
     );
     let told = outcome(&scene(", scale = \"mm\", missing = -9999"), folder.path()).unwrap();
-    let said = springfit::report::notes(&told).join("\n");
+    let said = springfit_report::report::notes(&told).join("\n");
     assert!(said.contains("1 place of map.csv without a value (-9999) were left out"), "{said}");
     // Data in the file of the mesh have its unit.
     let grid = "# vtk DataFile Version 3.0\nm\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n0 0 0 10 0 0 20 0 0 0 10 0 10 10 0 20 10 0 0 0 10 10 0 10\n\

@@ -5,7 +5,7 @@ mod module;
 mod tokens;
 
 use graph::{Graph, PROGRAM, Source};
-use springfit::element::SHIPPED;
+use springfit_element::element::SHIPPED;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

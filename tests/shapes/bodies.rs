@@ -1,7 +1,7 @@
 //! Bodies that tests share, and a writer of their meshes.
 
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_element::element::Element;
+use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;

@@ -4,8 +4,8 @@ pub mod bodies;
 pub mod statics;
 
 use nalgebra::{DMatrix, DVector};
-use springfit::element::{Element, SHIPPED};
-use springfit::material::{Material, Plane};
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::{Material, Plane};
 
 /// A repeatable source of numbers in [-1, 1].
 pub struct Random(pub u64);

@@ -1,9 +1,9 @@
 //! Bodies under loads, and what they do.
 
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{Entries, Support};
-use springfit::solve::System;
+use springfit_bodies::model::{Entries, Support};
+use springfit_bodies::solve::System;
+use springfit_element::element::Element;
+use springfit_mesh::mesh::{BoxMesh, Mesh};
 use std::sync::Arc;
 
 /// The work of the load on the displacements that it causes.

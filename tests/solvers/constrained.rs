@@ -1,8 +1,8 @@
 //! Quadratic programmes with bounds: the conditions of optimality, and the least norm where there are many optima.
 
 use kinds::Kind;
-use springfit::fit::Rank;
-use springfit::fit::solvers::{Normal, solve_nonnegative};
+use springfit_fit::fit::Rank;
+use springfit_fit::fit::solvers::{Normal, solve_nonnegative};
 
 mod kinds;
 

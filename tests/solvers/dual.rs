@@ -1,6 +1,6 @@
 //! Numbers with their derivatives, beside differences.
 
-use springfit::scalar::{Dual, Real, Scalar};
+use springfit_foundation::scalar::{Dual, Real, Scalar};
 
 #[test]
 fn derivatives_are_those_of_differences() {

@@ -1,7 +1,7 @@
 //! The 2-norm of symmetric matrices beside an eigensolver.
 
 use nalgebra::DMatrix;
-use springfit::fit::solvers::Extremes;
+use springfit_fit::fit::solvers::Extremes;
 
 fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);

@@ -1,12 +1,12 @@
 //! Double-double numbers in groups of a register, beside the same numbers one by one.
 
 use crate::shapes::{Random, distorted, materials, with_angles};
-use springfit::fit::solvers::{add_outers, factorize, row_products};
-use springfit::fit::{
+use springfit_element::springs::Springs;
+use springfit_fit::fit::solvers::{add_outers, factorize, row_products};
+use springfit_fit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, constants_of_kind, double_double_constants,
 };
-use springfit::scalar::{DoubleDouble, Real, Scalar};
-use springfit::springs::Springs;
+use springfit_foundation::scalar::{DoubleDouble, Real, Scalar};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A double-double number that has no groups: loops over it are those over single numbers.

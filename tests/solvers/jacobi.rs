@@ -1,6 +1,6 @@
 //! Jacobi's eigenvectors of symmetric matrices.
 
-use springfit::fit::solvers::eigenvectors;
+use springfit_fit::fit::solvers::eigenvectors;
 
 #[test]
 fn vectors_are_orthonormal_and_rebuild_the_matrix() {

@@ -1,7 +1,7 @@
 //! Normal equations, regular and singular.
 
-use springfit::fit::Rank;
-use springfit::fit::solvers::Normal;
+use springfit_fit::fit::Rank;
+use springfit_fit::fit::solvers::Normal;
 
 /// `k = (1, 2)` for a regular matrix, `(1, 1)` where only the sum of the two is determined.
 #[test]

@@ -1,8 +1,8 @@
 //! Fits in the 1-norm, the maximum norm and Huber's function reach their optimum, whatever the columns.
 
 use nalgebra::{DMatrix, DVector};
-use springfit::fit::Norm;
-use springfit::fit::solvers::solve_norm;
+use springfit_fit::fit::Norm;
+use springfit_fit::fit::solvers::solve_norm;
 
 const NORMS: [Norm; 5] = [Norm::Two, Norm::One, Norm::Max, Norm::Huber { share: 0.1 }, Norm::Huber { share: 1.0 }];
 

@@ -2,13 +2,13 @@
 
 use super::hostile::every;
 use super::readers::parsed_by_python;
-use springfit::element::Element;
-use springfit::fit::{ClosedForm, Weight};
-use springfit::generate::{LANGUAGES, Program, Recipe};
-use springfit::material::Plane;
-use springfit::report::Derivation;
-use springfit::springs::Springs;
-use springfit::text::printable;
+use springfit_element::element::Element;
+use springfit_element::material::Plane;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::{ClosedForm, Weight};
+use springfit_foundation::text::printable;
+use springfit_generate::generate::{LANGUAGES, Program, Recipe};
+use springfit_report::report::Derivation;
 use std::fs;
 use std::process::Command;
 use tempfile::TempDir;
@@ -82,7 +82,10 @@ fn generated_code_is_the_same_whatever_the_texts_of_the_element() {
 #[test]
 fn compilers_take_generated_code_with_any_title() {
     let folder = TempDir::new().unwrap();
-    let (c, python) = (springfit::generate::language("c").unwrap(), springfit::generate::language("python").unwrap());
+    let (c, python) = (
+        springfit_generate::generate::language("c").unwrap(),
+        springfit_generate::generate::language("python").unwrap(),
+    );
     let mut sources = Vec::new();
     for (i, text) in every().into_iter().enumerate() {
         let program = program(|element| {

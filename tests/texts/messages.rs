@@ -1,10 +1,10 @@
 //! Messages quote the beginning of long texts, and never what a terminal interprets.
 
-use springfit::element::Element;
-use springfit::error::Error;
-use springfit::material::{Energy, Material};
-use springfit::mesh::{Mesh, MeshSource};
-use springfit::study::{Scene, Setting};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_foundation::error::Error;
+use springfit_mesh::mesh::{Mesh, MeshSource};
+use springfit_studies::study::{Scene, Setting};
 use std::fs;
 use std::path::Path;
 use std::process::Command;

@@ -3,10 +3,10 @@
 use super::hostile::{every, others, printable_lines};
 use super::readers::parsed_by_python;
 use springfit::export::{Content, TARGETS};
-use springfit::mesh::vtk::{self, Array, Grid};
-use springfit::report::{NetworkFile, NetworkRecord, read_network};
-use springfit::study::{Scene, run};
-use springfit::text::printable;
+use springfit_foundation::text::printable;
+use springfit_mesh::mesh::vtk::{self, Array, Grid};
+use springfit_report::report::{NetworkFile, NetworkRecord, read_network};
+use springfit_studies::study::{Scene, run};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

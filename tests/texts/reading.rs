@@ -1,11 +1,11 @@
 //! A title, a name or a group that is no printable line is refused where it is read, with its line and its key.
 
 use super::hostile::{others, printable_lines};
-use springfit::element::Element;
-use springfit::error::{Error, Result};
-use springfit::material::{Energy, Material};
-use springfit::study::Scene;
-use springfit::text::toml;
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, Material};
+use springfit_foundation::error::{Error, Result};
+use springfit_foundation::text::toml;
+use springfit_studies::study::Scene;
 use std::path::Path;
 
 const ELEMENT: &str = include_str!("../../elements/tri3.toml");

@@ -3,7 +3,7 @@
 use super::hostile::printable_lines;
 use super::readers::parsed_by_python;
 use crate::kit::prints;
-use springfit::text::toml;
+use springfit_foundation::text::toml;
 use std::fs;
 use tempfile::TempDir;
 

@@ -2,11 +2,11 @@
 
 use super::hostile::{every, others};
 use super::readers::{of_markdown, parts, printed};
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Group};
-use springfit::report::{Cell, Column, Markup, Table};
-use springfit::study::{DraftMaterial, DraftSource, DraftUnit, draft};
-use springfit::text::{csv, not_a_line, of_csv, printable};
+use springfit_element::element::Element;
+use springfit_foundation::text::{csv, not_a_line, of_csv, printable};
+use springfit_mesh::mesh::{BoxMesh, Group};
+use springfit_report::report::{Cell, Column, Markup, Table};
+use springfit_studies::study::{DraftMaterial, DraftSource, DraftUnit, draft};
 use std::sync::Arc;
 
 fn table(text: &str) -> Table {

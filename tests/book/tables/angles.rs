@@ -2,13 +2,13 @@
 
 use super::{fit, markdown, outcome, root};
 use crate::shapes::{Random, distorted, text_with_angles, with_angles};
-use springfit::element::{Element, SHIPPED};
-use springfit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
-use springfit::material::Material;
-use springfit::solve::Standing;
-use springfit::springs::Springs;
-use springfit::stiffness::Geometry;
-use springfit::study::{FitEntry, FitOutcome, Scene, Setting};
+use springfit_bodies::solve::Standing;
+use springfit_element::element::{Element, SHIPPED};
+use springfit_element::material::Material;
+use springfit_element::springs::Springs;
+use springfit_element::stiffness::Geometry;
+use springfit_fit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
+use springfit_studies::study::{FitEntry, FitOutcome, Scene, Setting};
 
 const RATIOS: [f64; 4] = [0.0, 0.3, 0.45, 0.49];
 /// An odd number of shapes has one in the middle.

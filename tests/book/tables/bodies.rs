@@ -1,8 +1,8 @@
 //! Errors of displacement of all bodies at small deformation.
 
 use super::{all_groups, fit, markdown, outcome, scene};
-use springfit::solve::Standing;
-use springfit::study::{FitEntry, FitOutcome, NamedFit};
+use springfit_bodies::solve::Standing;
+use springfit_studies::study::{FitEntry, FitOutcome, NamedFit};
 
 const SCENES: [&str; 12] = [
     "cube_hex",

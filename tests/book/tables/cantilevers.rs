@@ -1,7 +1,7 @@
 //! A cantilever of four elements and five Poisson's ratios, against the limit of quadratic elements.
 
 use super::{markdown, signed};
-use springfit::study::{Scene, converge_to};
+use springfit_studies::study::{Scene, converge_to};
 use std::path::Path;
 
 const RATIOS: [f64; 5] = [0.0, 0.3, 0.45, 0.49, 0.4999];

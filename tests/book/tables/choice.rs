@@ -1,8 +1,8 @@
 //! Tables behind the choice of a fit.
 
 use super::{all_groups, fit, markdown, outcome, scene, signed};
-use springfit::solve::Standing;
-use springfit::study::{Convergence, FitEntry, converge};
+use springfit_bodies::solve::Standing;
+use springfit_studies::study::{Convergence, FitEntry, converge};
 use std::process::Command;
 
 /// By element: the geometric mean of e_rms over the loads of its scenes, from `examples/defaults.rs`.
@@ -83,7 +83,7 @@ pub fn indefinite() -> String {
         }
     }
     let outcome = outcome(&cylinder.with_fits(fits));
-    let row = |(i, fit): (usize, &springfit::study::FitOutcome)| {
+    let row = |(i, fit): (usize, &springfit_studies::study::FitOutcome)| {
         let errors = fit.loads.iter().map(|load| load.error.unwrap()).map(|e| format!("{:.2} / {:.2}", e.rms, e.max));
         let settings = [["0.316", "0.1"][i / 2], ["any k", "k ≥ 0"][i % 2]].map(String::from);
         let state = match fit.stability.as_ref().unwrap().standing {

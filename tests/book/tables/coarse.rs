@@ -2,7 +2,7 @@
 
 use super::markdown;
 use crate::book::markdown::page;
-use springfit::study::{FitOutcome, Outcome, Scene, run};
+use springfit_studies::study::{FitOutcome, Outcome, Scene, run};
 use std::path::Path;
 use std::process::Command;
 

@@ -3,7 +3,7 @@
 use super::markdown;
 use crate::branches::yield_errors;
 use crate::prony::creep_errors;
-use springfit::study::{Outcome, Scene, Setting, run};
+use springfit_studies::study::{Outcome, Scene, Setting, run};
 use std::path::Path;
 
 /// Errors of a bar that creeps, by what relaxes.

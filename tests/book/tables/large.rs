@@ -4,7 +4,7 @@ use super::{markdown, outcome, scene};
 
 fn of(name: &str) -> String {
     let outcome = outcome(&scene(name));
-    let row = |fit: &springfit::study::FitOutcome| {
+    let row = |fit: &springfit_studies::study::FitOutcome| {
         let errors = fit.loads.iter().map(|load| format!("{:.2}", load.error.unwrap().rms));
         let name = fit.fit.name.split(" +").next().unwrap().to_string();
         std::iter::once(format!("`{name}`")).chain(errors).collect()

@@ -1,8 +1,8 @@
 //! The closed forms of lattices, as the program derives them.
 
 use super::markdown;
-use springfit::report::lattice_text;
-use springfit::study::NamedLattice;
+use springfit_report::report::lattice_text;
+use springfit_studies::study::NamedLattice;
 
 /// Each lattice with nearest neighbours alone, and with all its shells.
 pub fn table() -> String {

@@ -25,7 +25,7 @@ mod whole;
 
 use super::markdown::{page, pages, root};
 use super::printed::compare;
-use springfit::study::{FitEntry, NamedFit, Outcome, Scene, run};
+use springfit_studies::study::{FitEntry, NamedFit, Outcome, Scene, run};
 use std::path::Path;
 
 /// How much a table may differ from a fresh run.

@@ -6,7 +6,7 @@ pub fn frequencies() -> String {
     let outcome = outcome(&scene("cube_hex_motion"));
     let motion = outcome.motion.unwrap();
     let body = outcome.frequencies[0].consistent.clone().unwrap();
-    let row = |(own, moved): (&springfit::study::FrequencyOutcome, &springfit::study::ModelMotion)| {
+    let row = |(own, moved): (&springfit_studies::study::FrequencyOutcome, &springfit_studies::study::ModelMotion)| {
         let error = moved.error().map_or("reference".into(), |[mean, max]| format!("{mean:.2} / {max:.2}"));
         let of_kind = |(masses, found, error): (&str, &Option<Vec<f64>>, String)| {
             let off = found.as_ref().unwrap().iter().zip(&body).map(|(own, body)| match own == body {

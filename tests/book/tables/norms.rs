@@ -1,8 +1,8 @@
 //! The norms on random shapes: `benches/norms.toml`, without times.
 
 use super::{markdown, root};
-use springfit::report::summarized;
-use springfit::study::{CaseRecord, Comparing};
+use springfit_report::report::summarized;
+use springfit_studies::study::{CaseRecord, Comparing};
 
 /// The median error of each fit on each element, with its interval.
 pub fn table() -> String {

@@ -2,7 +2,7 @@
 
 use super::markdown;
 use crate::book::markdown::root;
-use springfit::study::{Index, PaperRow, Scene, run_paper, write_experiments};
+use springfit_studies::study::{Index, PaperRow, Scene, run_paper, write_experiments};
 
 const FITS: [&str; 2] = ["spectral", "frobenius"];
 

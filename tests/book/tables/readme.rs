@@ -1,7 +1,7 @@
 //! How good it is: errors of five kinds of models of two bodies against quadratic elements.
 
 use super::{all_groups, fit, markdown, outcome, root};
-use springfit::study::{FitEntry, Outcome, Scene};
+use springfit_studies::study::{FitEntry, Outcome, Scene};
 
 /// A scene of the folder `scenes` with another Poisson's ratio, whose errors are against quadratic elements.
 fn judged(name: &str, poisson: &str) -> Scene {

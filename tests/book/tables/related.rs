@@ -1,12 +1,12 @@
 //! Methods of other authors on three bodies, and a search that removes springs.
 
 use super::{fit, markdown, outcome, scene};
-use springfit::fit::published::{Method, Ratio};
-use springfit::fit::{fit_element, plain};
-use springfit::material::Moduli;
-use springfit::solve::Standing;
-use springfit::springs::Springs;
-use springfit::study::{FitEntry, FitOutcome, NamedFit, Output};
+use springfit_bodies::solve::Standing;
+use springfit_element::material::Moduli;
+use springfit_element::springs::Springs;
+use springfit_fit::fit::published::{Method, Ratio};
+use springfit_fit::fit::{fit_element, plain};
+use springfit_studies::study::{FitEntry, FitOutcome, NamedFit, Output};
 
 const SCENES: [&str; 3] = ["tissue_tri", "square_quad", "cube_tet"];
 /// Poisson's ratio of the scenes.

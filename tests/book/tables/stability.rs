@@ -1,7 +1,7 @@
 //! What the sweep finds, by family.
 
 use super::markdown;
-use springfit::study::{Family, StabilityRow, Verdict, stability};
+use springfit_studies::study::{Family, StabilityRow, Verdict, stability};
 
 /// Three groups of objectives, of free constants.
 fn group(method: &str) -> Option<usize> {

@@ -2,12 +2,12 @@
 
 use super::{fit, markdown};
 use nalgebra::Matrix3;
-use springfit::element::Element;
-use springfit::material::{Energy, EnergyMap, Material};
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::model::{Elastic, Network};
-use springfit::stiffness::Hyperelastic;
-use springfit::study::{FitEntry, LargeBody, Reference, fit_without_errors};
+use springfit_bodies::model::{Elastic, Network};
+use springfit_element::element::Element;
+use springfit_element::material::{Energy, EnergyMap, Material};
+use springfit_element::stiffness::Hyperelastic;
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{FitEntry, LargeBody, Reference, fit_without_errors};
 use std::sync::Arc;
 use toml::Value;
 
@@ -26,7 +26,7 @@ fn zero(of: impl Fn(f64) -> f64, mut below: f64, mut above: f64) -> f64 {
 
 fn stress(energy: &Energy, f: Matrix3<f64>) -> Matrix3<f64> {
     let mut all = [f];
-    energy.stresses(springfit::material::State::Solid, &mut all).unwrap();
+    energy.stresses(springfit_element::material::State::Solid, &mut all).unwrap();
     all[0]
 }
 

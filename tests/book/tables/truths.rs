@@ -2,9 +2,9 @@
 
 use super::markdown;
 use crate::shapes::Random;
-use springfit::element::Element;
-use springfit::mesh::{BoxMesh, Mesh};
-use springfit::study::{Outcome, Scene, run};
+use springfit_element::element::Element;
+use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_studies::study::{Outcome, Scene, run};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;

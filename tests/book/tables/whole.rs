@@ -1,7 +1,7 @@
 //! Fits of the whole object, before and after.
 
 use super::{markdown, outcome, scene};
-use springfit::study::{FitOutcome, Outcome};
+use springfit_studies::study::{FitOutcome, Outcome};
 
 const SCENES: [&str; 4] = ["tissue_quad_whole", "cube_hex_whole", "cube_tet_whole", "cylinder_hole_tet_whole"];
 

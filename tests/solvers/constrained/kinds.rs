@@ -1,7 +1,7 @@
 //! Random problems with bounds, of kinds whose optima are unique or not.
 
 use crate::shapes::Random;
-use springfit::fit::solvers::Normal;
+use springfit_fit::fit::solvers::Normal;
 
 /// How the columns of the least-squares problem `|A k − r|²` are drawn.
 #[derive(Clone, Copy)]
