@@ -1,6 +1,6 @@
 //! Scenes: files that name a body, its material, its fits, supports and loads, and what is worked out from one of them.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on what users need of it in its module `study`.
+//! Users of springfit need not name this crate.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -51,7 +51,7 @@ pub use cost::{COMPARISONS, REFINEMENTS, entries};
 pub use extent::{extends, unit_note};
 pub use fits::{
     CellMethod, EngineEntry, EngineErrors, EngineLimit, EngineOutcome, EngineVibration, ExactOutcome, ExactRecipe,
-    ExactRecord, FamilyOutcome, Finer, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad,
+    ExactRecord, FamilyOutcome, FitEntry, FitFunctions, FitKind, FitLimit, Fitted, FittedKind, FittedLoad,
     FittedMasses, ForceRecipe, FoundModuli, FoundModulus, HeldOut, KindRecord, LoadSelection, MadeLoads, ModelError,
     ModelFrequencies, ModuliSearch, NamedFit, PublishedOutcome, PublishedRecord, Recipe, Reference, SampledOutcome,
     SampledRecipe, SampledRecord, ScaledLoad, SceneFacts, SetStates, ShapeOrigin, ShapesRecord, Sharing, Start,

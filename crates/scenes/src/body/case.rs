@@ -40,7 +40,7 @@ pub struct FinerSolution {
     pub standard: Standard,
     /// J; see [`Case::work`].
     pub work: Option<f64>,
-    /// Its own error, by the difference of two levels; `None` if there is one.
+    /// The estimate of its own error, from the difference of two levels; `None` with a single level.
     pub uncertainty: Option<DisplacementError>,
 }
 

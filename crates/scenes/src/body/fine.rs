@@ -1,61 +1,54 @@
 //! A finer mesh of the body of a scene, whose finite elements the networks are compared with.
 
 use super::answer::{check_residual, largest_residual};
-use super::case::{Case, FinerSolution};
-use super::cases::{applied_cases, held};
+use super::case::Case;
 use super::fine_laws::FineLaws;
-use super::finer::{answers, equations};
-use crate::analysis::metrics::resultant;
+use super::finer::equations;
 use crate::error::{Error, Result};
-use crate::fits::{Answers, Finer, RegionFactors};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
-use crate::mesh::{CellBlock, CellIndex, Embedding, Field, Mesh};
+use crate::mesh::{CellBlock, CellIndex, Embedding, Mesh};
 use crate::model::{Lumping, Moments, Support, lumped_masses};
 use crate::outcome::Standard;
 use crate::progress::{Event, Progress};
-use crate::scene::Scene;
 use crate::solve::{Equations, KnownEquations, StaticSolver};
-use crate::springs::norm;
 use crate::whole::{BodyRegions, MakeLoads, NodalLoad, StretchedLoads};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, OnceLock};
+
+/// Loads on the points of the mesh of the scene, and the displacements there.
+pub type Answers = Arc<Vec<(NodalLoad, Vec<f64>)>>;
+
+/// The factors on μ and λ of the cells that belong to the same groups.
+pub type RegionFactors = BTreeMap<Vec<String>, [f64; 2]>;
 
 /// A finer mesh of the same body.
 pub struct FineBody {
     /// The finer mesh.
-    mesh: Mesh,
+    pub(super) mesh: Mesh,
     /// Its points in the cells of the mesh of the scene, for forces.
-    embedding: Embedding,
+    pub(super) embedding: Embedding,
     /// The points of the mesh of the scene in its cells, for displacements.
-    sampling: Embedding,
+    pub(super) sampling: Embedding,
     /// The support of the `[[fix]]` entries.
-    support: Support,
-    material: MaterialMap,
+    pub(super) support: Support,
+    pub(super) material: MaterialMap,
     /// Its laws, at large deformation.
-    large: Option<FineLaws>,
-    standard: Standard,
-    solver: StaticSolver,
+    pub(super) large: Option<FineLaws>,
+    pub(super) standard: Standard,
+    pub(super) solver: StaticSolver,
     /// The loads of the scene on it.
-    cases: OnceLock<Vec<Case>>,
+    pub(super) cases: OnceLock<Vec<Case>>,
     /// The answers so far, by what was asked.
-    known: Mutex<HashMap<String, Answers>>,
+    pub(super) known: Mutex<HashMap<String, Answers>>,
     /// The loads that were made at large deformation so far, by what was asked.
-    stretched: Mutex<HashMap<String, Arc<StretchedLoads>>>,
+    pub(super) stretched: Mutex<HashMap<String, Arc<StretchedLoads>>>,
     /// The squares of the frequencies so far, for each support.
-    squares: Mutex<Vec<(Support, Vec<f64>)>>,
+    pub(super) squares: Mutex<Vec<(Support, Vec<f64>)>>,
     /// The equations under the supports of the last questions.
-    equations: KnownEquations,
+    pub(super) equations: KnownEquations,
 }
 
-/// The ratio of the contents of two meshes from which on they are of different bodies. Coarse meshes of curved bodies lack a sixth.
-const OTHER: f64 = 1.4;
-/// The relative difference of the contents from which on it is reported. Errors of displacements change by about that
-/// share.
-const ALIKE: f64 = 0.02;
-/// Total forces that differ by less than this share of the forces are one force. Tractions on the sides of two meshes
-/// of one curved body differ by more than rounding.
-const SAME_FORCE: f64 = 1e-3;
-/// Solutions for each frequency, about.
+/// About so many solutions are needed for each frequency.
 const VIBRATING: usize = 8;
 /// Loads that whole-object fits ask for under a support, about: those that they fit, those that choose ρ and those that none has seen.
 const ASKED: usize = 75;
@@ -63,138 +56,29 @@ const ASKED: usize = 75;
 const REFINED: f64 = 1e-9;
 
 impl FineBody {
-    /// The finer body of the scene, if it has one.
-    ///
-    /// # Errors
-    /// The mesh is wrong, is of another body, or lacks the parts that are held.
-    pub fn of(scene: &Scene, mesh: &Mesh, progress: &mut Progress) -> Result<Option<FineBody>> {
-        let Some(entry) = scene.reference().filter(|entry| !entry.is_of_cells()) else { return Ok(None) };
-        let at = |e: Error| e.placed(|e| scene.at("reference", e));
-        let mut fine = entry.build(scene.path(), mesh).map_err(at)?;
-        if fine.dimension != mesh.dimension {
-            let expected = format!("a mesh of dimension {}", mesh.dimension);
-            return Err(at(Error::expected("mesh", expected, fine.dimension)));
-        }
-        if let Some(note) = difference(mesh, &fine).map_err(at)? {
-            progress(Event::Note(&note));
-        }
-        let another =
-            |e: Error| at(Error::at("mesh", format!("is not one of the same body: {}", e.problem())).of_kind(e.kind()));
-        let embedding = Embedding::of(&fine.points, mesh).map_err(another)?;
-        let sampling = Embedding::of(&mesh.points, &fine).map_err(another)?;
-        // Bodies whose surfaces are not the same have points that no cell of the other has; conditions are then asked on the finer mesh.
-        if entry.mesh.is_some() && embedding.outside == 0 && sampling.outside == 0 {
-            fine.choose_as_on(mesh, &embedding).map_err(another)?;
-        }
-        let support = held(scene, &fine)?;
-        let material = scene.material_of(&fine)?;
-        let laws = scene.laws(&fine, &material)?;
-        let large = laws.map(|laws| FineLaws::of(&fine, laws, scene.newton()).map_err(at)).transpose()?;
-        Ok(Some(FineBody {
-            mesh: fine,
-            embedding,
-            sampling,
-            support,
-            material,
-            large,
-            standard: entry.standard(),
-            solver: scene.solver(),
-            cases: OnceLock::new(),
-            known: Mutex::default(),
-            stretched: Mutex::default(),
-            squares: Mutex::default(),
-            equations: KnownEquations::default(),
-        }))
-    }
-
-    /// Replaces the forces of the cases by those that do the same work as on the finer mesh, and gives each the displacements
-    /// of the finer body at the points of the mesh of the scene, unless it has measured ones of its own.
-    ///
-    /// # Errors
-    /// The finer body has no solution under a load.
-    pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
-        let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
-        let body = (&self.mesh, &self.material, self.solver);
-        let found = match &self.large {
-            Some(large) => large.answers(&self.mesh, &own, progress),
-            None => answers(body, &own, &self.equations, "finer body", progress),
-        };
-        let found = found.map_err(|e| e.placed(|e| scene.at("reference", e)))?;
-        let dimension = self.mesh.dimension;
-        for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
-            if let Some(note) = other_force(case, own, dimension) {
-                progress(Event::Note(&note));
-            }
-            // Pressures that follow are those of the sides of the mesh.
-            let follows = self.large.is_some() && case.pressed.is_some();
-            if !case.is_prescribed && !follows {
-                case.forces = self.embedding.restrict(&own.forces);
-            }
-            if !case.is_measured {
-                let displacements = self.sampling.interpolate(&fine.displacement).into_iter().map(Some).collect();
-                case.measured = Some(Field { displacements });
-                case.finer = Some(FinerSolution { standard: self.standard, work: fine.work, uncertainty: None });
-            }
-        }
-        self.cases.get_or_init(|| own);
-        Ok(())
-    }
-
     /// The equations under a support, for about `loads` loads.
     fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
         let moduli = self.material.moduli();
         self.equations.under(support, || equations(&self.mesh, &moduli, support, (self.solver, loads)))
     }
-}
 
-/// That the total force of a load on the finer mesh is another one than on the mesh of the scene.
-fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
-    let [own, other] = [case, fine].map(|case| resultant(&case.forces, dimension));
-    let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
-    let acting = case.forces.iter().map(|f| f.abs()).sum::<f64>();
-    (norm(&apart) > SAME_FORCE * acting).then(|| {
-        format!(
-            "the total force of {} is {:.4e} N on the finer mesh and {:.4e} N on the mesh; networks get that of the finer mesh",
-            case.name,
-            norm(&other),
-            norm(&own)
-        )
-    })
-}
-
-/// What differs between a mesh and a finer one of the same body.
-///
-/// # Errors
-/// It is too much: they are meshes of different bodies.
-fn difference(mesh: &Mesh, fine: &Mesh) -> Result<Option<String>> {
-    let content = |mesh: &Mesh| Moments::of_body(mesh, CellMap::Uniform(1.0), CellMap::Uniform(1.0)).mass;
-    let [own, other] = [content(mesh), content(fine)];
-    let unit = ["m", "m²", "m³"][mesh.cell_dimension() - 1];
-    // A body without content has a quotient that is infinite or NaN, and is refused as well.
-    if !((own / other).max(other / own) <= OTHER) {
-        let expected = format!("a mesh of the same body, of {own:.4e} {unit}");
-        return Err(Error::expected("mesh", expected, format!("one of {other:.4e} {unit}")));
-    }
-    let share = 100.0 * (other / own - 1.0);
-    if share.abs() > 100.0 * ALIKE {
-        return Ok(Some(format!(
-            "the finer mesh has {own:.4e} {unit} {share:+.1} %: errors of the networks have this difference"
-        )));
-    }
-    let [own, other] = [mesh, fine].map(Mesh::point_count);
-    Ok((other < own).then(|| format!("the finer mesh has fewer points than the mesh: {other} for {own}")))
-}
-
-impl Finer for FineBody {
-    fn mesh(&self) -> &Mesh {
+    /// The finer mesh.
+    pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    fn support(&self) -> &Support {
+    /// The support of the `[[fix]]` entries on it.
+    pub fn support(&self) -> &Support {
         &self.support
     }
 
-    fn answers(
+    /// The loads on the points of the mesh of the scene that do the same work as `loads` on the finer mesh, which holds
+    /// `support`; and the displacements of the finer body at those points. `name` says which loads and which support they are, so that
+    /// no load is solved twice.
+    ///
+    /// # Errors
+    /// The finer body has no solution.
+    pub fn answers(
         &self,
         name: String,
         support: &Support,
@@ -236,7 +120,12 @@ impl Finer for FineBody {
         Ok(answers)
     }
 
-    fn stretched(
+    /// The loads that stretch the finer body so far at large deformation, on the points of the mesh of the scene, and its displacements there.
+    /// `name` says which loads and which support they are, so that no load is followed twice.
+    ///
+    /// # Errors
+    /// The equations do not fit into memory.
+    pub fn stretched(
         &self,
         name: String,
         support: &Support,
@@ -261,7 +150,11 @@ impl Finer for FineBody {
         Ok(found)
     }
 
-    fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {
+    /// The squares ω² of the `count` lowest frequencies under a support of the finer mesh, rad²/s².
+    ///
+    /// # Errors
+    /// They are not found, or the material has no density.
+    pub fn vibrations(&self, support: &Support, count: usize) -> Result<Vec<f64>> {
         let known = || self.squares.lock().expect("nothing panics while it holds the frequencies");
         // The same count alone: the last of fewer modes are less accurate, and results would depend on what was asked
         // before.
@@ -276,7 +169,11 @@ impl Finer for FineBody {
         Ok(squares)
     }
 
-    fn moved(&self, loads: &[usize], factors: &RegionFactors, progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
+    /// The displacements of the finer body with other moduli, at the points of the mesh of the scene, under loads of the scene.
+    ///
+    /// # Errors
+    /// It has a region without factors, or no solution.
+    pub fn moved(&self, loads: &[usize], factors: &RegionFactors, progress: &mut Progress) -> Result<Vec<Vec<f64>>> {
         let regions = BodyRegions::of(&self.mesh, &self.material);
         let moduli = self.material.moduli();
         let of_cell = |block: usize, cell: usize| -> Result<Hooke> {
@@ -310,11 +207,16 @@ impl Finer for FineBody {
         Ok(found)
     }
 
-    fn seconds_per_step(&self, support: &Support) -> Result<f64> {
+    /// Seconds of a linear implicit step of the finer body: one solution with the equations under a support that are there.
+    ///
+    /// # Errors
+    /// There is no solution.
+    pub fn seconds_per_step(&self, support: &Support) -> Result<f64> {
         self.equations(support, 1)?.seconds_per_step()
     }
 
-    fn coarseness(&self, mesh: &Mesh) -> f64 {
+    /// How many times as large as its own the cells of another mesh are.
+    pub fn coarseness(&self, mesh: &Mesh) -> f64 {
         let kinds = |mesh: &Mesh| mesh.blocks.iter().map(|block| block.element.name.clone()).collect::<BTreeSet<_>>();
         let cells = |mesh: &Mesh| mesh.blocks.iter().map(|block| block.cells().len()).sum::<usize>();
         // Cells of different kinds have no sizes to compare; their points have distances.
@@ -326,7 +228,8 @@ impl Finer for FineBody {
         (fine as f64 / coarse as f64).powf(1.0 / mesh.cell_dimension() as f64)
     }
 
-    fn moments(&self) -> Moments {
+    /// The mass, centre and second moments of the finer body.
+    pub fn moments(&self) -> Moments {
         let density = self.material.densities();
         Moments::of_body(&self.mesh, density, self.material.thicknesses())
     }

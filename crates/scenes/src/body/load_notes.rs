@@ -41,7 +41,7 @@ fn swallowed(case: &Case, load: &LoadCase, mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// That displacements were measured which the support does not let be.
+/// The note that a measured displacement contradicts the support.
 fn contradicted(case: &Case, mesh: &Mesh) -> Option<String> {
     let field = case.measured.as_ref().filter(|_| case.is_measured)?;
     let largest = field.displacements.iter().flatten().fold(0.0, |largest: f64, u| largest.max(u.abs()));

@@ -14,13 +14,14 @@ mod large;
 mod linear;
 mod load_notes;
 mod part_notes;
+mod reference;
 mod solution;
 mod truth;
 
 pub use case::Case;
 pub use cases::{applied_cases, held, load_cases};
 pub use coarse_sheet::judge_sheet;
-pub use fine::FineBody;
+pub use fine::{Answers, FineBody};
 pub use finer::FinerAnswer;
 pub use gauge::Gauged;
 pub use large::LargeBody;

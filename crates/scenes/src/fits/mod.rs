@@ -32,7 +32,7 @@ pub use sampled::{
 pub use schema::fit_schema;
 pub use stiffness::{StiffnessOutcome, StiffnessRecord, TensionOutcome};
 pub use whole::{
-    Answers, Finer, FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, MadeLoads, ModelError,
-    ModelFrequencies, ModuliSearch, RESERVED, RegionFactors, ScaledLoad, Sharing, Start, SupportFrequencies,
-    SupportPart, ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, held_conditions,
+    FittedLoad, FittedMasses, FoundModuli, FoundModulus, HeldOut, LoadSelection, MadeLoads, ModelError,
+    ModelFrequencies, ModuliSearch, RESERVED, ScaledLoad, Sharing, Start, SupportFrequencies, SupportPart,
+    ValidationRecipe, WholeBody, WholeOutcome, WholeRecipe, WholeRecord, WorseLoad, held_conditions,
 };

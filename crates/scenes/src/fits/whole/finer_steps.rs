@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::finer::Finer;
+use crate::body::FineBody;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::whole::{Determination, Object, Target};
@@ -21,7 +21,7 @@ const HALVINGS: usize = 6;
 
 /// The measured loads of a fit with a finer body.
 pub(super) struct FinerSteps<'a> {
-    pub fine: &'a dyn Finer,
+    pub fine: &'a FineBody,
     pub object: &'a Object<'a>,
     /// The loads with the measured displacements.
     pub measured: &'a [Target],

@@ -7,7 +7,6 @@ mod corrected;
 mod engine;
 mod entry;
 mod evidence;
-mod finer;
 mod finer_steps;
 mod fitting;
 mod found_moduli;
@@ -27,7 +26,6 @@ mod targets;
 
 pub use body::WholeBody;
 pub use entry::{WholeEntry, starts};
-pub use finer::{Answers, Finer, RegionFactors};
 pub use held::held_conditions;
 pub use made_loads::{MadeLoads, ScaledLoad};
 pub use moduli::{FoundModuli, FoundModulus, ModuliSearch};

@@ -1,11 +1,11 @@
 //! The loads of a whole-object fit, and the displacements of the body under them.
 
 use super::body::WholeBody;
-use super::finer::Answers;
 use super::held::{Held, held_by};
 use super::made_loads::MadeLoads;
 use super::outcome::SupportPart;
 use super::recipe::{LoadSelection, ValidationRecipe, WholeRecipe};
+use crate::body::Answers;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::model::Support;

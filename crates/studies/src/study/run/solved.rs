@@ -4,9 +4,9 @@ use super::posed::Posed;
 use crate::error::Result;
 use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
 use springfit_scenes::{
-    Controls, Costed, Event, FineBody, Finer, FitLimit, FitOutcome, LargeBody, LinearBody, ModelTimes, NamedFit,
-    PointMasses, Progress, Reference, Statics, Task, WholeBody, fit_mesh, fit_without_errors, model_times,
-    on_one_thread, point_masses, seconds_of_body, seconds_of_network, time_fits,
+    Controls, Costed, Event, FineBody, FitLimit, FitOutcome, LargeBody, LinearBody, ModelTimes, NamedFit, PointMasses,
+    Progress, Reference, Statics, Task, WholeBody, fit_mesh, fit_without_errors, model_times, on_one_thread,
+    point_masses, seconds_of_body, seconds_of_network, time_fits,
 };
 
 /// The density that steps are timed with where the scene gives none, kg/m³.
@@ -180,7 +180,7 @@ impl Solved {
         };
         whole.newton = self.large.as_ref().map(|_| posed.scene.newton());
         whole.laws = self.large.as_ref().map(|large| &large.laws);
-        whole.fine = self.fine.as_ref().map(|fine| fine as &dyn Finer);
+        whole.fine = self.fine.as_ref();
         whole.masses = self.masses.as_ref().map(|masses| &masses.values[..]);
         whole.solver = posed.scene.solver();
         whole.know(self.linear.iter().flat_map(|linear| linear.held(&posed.cases)));
