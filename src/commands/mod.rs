@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod check;
+mod choice;
 mod compare;
 mod completions;
 mod converge;

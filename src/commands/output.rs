@@ -1,5 +1,6 @@
 //! How results are printed.
 
+use super::choice::choice;
 use crate::terminal::{Terminal, json_text};
 use clap::Args;
 use serde::Serialize;
@@ -21,7 +22,7 @@ pub struct OutputOptions {
     #[arg(long)]
     pub json: bool,
     /// Typeset the tables; LaTeX has the rules of booktabs. Names of files go to standard error
-    #[arg(long, value_enum, conflicts_with = "json")]
+    #[arg(long, value_parser = choice::<Markup>(), conflicts_with = "json")]
     table: Option<Markup>,
 }
 

@@ -1,5 +1,6 @@
 //! `springfit plot`.
 
+use super::choice::choice;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit_foundation::error::{Error, Result};
@@ -15,22 +16,22 @@ pub struct Plot {
     /// The folder of a run with its report.json, or that of a comparison, a sweep or a convergence study
     run: PathBuf,
     /// Draw this figure
-    #[arg(long, value_enum, conflicts_with = "table", required_unless_present = "table")]
+    #[arg(long, value_parser = choice::<Figure>(), conflicts_with = "table", required_unless_present = "table")]
     figure: Option<Figure>,
     /// Typeset the tables of the run
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Markup>())]
     table: Option<Markup>,
-    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: overview, fits, errors, materials, times, costs, whole, unseen, frequencies, motion; of a comparison: comparison, objects, objects-frobenius, objects-e_rms, pairs, ranks
+    /// One load or fit of the figure, one element or scene of a comparison, a key of a sweep, or one table: overview, fits, errors, materials, times, costs, whole, unseen, frequencies, motion, damping, dynamic_moduli; of a comparison: comparison, objects, objects-frobenius, objects-e_rms, pairs, ranks
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
     /// The load of the figure deformation, whose fit is --of [default: the first]
     #[arg(long, value_name = "NAME", conflicts_with = "table")]
     load: Option<String>,
     /// What the figure work-precision has across; all but fit need a run that measured costs [default: fit]
-    #[arg(long, value_enum, conflicts_with = "table")]
+    #[arg(long, value_parser = choice::<Cost>(), conflicts_with = "table")]
     cost: Option<Cost>,
     /// Columns of the page that the figure is as wide as: 85 or 178 mm
-    #[arg(long, value_enum, default_value_t)]
+    #[arg(long, value_parser = choice::<Columns>(), default_value = "one")]
     columns: Columns,
     /// Where it goes: of a figure .svg, or .pdf or .png by the program springfit-pictures [default: standard output, as SVG]
     #[arg(short, long, help_heading = "Output")]

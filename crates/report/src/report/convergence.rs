@@ -2,7 +2,7 @@
 
 use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
 use super::summary::size;
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
@@ -15,16 +15,16 @@ use std::path::PathBuf;
 fn columns() -> Vec<Column> {
     vec![
         Column::words("model"),
-        Column::words("level").priority(First),
+        Column::words("level").priority(Always),
         Column::numbers("h").unit("mm"),
         Column::numbers("cells"),
-        Column::numbers("unknowns").priority(First),
+        Column::numbers("unknowns").priority(Always),
         Column::numbers("compliance").unit("J"),
         Column::numbers("of finite\nelements").unit("%"),
-        Column::numbers("of the\ntruth").unit("%").priority(First),
-        Column::numbers("rate").priority(First),
-        Column::numbers("displacements\ne_rms").unit("%").priority(First),
-        Column::words("network").priority(First),
+        Column::numbers("of the\ntruth").unit("%").priority(Always),
+        Column::numbers("rate").priority(Always),
+        Column::numbers("displacements\ne_rms").unit("%").priority(Always),
+        Column::words("network").priority(Always),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! What relaxes and is damped: measured damping with what was fitted to it, and moduli over frequency.
 
 use super::table::Digits::{Signed, Significant};
-use super::table::Priority::{First, Third};
+use super::table::Priority::{Always, InFiles};
 use super::table::{Cell, Column, Table};
 use crate::study::{ComplexModulus, DynamicModuli, DynamicModuliOutcome, MeasuredDamping};
 
@@ -9,12 +9,12 @@ use crate::study::{ComplexModulus, DynamicModuli, DynamicModuliOutcome, Measured
 pub(super) fn damping(all: &[MeasuredDamping]) -> Table {
     let columns = vec![
         Column::words("measured"),
-        Column::words("fitted").priority(First),
-        Column::numbers("from").unit("Hz").group("band").priority(First),
-        Column::numbers("to").unit("Hz").group("band").priority(First),
-        Column::numbers("measured").group("damping ratio").priority(First),
-        Column::numbers("largest").group("off by").priority(First),
-        Column::numbers("rms").group("off by").priority(First),
+        Column::words("fitted").priority(Always),
+        Column::numbers("from").unit("Hz").group("band").priority(Always),
+        Column::numbers("to").unit("Hz").group("band").priority(Always),
+        Column::numbers("measured").group("damping ratio").priority(Always),
+        Column::numbers("largest").group("off by").priority(Always),
+        Column::numbers("rms").group("off by").priority(Always),
     ];
     let row = |measured: &MeasuredDamping| {
         let fitted = match measured.rayleigh {
@@ -60,10 +60,10 @@ pub(super) fn dynamic_moduli(outcome: Option<&DynamicModuliOutcome>) -> Table {
     if has_bulk {
         kinds.push(("K", |moduli| moduli.bulk.as_ref()));
     }
-    let mut columns = vec![Column::words("model"), Column::numbers("f").unit("Hz").priority(First)];
+    let mut columns = vec![Column::words("model"), Column::numbers("f").unit("Hz").priority(Always)];
     for (place, (name, _)) in kinds.iter().enumerate() {
         // The terminal has the modulus of tension.
-        let priority = if place == 0 { First } else { Third };
+        let priority = if place == 0 { Always } else { InFiles };
         for (part, title) in [("storage", "'"), ("loss", "''")] {
             let group = format!("{name}{title} ({part})");
             let titled = |title: &str, unit| Column::numbers(title).unit(unit).group(&*group).priority(priority);

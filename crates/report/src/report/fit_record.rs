@@ -47,9 +47,9 @@ pub struct FitRecord {
     /// `model_times` has what the network costs on one thread, repeated; it is null without `time = true` in `[output]`.
     #[serde(default)]
     pub model_times: Option<ModelTimes>,
-    /// The elements have these errors `‖R − K‖/‖R‖` in the Frobenius norm; they are null for whole-object fits.
+    /// The elements have these errors `‖R − K‖/‖R‖` in the Frobenius norm; they are null where springs belong to no single element.
     pub relative_frobenius: Spread,
-    /// The elements have these errors `‖R − K‖/‖R‖` in the induced 2-norm; they are null for whole-object fits.
+    /// The elements have these errors `‖R − K‖/‖R‖` in the induced 2-norm; they are null where springs belong to no single element.
     pub relative_spectral: Spread,
     /// This number of springs has a constant below zero.
     pub negative_springs: usize,

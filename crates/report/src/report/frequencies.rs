@@ -2,7 +2,7 @@
 
 use super::note::{Note, Weight};
 use super::table::Digits::{Signed, Significant};
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Cell, Column, Table};
 use crate::study::{BODY, FrequencyOutcome, Outcome, QUADRATIC, Standard};
 
@@ -27,10 +27,10 @@ pub(super) fn frequencies(models: &[FrequencyOutcome]) -> Table {
     let of = |model: &str| rows.iter().position(|(name, _, found)| *name == model && !found.is_empty());
     let reference = of(QUADRATIC).or_else(|| of(BODY));
     let pair = |i: usize| {
-        let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string()).priority(First);
+        let column = |title, unit| Column::numbers(title).unit(unit).group(i.to_string()).priority(Always);
         [column("f", "Hz"), column("off", "%")]
     };
-    let columns = [Column::words("model"), Column::words("masses").priority(First)]
+    let columns = [Column::words("model"), Column::words("masses").priority(Always)]
         .into_iter()
         .chain((1..=most).flat_map(pair))
         .collect();

@@ -2,7 +2,7 @@
 
 use super::json::Report;
 use super::table::Digits::Fixed;
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Cell, Column, Table};
 
 /// One row for each model: the finite elements of the mesh, its exact networks, the network at the start and the fitted one; and a group of columns
@@ -19,11 +19,11 @@ pub(super) fn held_out(report: &Report) -> Table {
             loads.push(held_out.loads);
         }
     }
-    let mut columns = vec![Column::words("model").priority(First), Column::words("fit").priority(First)];
+    let mut columns = vec![Column::words("model").priority(Always), Column::words("fit").priority(Always)];
     for place in &places {
         let group = format!("held at {place}");
         columns.extend(
-            ["median", "largest"].map(|title| Column::numbers(title).unit("%").group(group.as_str()).priority(First)),
+            ["median", "largest"].map(|title| Column::numbers(title).unit("%").group(group.as_str()).priority(Always)),
         );
     }
     let mut rows: Vec<Vec<Cell>> = Vec::new();

@@ -1,6 +1,6 @@
 //! What is measured of a network, as tables and as text.
 
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Cell, Column, Digits, Table};
 use crate::study::{Elasticity, MeasuredNetwork, strain_names};
 use crate::text::{printable, printable_lines, rounded};
@@ -22,12 +22,12 @@ fn materials(measured: &MeasuredNetwork) -> Table {
     let mut columns = vec![
         Column::words("material"),
         Column::numbers("volume"),
-        Column::numbers("E").unit(unit).priority(First),
-        Column::numbers("ν").priority(First),
+        Column::numbers("E").unit(unit).priority(Always),
+        Column::numbers("ν").priority(Always),
     ];
-    columns.extend(axes.iter().map(|axis| Column::numbers(format!("E along {axis}")).unit(unit).priority(First)));
-    columns.push(Column::numbers("Zener").priority(First));
-    columns.push(Column::numbers("anisotropy").unit("%").priority(First));
+    columns.extend(axes.iter().map(|axis| Column::numbers(format!("E along {axis}")).unit(unit).priority(Always)));
+    columns.push(Column::numbers("Zener").priority(Always));
+    columns.push(Column::numbers("anisotropy").unit("%").priority(Always));
     let row = |name: String, volume: f64, found: &Elasticity| {
         let number = |value: Option<f64>| Cell::number(value, Digits::Significant(DIGITS));
         let mut cells = vec![Cell::from(name), number(Some(volume)), number(found.young), number(found.poisson)];

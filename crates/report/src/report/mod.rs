@@ -4,6 +4,7 @@ mod agreement;
 mod calibration;
 mod catalogue;
 mod check;
+mod choice;
 mod compare;
 mod comparison;
 mod compliances;
@@ -60,6 +61,7 @@ mod verdict;
 pub use calibration::{CALIBRATION_FILES, calibration_tables, calibration_text, write_calibration};
 pub use catalogue::{elements_table, materials_table};
 pub use check::{check_table, check_text};
+pub use choice::Choice;
 pub use compare::{
     CASES, COMPARE_FILES, Summary, compare_tables, compare_text, comparison_values, summarized, write_comparison,
 };

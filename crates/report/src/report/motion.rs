@@ -5,7 +5,7 @@ use super::motion_record::{MotionOptionsRecord, MotionRecord};
 use super::note::{Note, Weight};
 use super::quality::counted;
 use super::table::Digits::{Fixed, Significant};
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Cell, Column, Table, csv};
 use crate::dynamics::Integrator;
 use crate::scalar::norm;
@@ -16,18 +16,18 @@ pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRec
     let energy = |title| Column::numbers(title).unit("J");
     let columns = vec![
         Column::words("model"),
-        Column::words("ended").priority(First),
-        Column::numbers("steps").priority(First),
-        Column::numbers("speed").unit("steps/s").priority(First),
+        Column::words("ended").priority(Always),
+        Column::numbers("steps").priority(Always),
+        Column::numbers("speed").unit("steps/s").priority(Always),
         energy("kinetic").group("at the end"),
         energy("work").group("at the end"),
         energy("dissipated").group("at the end"),
         energy("start").group("elastic energy"),
         energy("end").group("elastic energy"),
-        Column::numbers("drift of\nthe energy").unit("%").priority(First),
+        Column::numbers("drift of\nthe energy").unit("%").priority(Always),
         Column::numbers("momentum\nat the end").unit("kg m/s"),
-        Column::numbers("mean").unit("%").group("e_rms").priority(First),
-        Column::numbers("max").unit("%").group("e_rms").priority(First),
+        Column::numbers("mean").unit("%").group("e_rms").priority(Always),
+        Column::numbers("max").unit("%").group("e_rms").priority(Always),
     ];
     let row = |model: &MotionRecord| {
         // The state at the start says nothing of the end.

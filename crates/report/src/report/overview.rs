@@ -3,13 +3,13 @@
 use super::fit_record::FitRecord;
 use super::json::Report;
 use super::table::Digits::{Fixed, Significant};
-use super::table::Priority::First;
+use super::table::Priority::Always;
 use super::table::{Cell, Column, Table};
 use super::verdict::{LOCKS, TOO_STIFF};
 use crate::study::statistics::median;
 use crate::study::{BODY, LoadOutcome, Measured, Times};
 
-/// More loads are summed up.
+/// With more loads than this, the median and the worst of them are shown.
 const MOST_LOADS: usize = 5;
 
 /// A column, and its cell for a fit and for the finite elements.
@@ -21,7 +21,7 @@ struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     fn new(column: Column, of_fit: impl Fn(&FitRecord) -> Cell + 'a) -> Shown<'a> {
-        Shown { column: column.priority(First), of_fit: Box::new(of_fit), of_body: Cell::from("") }
+        Shown { column: column.priority(Always), of_fit: Box::new(of_fit), of_body: Cell::from("") }
     }
 
     fn body(self, of_body: Cell) -> Shown<'a> {

@@ -7,43 +7,45 @@ use super::figure::{
 };
 use crate::error::{Error, Result};
 use crate::file::files_in;
+use crate::report::choice::{Choice, choices};
 use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
 use crate::report::table::Table;
 use crate::study::{BODY, DynamicModuli};
-use clap::ValueEnum;
 
-/// What a figure shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Figure {
-    /// The error of the displacements against the time to fit.
-    WorkPrecision,
-    /// How the constants of the networks are distributed.
-    Constants,
-    /// The distance from the finite elements over time.
-    Motion,
-    /// The body under a load: at rest, with finite elements and with springs; from a run with `vtu = true` in `[output]`.
-    Deformation,
-    /// Young's modulus of each network by direction.
-    Moduli,
-    /// Storage and loss moduli of each model over frequency; from a run with `dynamic_moduli` in `[output]`.
-    DynamicModuli,
-    /// Errors against the size of the cells, from the folder of springfit converge.
-    Convergence,
-    /// The distribution of the errors, from the folder of springfit compare.
-    Ecdf,
-    /// The error over Poisson's ratio, from the folder of springfit compare.
-    Poisson,
-    /// The error over the distortion of shapes, from the folder of springfit compare.
-    Distortion,
-    /// The error over the aspect ratio of shapes, from the folder of springfit compare.
-    Aspect,
-    /// The error in the 2-norm against that in the Frobenius norm, from the folder of springfit compare.
-    Norms,
-    /// The error over the number of sampled shapes, from the folder of springfit compare.
-    Samples,
-    /// The error over a key that was varied, from the folder of springfit sweep; --of names the key.
-    Sweep,
+choices! {
+    /// What a figure shows.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Figure {
+        /// The error of the displacements against the time to fit.
+        WorkPrecision = "work-precision",
+        /// How the constants of the networks are distributed.
+        Constants = "constants",
+        /// The distance from the finite elements over time.
+        Motion = "motion",
+        /// The body under a load: at rest, with finite elements and with springs; from a run with `vtu = true` in `[output]`.
+        Deformation = "deformation",
+        /// Young's modulus of each network by direction.
+        Moduli = "moduli",
+        /// Storage and loss moduli of each model over frequency; from a run with `dynamic_moduli` in `[output]`.
+        DynamicModuli = "dynamic-moduli",
+        /// Errors against the size of the cells, from the folder of springfit converge.
+        Convergence = "convergence",
+        /// The distribution of the errors, from the folder of springfit compare.
+        Ecdf = "ecdf",
+        /// The error over Poisson's ratio, from the folder of springfit compare.
+        Poisson = "poisson",
+        /// The error over the distortion of shapes, from the folder of springfit compare.
+        Distortion = "distortion",
+        /// The error over the aspect ratio of shapes, from the folder of springfit compare.
+        Aspect = "aspect",
+        /// The error in the 2-norm against that in the Frobenius norm, from the folder of springfit compare.
+        Norms = "norms",
+        /// The error over the number of sampled shapes, from the folder of springfit compare.
+        Samples = "samples",
+        /// The error over a key that was varied, from the folder of springfit sweep; --of names the key.
+        Sweep = "sweep",
+    }
 }
 
 /// A figure that is yet to be drawn.
@@ -67,7 +69,7 @@ impl Figure {
     /// The run does not have it, or a file cannot be read.
     pub fn picture(self, run: &RunFolder, of: Option<&str>, load: Option<&str>, cost: Option<Cost>) -> Result<Picture> {
         if let (Some(cost), false) = (cost, self == Figure::WorkPrecision) {
-            let found = cost.to_possible_value().map_or(String::new(), |value| value.get_name().into());
+            let found = cost.name();
             return Err(Error::expected("--cost", "the figure work-precision", found));
         }
         if let (Some(load), false) = (load, self == Figure::Deformation) {

@@ -8,7 +8,7 @@ use super::json::Report;
 use super::motion::motions;
 use super::overview::{loads, measured, overview, standard};
 use super::table::Digits::{Fixed, Signed, Significant};
-use super::table::Priority::Third;
+use super::table::Priority::InFiles;
 use super::table::{Cell, Column, Table};
 use crate::study::{BODY, FitTimes, LoadOutcome, ModelTimes, Reading, SampledOutcome, Times};
 
@@ -44,7 +44,7 @@ fn fits(report: &Report) -> Table {
         Column::numbers("mean").group("2-norm"),
         Column::numbers("max").group("2-norm"),
         Column::numbers(passes).unit("µs/element"),
-        Column::numbers("all").unit("ms").priority(Third),
+        Column::numbers("all").unit("ms").priority(InFiles),
     ];
     let is_sampled = report.fits.iter().any(|fit| fit.sampled.is_some());
     if is_sampled {
@@ -84,7 +84,7 @@ fn errors(report: &Report) -> Table {
         let standard = standard(report, &load.name);
         let column = |title| Column::numbers(title).unit("%").group(format!("{}{standard}", load.name));
         columns.extend(["e_rms", "e_max", "e_tip", "e_energy"].map(column));
-        columns.push(Column::numbers("moves").unit("m").group(format!("{}{standard}", load.name)).priority(Third));
+        columns.push(Column::numbers("moves").unit("m").group(format!("{}{standard}", load.name)).priority(InFiles));
         if is_read(i) {
             let gauge = |title| Column::numbers(title).group(format!("{}, gauge", load.name));
             columns.extend([gauge("E").unit("Pa"), gauge("ν")]);
@@ -135,17 +135,17 @@ fn materials(report: &Report) -> Table {
         Column::numbers("E").unit("Pa"),
         Column::numbers("ν"),
         Column::numbers("error of C").unit("%"),
-        Column::numbers("of the mean").unit("%").priority(Third),
-        Column::numbers("of the worst").unit("%").priority(Third),
+        Column::numbers("of the mean").unit("%").priority(InFiles),
+        Column::numbers("of the worst").unit("%").priority(InFiles),
     ];
     let is_whole = report.fits.iter().any(|fit| fit.effective_young.is_some());
     if is_whole {
-        let whole = |title| Column::numbers(title).group("whole").priority(Third);
+        let whole = |title| Column::numbers(title).group("whole").priority(InFiles);
         columns.extend([whole("E").unit("Pa"), whole("ν"), whole("Zener")]);
     }
     // The modulus of an anisotropic material depends on the direction, and its mean says little.
     let axes: &[&str] = if is_anisotropic(report) { &["x", "y", "z"][..report.extent.len()] } else { &[] };
-    columns.extend(axes.iter().map(|axis| Column::numbers(*axis).unit("Pa").group("E along").priority(Third)));
+    columns.extend(axes.iter().map(|axis| Column::numbers(*axis).unit("Pa").group("E along").priority(InFiles)));
     let row = |fit: &FitRecord| {
         let m = &fit.as_material;
         let distances = [m.distance, m.mean_distance, m.largest_distance];
@@ -220,7 +220,7 @@ fn times(report: &Report) -> Table {
         Column::numbers("iterations"),
         Column::numbers("residual"),
     ];
-    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
+    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(InFiles)));
     let row = |fit: &FitRecord, load: &LoadOutcome| {
         let solver = load.solved_lem.as_ref();
         let known = |value: Option<usize>| Cell::number(value.map(|value| value as f64), Fixed(0));
@@ -254,7 +254,7 @@ fn costs(report: &Report) -> Table {
     columns.extend(pair("implicit step", "ms"));
     columns.extend(pair("simulated second", "s"));
     let third = [("assembly", "ms"), ("matrix errors", "ms"), ("moduli", "ms"), ("longest explicit step", "µs")];
-    columns.extend(third.map(|(title, unit)| alone(title, unit).priority(Third)));
+    columns.extend(third.map(|(title, unit)| alone(title, unit).priority(InFiles)));
     let both = |times: Option<&Times>, factor: f64| {
         [times.map(|times| times.least), times.map(|times| times.median)]
             .map(|seconds| Cell::number(seconds.map(|seconds| factor * seconds), Significant(3)))
@@ -324,7 +324,7 @@ fn whole(report: &Report) -> Table {
         Column::numbers("error before").unit("%"),
         Column::numbers("error after").unit("%"),
     ];
-    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(Third)));
+    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(InFiles)));
     let mut rows = Vec::new();
     for fit in &report.fits {
         let Some(whole) = &fit.whole else { continue };

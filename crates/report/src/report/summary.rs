@@ -106,8 +106,8 @@ pub(super) fn size(extent: &[f64]) -> String {
     format!("{} m", extent.iter().map(along).collect::<Vec<_>>().join(" x "))
 }
 
-/// The tables of a run. Where a page has an overview alone, see [`set_page`](super::set_page), it is one row for each fit; then, where they were
-/// asked for, natural frequencies and motions, one row for each model.
+/// The tables of a run. Where a page has an overview alone, see [`set_page`](super::set_page), it is one row for each fit; then come the tables of
+/// what else was asked for, such as natural frequencies and motions.
 pub fn tables(outcome: &Outcome) -> String {
     let mut tables = Table::all(&Report::of(outcome));
     let mut sentences: Vec<String> =

@@ -3,7 +3,7 @@
 use super::pairs::{MERITS, Pair};
 use super::summary::{CaseSummary, MethodSummary, Object, Summary, Told};
 use crate::report::table::Digits::{self, Fixed, Significant};
-use crate::report::table::Priority::First;
+use crate::report::table::Priority::Always;
 use crate::report::table::{Cell, Column, Table};
 use crate::study::statistics::Verdict;
 use crate::text::printable;
@@ -186,25 +186,25 @@ fn cases(summary: &Summary) -> Table {
     let has_gap = methods().any(|m| m.values.contains_key("gap"));
     let is_copied = methods().any(|m| m.copied > 0);
     let is_refused = methods().any(|m| m.refused.is_some()) || summary.cases.iter().any(|case| case.error.is_some());
-    let mut columns: Vec<Column> = keys.iter().map(|key| Column::words(*key).priority(First)).collect();
-    columns.extend([Column::words("fit").priority(First), Column::words("solver")]);
+    let mut columns: Vec<Column> = keys.iter().map(|key| Column::words(*key).priority(Always)).collect();
+    columns.extend([Column::words("fit").priority(Always), Column::words("solver")]);
     for (_, heading, unit, _) in &times {
         let column = |title| Column::numbers(title).unit(unit).group(*heading);
-        columns.extend([column("median").priority(First), column("least")]);
+        columns.extend([column("median").priority(Always), column("least")]);
     }
     for told in &told {
         let column = |title| Column::numbers(title).unit(told.unit).group(told.heading);
-        columns.push(column("median").priority(First));
+        columns.push(column("median").priority(Always));
         if has_interval(told.quantity) {
-            columns.extend(["from", "to"].map(|title| column(title).priority(First)));
+            columns.extend(["from", "to"].map(|title| column(title).priority(Always)));
         }
         columns.extend([column("mean"), column("max")]);
     }
     columns.extend(has_gap.then(|| Column::numbers("gap max")));
-    columns.extend(has_negative.then(|| Column::numbers("k < 0").unit("%").priority(First)));
+    columns.extend(has_negative.then(|| Column::numbers("k < 0").unit("%").priority(Always)));
     columns.extend(figures.iter().map(|(_, heading, unit, ..)| Column::numbers(*heading).unit(unit)));
     columns.extend(is_copied.then(|| Column::numbers("copied")));
-    columns.extend(is_refused.then(|| Column::sentences("why not").priority(First)));
+    columns.extend(is_refused.then(|| Column::sentences("why not").priority(Always)));
     let mut rows = Vec::new();
     for case in &summary.cases {
         let best = Best::of(case);
@@ -323,16 +323,16 @@ pub(super) fn plain(value: &Value) -> String {
 fn pairs(pairs: &[Pair]) -> Table {
     let columns = vec![
         Column::words("quantity"),
-        Column::words("first").priority(First),
-        Column::words("second").priority(First),
+        Column::words("first").priority(Always),
+        Column::words("second").priority(Always),
         Column::numbers("pairs"),
         Column::numbers("first wins"),
         Column::numbers("second wins"),
-        Column::numbers("median").group("first / second").priority(First),
+        Column::numbers("median").group("first / second").priority(Always),
         Column::numbers("from").group("first / second"),
         Column::numbers("to").group("first / second"),
-        Column::numbers("p").priority(First),
-        Column::words("better").priority(First),
+        Column::numbers("p").priority(Always),
+        Column::words("better").priority(Always),
     ];
     let row = |pair: &Pair| {
         let number = |value: f64| Cell::number(Some(value), Significant(4));

@@ -2,29 +2,30 @@
 
 use super::axis::Axis;
 use super::chart::{Chart, Series, Shape};
+use crate::report::choice::choices;
 use crate::study::ModelTimes;
-use clap::ValueEnum;
 
 /// Decades below the largest error within which errors are shown: an exact network has errors of rounding.
 const DECADES: f64 = 4.0;
 /// Smaller errors have a mark that is so many times below the least that is shown.
 pub(super) const BELOW: f64 = 3.0;
 
-/// What a figure of errors against times has across.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Cost {
-    /// The time to fit the constants of an element
-    #[default]
-    Fit,
-    /// The time of a solution with the network
-    Solve,
-    /// The time of an explicit step
-    #[value(alias = "step")]
-    ExplicitStep,
-    /// The time of an implicit step
-    ImplicitStep,
-    /// The time of a second of motion: in explicit steps, and of a network for an engine in the steps of that engine
-    Second,
+choices! {
+    /// What a figure of errors against times has across.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Cost {
+        /// The time to fit the constants of an element
+        #[default]
+        Fit = "fit",
+        /// The time of a solution with the network
+        Solve = "solve",
+        /// The time of an explicit step
+        ExplicitStep = "explicit-step" | "step",
+        /// The time of an implicit step
+        ImplicitStep = "implicit-step",
+        /// The time of a second of motion: in explicit steps, and of a network for an engine in the steps of that engine
+        Second = "second",
+    }
 }
 
 impl Cost {

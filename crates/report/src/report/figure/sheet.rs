@@ -1,19 +1,21 @@
 //! The sheet of a figure: its width on the page, its title for readers of screens, its texts.
 
+use crate::report::choice::choices;
 use crate::text::printable;
-use clap::ValueEnum;
 use plotters::style::RGBColor;
 use svg::Document;
 use svg::node::element::{Path, Text, Title};
 
-/// The width of a figure in a paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Columns {
-    /// 85 mm.
-    #[default]
-    One,
-    /// 178 mm.
-    Two,
+choices! {
+    /// The width of a figure in a paper.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Columns {
+        /// 85 mm.
+        #[default]
+        One = "one",
+        /// 178 mm.
+        Two = "two",
+    }
 }
 
 impl Columns {

@@ -26,12 +26,12 @@ pub struct Column {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(in crate::report) enum Priority {
     /// The terminal has it.
-    First,
+    Always,
     /// The terminal has it where more is asked for, and in tables that are printed by themselves.
     #[default]
-    Second,
+    Verbose,
     /// The terminal leaves it out.
-    Third,
+    InFiles,
 }
 
 impl Column {
@@ -43,7 +43,7 @@ impl Column {
             unit: String::new(),
             numbers: false,
             wraps: false,
-            priority: Priority::Second,
+            priority: Priority::Verbose,
         }
     }
 

@@ -38,7 +38,7 @@ const NARROW: usize = 12;
 pub enum Detail {
     /// The columns that all readers want.
     Overview,
-    /// All columns that fit a terminal.
+    /// All columns but those for files alone.
     All,
 }
 
@@ -56,15 +56,15 @@ impl Table {
 
     /// The columns, on the page that is set, and the notes.
     pub fn text(&self) -> String {
-        let overview = strips(self, Priority::First..=last());
-        let strips = if overview.is_empty() { strips(self, Priority::First..=Priority::Second) } else { overview };
+        let overview = strips(self, Priority::Always..=last());
+        let strips = if overview.is_empty() { strips(self, Priority::Always..=Priority::Verbose) } else { overview };
         within(strips, WIDTH.load(Ordering::Relaxed)) + &notes(self)
     }
 }
 
 /// The last priority that the page has.
 fn last() -> Priority {
-    if IS_OVERVIEW.load(Ordering::Relaxed) { Priority::First } else { Priority::Second }
+    if IS_OVERVIEW.load(Ordering::Relaxed) { Priority::Always } else { Priority::Verbose }
 }
 
 /// The tables of a run. On a page with an overview, a table without first columns is left out.
@@ -72,8 +72,8 @@ pub(in crate::report) fn run_text(tables: &[Table]) -> String {
     let page = WIDTH.load(Ordering::Relaxed);
     let mut text = String::new();
     for (place, table) in tables.iter().enumerate() {
-        let strips = strips(table, Priority::First..=last());
-        if strips.is_empty() && last() == Priority::First {
+        let strips = strips(table, Priority::Always..=last());
+        if strips.is_empty() && last() == Priority::Always {
             continue;
         }
         // The first table follows the summary of what was modelled.

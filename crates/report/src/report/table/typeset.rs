@@ -1,17 +1,19 @@
 //! Tables of a report as LaTeX and as Markdown.
 
 use super::{Cell, Column, Table};
+use crate::report::choice::choices;
 use crate::text;
-use clap::ValueEnum;
 use std::fmt::Write;
 
-/// The language of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Markup {
-    /// With the rules of the package booktabs.
-    Latex,
-    /// Of GitHub.
-    Markdown,
+choices! {
+    /// The language of a table.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Markup {
+        /// With the rules of the package booktabs.
+        Latex = "latex",
+        /// Of GitHub.
+        Markdown = "markdown",
+    }
 }
 
 impl Markup {
