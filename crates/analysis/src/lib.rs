@@ -1,6 +1,6 @@
 //! What elements and networks are, found by loops over cells and points that are worth optimising; studies call it.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on what its module `study` has of it.
+//! Users of springfit need not name this crate.
 
 #![forbid(unsafe_code)]
 

@@ -1,6 +1,6 @@
 //! Whole bodies: assembled models, solvers, and motion.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its modules.
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 //!
 //! | module | what it holds |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! One finite element: its definition as data, its stiffness, and what springs between its nodes measure.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its modules.
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 //!
 //! | module | what it holds |
 //! |---|---|

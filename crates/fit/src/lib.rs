@@ -1,6 +1,6 @@
 //! The constants of the springs of an element, from its stiffness, its forces at large deformation, or published formulas.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its module [`fit`].
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 
 #![forbid(unsafe_code)]
 

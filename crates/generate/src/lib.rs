@@ -1,6 +1,6 @@
 //! Code that computes the springs of a cell at run time.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its module [`generate`].
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 
 #![forbid(unsafe_code)]
 

@@ -1,7 +1,7 @@
 //! What a whole body tells: spring constants from its displacements, the nearest network without negative springs, and moduli from
 //! measurements.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its modules.
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 //!
 //! | module | what it holds |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! Meshes: points, cells and named groups, and what is known at their points and cells.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its module [`mesh`].
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 
 #![forbid(unsafe_code)]
 

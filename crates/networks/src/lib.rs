@@ -1,6 +1,6 @@
 //! Networks as files. What is written for each spring is compiled here, optimised, as little else of a report is.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on what its module `report` has of it.
+//! Users of springfit need not name this crate.
 
 #![forbid(unsafe_code)]
 

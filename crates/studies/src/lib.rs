@@ -1,6 +1,6 @@
 //! Scene files, and the studies that are made from them.
 //!
-//! Users of springfit need not name this crate: `springfit` passes on its module [`study`].
+//! Users of springfit need not name this crate: `springfit` names what they need of it.
 
 #![forbid(unsafe_code)]
 

@@ -26,7 +26,7 @@ const MOST_FACTORED_WITH_NODES: usize = 60;
 #[derive(Debug, Clone)]
 pub struct Closed<T> {
     weight: ClosedWeight,
-    steps: Steps,
+    equations: Equations,
     nonnegative: bool,
     nodal: Nodal<T>,
     normal: Normal<T>,
@@ -36,15 +36,17 @@ pub struct Closed<T> {
     factors: Factors<T>,
 }
 
+/// The linear equations by which constants are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Steps {
+enum Equations {
     /// `M = 2I`: each constant is half of its right-hand side.
     Decoupled,
-    /// The equations of the nodes, which are fewer than those of the springs.
-    Nodes,
-    Springs,
-    /// One equation per group.
-    Groups,
+    /// Those of the nodes, which are fewer than those of the springs.
+    PerNode,
+    /// One for each spring.
+    PerSpring,
+    /// One for each group of springs.
+    PerGroup,
 }
 
 impl<T: Real> Closed<T> {
@@ -52,17 +54,17 @@ impl<T: Real> Closed<T> {
     pub fn of(springs: &Springs, fit: &Fit) -> Option<Closed<T>> {
         let Route::Closed(weight) = fit.objective.route(springs.need_matrix()) else { return None };
         let lengths_alone = springs.content().is_none() && springs.parallel().is_empty();
-        let steps = match weight {
-            _ if fit.tied => Steps::Groups,
+        let equations = match weight {
+            _ if fit.tied => Equations::PerGroup,
             // Two length springs share a block of different nodes only if they join
             // the same nodes: M is diagonal. A spring on the content is in all blocks.
-            ClosedWeight::OffDiagonal if lengths_alone => Steps::Decoupled,
-            ClosedWeight::None if is_shorter(springs) => Steps::Nodes,
-            ClosedWeight::None | ClosedWeight::OffDiagonal | ClosedWeight::Modal(_) => Steps::Springs,
+            ClosedWeight::OffDiagonal if lengths_alone => Equations::Decoupled,
+            ClosedWeight::None if is_shorter(springs) => Equations::PerNode,
+            ClosedWeight::None | ClosedWeight::OffDiagonal | ClosedWeight::Modal(_) => Equations::PerSpring,
         };
         Some(Closed {
             weight,
-            steps,
+            equations,
             nonnegative: fit.nonnegative,
             nodal: Nodal::default(),
             normal: Normal::default(),
@@ -85,7 +87,7 @@ impl<T: Real> Closed<T> {
     where
         T: Real,
     {
-        if self.steps == Steps::Nodes {
+        if self.equations == Equations::PerNode {
             return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, hooke, &mut self.normal);
         }
         let regular = of_size!(T, x[0], (springs.dimension(), springs.nodes()), |D, n| {
@@ -108,7 +110,7 @@ impl<T: Real> Closed<T> {
             return false;
         }
         equations::<T, D>(n, self.weight, springs, x, geometry, hooke, &mut self.normal);
-        if self.steps == Steps::Decoupled {
+        if self.equations == Equations::Decoupled {
             for b in &mut self.normal.rhs {
                 *b = b.clone().scaled(&0.5);
             }
@@ -118,10 +120,10 @@ impl<T: Real> Closed<T> {
 
     /// Solves the equations.
     fn finish(&mut self, springs: &Springs) -> bool {
-        let equations = match self.steps {
-            Steps::Decoupled | Steps::Nodes => return true,
-            Steps::Springs => &mut self.normal,
-            Steps::Groups => {
+        let equations = match self.equations {
+            Equations::Decoupled | Equations::PerNode => return true,
+            Equations::PerSpring => &mut self.normal,
+            Equations::PerGroup => {
                 self.normal.tied(springs.groups(), springs.names().len(), &mut self.tied);
                 &mut self.tied
             }
@@ -136,9 +138,9 @@ impl<T: Real> Closed<T> {
 
     /// The constant of spring `s` after [`Closed::solve`], in N/m, without bounds.
     pub fn constant(&self, springs: &Springs, s: usize) -> &T {
-        match self.steps {
-            Steps::Groups => &self.tied.rhs[springs.groups()[s]],
-            Steps::Decoupled | Steps::Nodes | Steps::Springs => &self.normal.rhs[s],
+        match self.equations {
+            Equations::PerGroup => &self.tied.rhs[springs.groups()[s]],
+            Equations::Decoupled | Equations::PerNode | Equations::PerSpring => &self.normal.rhs[s],
         }
     }
 
@@ -148,15 +150,15 @@ impl<T: Real> Closed<T> {
         let Some(any) = w.first().cloned() else { return };
         any.vectorize(
             #[inline(always)]
-            || match self.steps {
-                Steps::Decoupled => {
+            || match self.equations {
+                Equations::Decoupled => {
                     for w in &mut *w {
                         *w = w.clone().scaled(&0.5);
                     }
                 }
-                Steps::Nodes => self.nodal.solve_again(springs, w),
-                Steps::Springs => self.normal.substitute(w),
-                Steps::Groups => {
+                Equations::PerNode => self.nodal.solve_again(springs, w),
+                Equations::PerSpring => self.normal.substitute(w),
+                Equations::PerGroup => {
                     let mut sums = vec![any.zero(); springs.names().len()];
                     // The equations of groups are sums over their springs, and so is their right-hand side.
                     for (w, &group) in w.iter().zip(springs.groups()) {
@@ -192,14 +194,14 @@ impl<T: Real> Closed<T> {
         geometry: &Geometry<T>,
         hooke: &Hooke<T>,
     ) -> Option<&Normal<T>> {
-        match self.steps {
-            Steps::Decoupled => None,
+        match self.equations {
+            Equations::Decoupled => None,
             // The nodes were solved without any equation of a spring, which is worked out only now, for the few cells with bounds.
-            Steps::Nodes => {
+            Equations::PerNode => {
                 normal_equations(self.weight, springs, x, geometry, hooke, &mut self.normal);
                 Some(&self.normal)
             }
-            Steps::Springs | Steps::Groups => Some(&self.kept),
+            Equations::PerSpring | Equations::PerGroup => Some(&self.kept),
         }
     }
 }
@@ -215,17 +217,17 @@ impl<T: Packed> Closed<T> {
         hooke: &Hooke<T>,
         lanes: &[usize],
     ) -> bool {
-        match self.steps {
-            Steps::Decoupled => return false,
-            Steps::Nodes if springs.len() > MOST_FACTORED_WITH_NODES => {
+        match self.equations {
+            Equations::Decoupled => return false,
+            Equations::PerNode if springs.len() > MOST_FACTORED_WITH_NODES => {
                 return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
             }
             // The equations of the nodes have no rows of single springs, which bounds need.
-            Steps::Nodes => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
-            Steps::Springs | Steps::Groups if self.kept.size() > MOST_FACTORED => return false,
-            Steps::Springs | Steps::Groups => {}
+            Equations::PerNode => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),
+            Equations::PerSpring | Equations::PerGroup if self.kept.size() > MOST_FACTORED => return false,
+            Equations::PerSpring | Equations::PerGroup => {}
         }
-        let k = if self.steps == Steps::Groups { &mut self.tied.rhs } else { &mut self.normal.rhs };
+        let k = if self.equations == Equations::PerGroup { &mut self.tied.rhs } else { &mut self.normal.rhs };
         self.factors.set(&self.kept);
         bound(&mut self.factors, &self.kept.rhs, k, lanes)
     }

@@ -82,11 +82,12 @@ pub struct Method<T> {
     nonnegative: bool,
     /// Whether springs measure functions.
     measures: bool,
-    solver: Solver<T>,
+    solver: ReducedSolver<T>,
 }
 
+/// What solves a fit on the reduced matrices.
 #[derive(Debug, Clone)]
-enum Solver<T> {
+enum ReducedSolver<T> {
     LeastSquares { normal: Normal<T>, products: Vec<T> },
     Spectral(Box<Spectral<T>>),
     Divergence(Divergence<T>),
@@ -118,13 +119,13 @@ impl<T: Real> Method<T> {
             Objective::Frobenius(_) => {
                 // The room serves the products of springs with each other first, and then their images under R.
                 let products = vec![any.zero(); m * m.max(reduced.order)];
-                Solver::LeastSquares { normal: Normal::default(), products }
+                ReducedSolver::LeastSquares { normal: Normal::default(), products }
             }
             Objective::Spectral(_) => {
-                Solver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative, fit.gap)))
+                ReducedSolver::Spectral(Box::new(Spectral::like(any, &reduced, fit.nonnegative, fit.gap)))
             }
             Objective::Divergence(balance) => {
-                Solver::Divergence(Divergence::like(any, &reduced, balance, fit.nonnegative))
+                ReducedSolver::Divergence(Divergence::like(any, &reduced, balance, fit.nonnegative))
             }
         };
         let measures = !springs.functions().is_empty();
@@ -146,7 +147,7 @@ impl<T: Real> Method<T> {
     fn solve_reduced(&mut self, springs: &Springs) {
         let any = self.reduced.size.clone();
         match &mut self.solver {
-            Solver::LeastSquares { normal, products } => {
+            ReducedSolver::LeastSquares { normal, products } => {
                 let (c, zero) = (self.reduced.scales.len(), any.zero());
                 normal.gram.resize(c * c, zero.clone());
                 let m = springs.len();
@@ -165,8 +166,8 @@ impl<T: Real> Method<T> {
                     },
                 );
             }
-            Solver::Spectral(solver) => solver.solve(&self.reduced),
-            Solver::Divergence(solver) => solver.solve(&self.reduced),
+            ReducedSolver::Spectral(solver) => solver.solve(&self.reduced),
+            ReducedSolver::Divergence(solver) => solver.solve(&self.reduced),
         }
     }
 
@@ -174,15 +175,15 @@ impl<T: Real> Method<T> {
     /// springs are linearly dependent or an iteration did not converge.
     pub fn constants(mut self) -> Option<Vec<T>> {
         let kappa = match &mut self.solver {
-            Solver::LeastSquares { normal, .. } => {
+            ReducedSolver::LeastSquares { normal, .. } => {
                 if !normal.solve_to(T::epsilon()) {
                     return None;
                 }
                 &normal.rhs
             }
-            Solver::Spectral(solver) => &solver.kappa,
-            Solver::Divergence(solver) if solver.reached.exceeds(&solver.reached.zero()) => &solver.kappa,
-            Solver::Divergence(_) => return None,
+            ReducedSolver::Spectral(solver) => &solver.kappa,
+            ReducedSolver::Divergence(solver) if solver.reached.exceeds(&solver.reached.zero()) => &solver.kappa,
+            ReducedSolver::Divergence(_) => return None,
         };
         let constant = |unknown: &usize| kappa[*unknown].clone() * &self.reduced.scales[*unknown];
         Some(self.reduced.unknowns.iter().map(constant).collect())
@@ -198,18 +199,18 @@ impl<T: Real> Method<T> {
             kappa[unknown] = any.constant(k) / &self.reduced.scales[unknown];
         }
         let found = match &mut self.solver {
-            Solver::LeastSquares { normal, .. } => {
+            ReducedSolver::LeastSquares { normal, .. } => {
                 let near: Vec<f64> = kappa.iter().map(Real::rounded).collect();
                 bounded_optimum(normal, &near)?
             }
-            Solver::Divergence(solver) => {
+            ReducedSolver::Divergence(solver) => {
                 let Reduced { order, unknowns, .. } = &self.reduced;
                 let set: Vec<bool> = kappa.iter().map(|k| k.rounded() > 0.0).collect();
                 let is_optimal = settle(self.reduced.rows(), *order, unknowns, solver.balance, &mut kappa);
                 let is_same = kappa.iter().zip(set).all(|(k, positive)| (k.rounded() > 0.0) == positive);
                 (is_optimal && is_same).then_some(kappa)
             }
-            Solver::Spectral(_) => return None,
+            ReducedSolver::Spectral(_) => return None,
         };
         let constant = |kappa: &Vec<T>, unknown: &usize| kappa[*unknown].clone() * &self.reduced.scales[*unknown];
         Some(found.map(|kappa| self.reduced.unknowns.iter().map(|unknown| constant(&kappa, unknown)).collect()))
@@ -221,7 +222,7 @@ impl<T: Real> Method<T> {
         // Motions as soft as rounding errors do not determine the constants.
         let is_known = self.reduced.softest.rounded() > KNOWN * T::epsilon();
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: is_known, delicate: false };
-        if let Solver::LeastSquares { normal, .. } = &self.solver {
+        if let ReducedSolver::LeastSquares { normal, .. } = &self.solver {
             // Relative weights make pivots as small as the softest motion; this does not affect the accuracy.
             // With linearly dependent springs small pivots are those of the dependence, which no weight excuses.
             let relative = self.weight.divides_by_stiffness() && independent();
@@ -235,7 +236,7 @@ impl<T: Real> Method<T> {
             verdict.reached &= pivot > KNOWN * rounding.min(T::epsilon());
             return verdict;
         }
-        if let Solver::Divergence(solver) = &mut self.solver
+        if let ReducedSolver::Divergence(solver) = &mut self.solver
             && self.nonnegative
         {
             let Reduced { order, unknowns, .. } = &self.reduced;
@@ -278,7 +279,7 @@ impl<T: Real> Method<T> {
     /// value. It requires that they reach the stated `value` (N/m), which is proved here by the pivots of
     /// `value I ± (R − K)`.
     pub fn distance_from_optimum(&mut self, constants: &[f64], value: f64) -> Option<f64> {
-        let Solver::Spectral(solver) = &self.solver else { return None };
+        let ReducedSolver::Spectral(solver) = &self.solver else { return None };
         let (p, any) = (self.reduced.order, self.reduced.size.clone());
         let mut kappa = vec![any.zero(); self.reduced.scales.len()];
         for (&unknown, k) in self.reduced.unknowns.iter().zip(constants) {
@@ -307,7 +308,7 @@ impl<T: Real> Method<T> {
         let delicate = !(lane(&self.reduced.softest) > SOFTEST);
         let mut verdict = Verdict { certificate: None, rank: Rank::Full, reached: true, delicate };
         let kappa: Vec<f64> = match &self.solver {
-            Solver::LeastSquares { normal, .. } => {
+            ReducedSolver::LeastSquares { normal, .. } => {
                 let all = |values: &[T]| values.iter().map(&lane).collect();
                 let normal = Normal::new(all(&normal.gram), all(&normal.rhs));
                 let mut eliminated = normal.clone();
@@ -323,7 +324,7 @@ impl<T: Real> Method<T> {
                 verdict.rank = rank;
                 kappa
             }
-            Solver::Spectral(solver) => {
+            ReducedSolver::Spectral(solver) => {
                 let size = lane(&self.reduced.size);
                 let kappa = solver.kappa.iter().map(&lane).collect();
                 let mut optimum = Optimum { kappa, value: lane(&solver.value), bound: lane(&solver.bound) };
@@ -351,7 +352,7 @@ impl<T: Real> Method<T> {
                 verdict.certificate = Some(certificate);
                 kappa
             }
-            Solver::Divergence(solver) => {
+            ReducedSolver::Divergence(solver) => {
                 verdict.reached = lane(&solver.reached) > 0.0;
                 verdict.delicate |= self.measures && solver.least_pivot(&lane) < LEAST_MEASURED_PIVOT;
                 let mut kappa: Vec<f64> = solver.kappa.iter().map(&lane).collect();

@@ -3,7 +3,7 @@
 //! Two length springs interact only through the diagonal blocks of the nodes that they share: `M = 2I + V W Vᵀ`, where
 //! row s of V holds the entries on and below the diagonal of `n_s n_sᵀ` once for each end of the spring, and W counts
 //! those below the diagonal twice. With d(d+1)/2 entries per node this has a lower rank than the number of springs from
-//! about eight nodes on, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
+//! eight nodes on in the plane and from fourteen in space, and `M⁻¹ b = ½ (b − V S⁻¹ Vᵀ b)`, `S = 2W⁻¹ + VᵀV` (Woodbury 1950).
 //!
 //! Theory: page *Least squares* of the book.
 

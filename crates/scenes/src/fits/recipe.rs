@@ -1,4 +1,4 @@
-//! How the springs of a fit are found. This is the only file that distinguishes the kinds of fits.
+//! How the springs of a fit are found, by the kind of the fit.
 
 use super::exact::ExactRecipe;
 use super::kind::FitKind;

@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 /// The relative errors `‖R − K‖/‖R‖` of the elements' matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MatrixErrors {
-    /// In the Frobenius norm; `None` for whole-object fits, whose springs belong to no element.
+    /// In the Frobenius norm; `None` where springs belong to no single element.
     pub frobenius: Option<Spread>,
     /// In the induced 2-norm.
     pub spectral: Option<Spread>,
@@ -67,8 +67,8 @@ pub struct FitOutcome {
 }
 
 impl FitOutcome {
-    /// The relative errors of the elements' matrices in the Frobenius norm; `None` if they were not computed, and for whole-object fits, whose
-    /// springs belong to no element.
+    /// The relative errors of the elements' matrices in the Frobenius norm; `None` if they were not computed, and where springs
+    /// belong to no single element, such as those of whole-object fits.
     pub fn frobenius(&self) -> Option<Spread> {
         self.errors.get()?.frobenius
     }

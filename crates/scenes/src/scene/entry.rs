@@ -66,7 +66,7 @@ pub struct SceneFile {
 /// The materials of a body without a scene.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MaterialFile {
+pub struct MaterialTable {
     pub material: MaterialEntries,
 }
 

@@ -1,6 +1,6 @@
 //! The materials of a body that has no scene.
 
-use super::entry::MaterialFile;
+use super::entry::MaterialTable;
 use super::in_memory::InMemory;
 use super::material::{MaterialEntries, MaterialEntry};
 use crate::error::Result;
@@ -22,7 +22,7 @@ impl Materials {
     /// # Errors
     /// A key is unknown or of the wrong type, a number is out of its range, or the entries do not go together; keys begin with `material`.
     pub fn parse(table: Table) -> Result<Materials> {
-        let MaterialFile { mut material } = file::parse_table(table)?;
+        let MaterialTable { mut material } = file::parse_table(table)?;
         material.complete()?;
         material.check()?;
         Ok(Materials(material))

@@ -7,7 +7,7 @@ macro_rules! known_order {
     ($n:ident => $body:expr) => {
         match $n {
             // Deformations of triangles (3), quadrilaterals (5) and tetrahedra (6), and the six springs of the last two
-            // with t (7).
+            // with the bound of the 2-norm, which is an unknown too (7).
             3 if T::UNROLLED => known_order!(@ $n, 3, $body),
             5 if T::UNROLLED => known_order!(@ $n, 5, $body),
             6 if T::UNROLLED => known_order!(@ $n, 6, $body),

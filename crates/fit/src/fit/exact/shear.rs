@@ -10,7 +10,7 @@ pub enum ShearSprings {
     #[default]
     Cells,
     /// On the domain of each edge, an equal share of each cell at the edge, with the mean deformation gradient of these
-    /// shares (Liu, Nguyen-Thoi, Lam 2009). A mesh has these springs.
+    /// shares (Liu, Nguyen-Thoi, Lam 2009). They belong to edges and not to cells: `edge_springs` of a mesh makes them.
     Edges,
 }
 

@@ -9,7 +9,7 @@ pub enum VolumeSprings {
     /// The content of each cell: selective reduced integration with the mean dilatation of each cell (Nagtegaal, Parks,
     /// Rice 1974).
     Cells,
-    /// The content of a patch of cells around each node. A mesh adds these springs.
+    /// The content of a patch of cells around each node. They belong to nodes and not to cells: `patch_springs` of a mesh makes them.
     Patches,
 }
 

@@ -53,6 +53,7 @@ impl Deck {
                 let set = keyword.value("ELSET").filter(|name| !name.is_empty());
                 Generation::Elements { set: set.map(|name| self.model.element_sets.named(name, line)) }
             }
+            // ELCOPY, the only keyword of a generation without data lines.
             _ => {
                 self.copy_elements(lines, keyword)?;
                 return Ok(Block::Passed);
@@ -95,7 +96,7 @@ impl Deck {
                 }
                 Ok(())
             }
-            Generation::Elements { set } => self.elements(lines, line, *set),
+            Generation::Elements { set } => self.generate_elements(lines, line, *set),
         }
     }
 
@@ -212,9 +213,9 @@ impl Deck {
         Ok(())
     }
 
-    /// Makes rows, layers of rows and blocks of layers: their number with the element that is there, and what is added to the numbers of nodes and
-    /// elements from one to the next.
-    fn elements(&mut self, lines: &Lines, line: &[u8], set: Option<usize>) -> Result<()> {
+    /// Reads a line of `*ELGEN`: the element that is copied; then for rows, for layers of rows and for blocks of layers their number with the one
+    /// that is there, and what is added to the numbers of nodes and of elements from one to the next.
+    fn generate_elements(&mut self, lines: &Lines, line: &[u8], set: Option<usize>) -> Result<()> {
         let row: Vec<&[u8]> = fields(line).collect();
         let field = |k: usize| row.get(k).copied().filter(|field| !field.is_empty());
         let first = lines.whole(field(0).unwrap_or_default(), "the number of an element")?;

@@ -1,4 +1,5 @@
-//! Networks that are equal to the finite element: `objective = "exact"`.
+//! Networks from the energy of the finite element: `objective = "exact"`. With the usual keys they are equal to it; with other domains for μ or λ
+//! they are softer.
 //!
 //! Theory: page *Exact networks and patches* of the book.
 
