@@ -5,14 +5,14 @@ pub use springfit_element::springs::{
     AskedForces, Force, ForceFunction, FunctionSpring, Patch, SpringResponse, Springs,
 };
 
-/// The force of a spring as an expression of its measure c and its measure at rest.
+/// The force of a spring as an expression of its measure c and its strain `s = (c − c₀)/c₀`, with parameters.
 ///
 /// ```
 /// use springfit::springs::Law;
 ///
-/// let law = Law::parse("k*(c - rest) + a*(c - rest)^3")?;
+/// let law = Law::parse("k*c*s + a*s^3")?;
 /// assert_eq!(law.parameters, ["k", "a"]);
-/// assert_eq!(law.force(1.5, 1.0, &[2.0, 8.0]), 2.0); // 2·0.5 + 8·0.125
+/// assert_eq!(law.force(1.5, 1.0, &[2.0, 8.0]), 2.5); // 2·1.5·0.5 + 8·0.125
 /// # Ok::<(), springfit::error::Error>(())
 /// ```
 #[doc(inline)]
