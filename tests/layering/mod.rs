@@ -6,7 +6,7 @@ mod tokens;
 
 use graph::{Graph, PROGRAM, Source};
 use springfit_element::element::SHIPPED;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
@@ -213,10 +213,47 @@ fn no_source_names_a_shipped_element() {
             // The examples of help texts are typed by people, who know elements by name.
             let examples = source.text.split_once("const EXAMPLES").and_then(|(_, rest)| rest.split_once("\";\n"));
             let text = examples.map_or(source.text.clone(), |(examples, _)| source.text.replace(examples, ""));
+            // So are those of the documentation.
+            let text: String =
+                text.lines().filter(|line| !line.trim().starts_with("///")).collect::<Vec<_>>().join("\n");
             let named = text.split(|c: char| !c.is_alphanumeric() && c != '_').any(word);
             assert!(!named, "{} names {}", source.name(), element.name);
         }
     }
+}
+
+/// The lines of code of a source: those that are not blank and no comment.
+fn code(text: &str) -> usize {
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//")).count()
+}
+
+/// A package is a room: a reader can know what is in it.
+#[test]
+fn packages_stay_small() {
+    let mut packages: BTreeMap<String, usize> = BTreeMap::new();
+    for source in sources() {
+        *packages.entry(source.package).or_default() += code(&source.text);
+    }
+    for (package, lines) in packages {
+        assert!(lines <= 15_000, "crates/{package} has {lines} lines of code");
+    }
+}
+
+/// What the library passes on, by module: each name is one that a user may need.
+#[test]
+fn the_library_has_few_names() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut names = BTreeSet::new();
+    for path in files(&root) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for item in text.split("\npub use springfit_").skip(1).chain(text.split("    pub use springfit_").skip(1)) {
+            let item = item.split(';').next().unwrap();
+            let (room, list) = item.rsplit_once("::{").or_else(|| item.rsplit_once("::")).unwrap();
+            names.extend(list.trim_end_matches('}').split(',').map(|name| format!("{room}::{}", name.trim())));
+        }
+    }
+    names.retain(|name| !name.ends_with("::"));
+    assert!((300..=350).contains(&names.len()), "{} names", names.len());
 }
 
 #[test]

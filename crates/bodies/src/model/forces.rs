@@ -62,21 +62,29 @@ impl Network {
     /// The gradient of the energy of the springs between two points, `[points × dimension]`, N; false if one has no direction.
     pub(super) fn pull_lengths(&self, x: &[f64], force: &mut [f64]) -> bool {
         force.fill(0.0);
+        let mut sound = true;
+        self.pull(x, force, |spring, length| sound &= spring.has_direction(length));
+        sound
+    }
+
+    /// Adds to the gradient what the springs between two points give, and tells `visit` the length of each.
+    fn pull(&self, x: &[f64], force: &mut [f64], visit: impl FnMut(&LengthSpring, f64)) {
         match self.dimension {
-            1 => pull::<1>(&self.lengths, x, force),
-            2 => pull::<2>(&self.lengths, x, force),
-            _ => pull::<3>(&self.lengths, x, force),
+            1 => pull::<1>(&self.lengths, x, force, visit),
+            2 => pull::<2>(&self.lengths, x, force, visit),
+            _ => pull::<3>(&self.lengths, x, force, visit),
         }
     }
 
     /// Adds to the gradient what the springs between two points give. The largest of their pulls, and the largest that one would have with its
     /// whole length, N.
     pub(super) fn compare_lengths(&self, x: &[f64], force: &mut [f64]) -> [f64; 2] {
-        match self.dimension {
-            1 => pull_and_compare::<1>(&self.lengths, x, force),
-            2 => pull_and_compare::<2>(&self.lengths, x, force),
-            _ => pull_and_compare::<3>(&self.lengths, x, force),
-        }
+        let [mut largest, mut whole] = [0.0_f64; 2];
+        self.pull(x, force, |spring, length| {
+            largest = largest.max(spring.pull(length)[1].abs());
+            whole = whole.max((spring.constant * length).abs());
+        });
+        [largest, whole]
     }
 
     /// Adds the forces of some of the other springs; false if one has no force.
@@ -182,39 +190,24 @@ fn stored<const D: usize>(springs: &[LengthSpring], x: &[f64]) -> Option<f64> {
     sound.then_some(total)
 }
 
-/// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`.
-fn pull<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) -> bool {
+/// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`, and tells `visit` the length of each spring.
+fn pull<const D: usize>(
+    springs: &[LengthSpring],
+    x: &[f64],
+    force: &mut [f64],
+    mut visit: impl FnMut(&LengthSpring, f64),
+) {
     let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
-    let mut sound = true;
     for spring in springs {
         let [i, j] = spring.points;
         let (r, length) = between(x, spring.points);
-        let t = spring.stress(length);
-        sound &= spring.has_direction(length);
-        for k in 0..D {
-            force[i][k] -= t * r[k];
-            force[j][k] += t * r[k];
-        }
-    }
-    sound
-}
-
-/// [`pull`], and the largest `|k (ℓ − L₀)|` and `|k ℓ|`, N.
-fn pull_and_compare<const D: usize>(springs: &[LengthSpring], x: &[f64], force: &mut [f64]) -> [f64; 2] {
-    let ((x, _), (force, _)) = (x.as_chunks::<D>(), force.as_chunks_mut::<D>());
-    let [mut largest, mut whole] = [0.0_f64; 2];
-    for spring in springs {
-        let [i, j] = spring.points;
-        let (r, length) = between(x, spring.points);
-        largest = largest.max(spring.pull(length)[1].abs());
-        whole = whole.max((spring.constant * length).abs());
+        visit(spring, length);
         let t = spring.stress(length);
         for k in 0..D {
             force[i][k] -= t * r[k];
             force[j][k] += t * r[k];
         }
     }
-    [largest, whole]
 }
 
 /// Adds `T n` at j and `−T n` at i, with `T = k (ℓ − L₀)` and `n = r/ℓ`, and writes the tangent `±B`, `B = T/ℓ (I − n nᵀ) + k n nᵀ`;

@@ -75,6 +75,25 @@ impl State {
         }
     }
 
+    /// The state in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            State::Rod { .. } => "rod",
+            State::Solid => "solid",
+            State::PlaneStress { .. } => "plane stress",
+            State::PlaneStrain { .. } => "plane strain",
+        }
+    }
+
+    /// Which of the two plane states it is, if it is one.
+    pub fn plane(self) -> Option<Plane> {
+        match self {
+            State::PlaneStress { .. } => Some(Plane::Stress),
+            State::PlaneStrain { .. } => Some(Plane::Strain),
+            State::Rod { .. } | State::Solid => None,
+        }
+    }
+
     /// Checks that bodies of this dimension can be in this state.
     ///
     /// # Errors
@@ -109,7 +128,15 @@ impl Plane {
         }
     }
 
-    /// The state of this name.
+    /// The state of a body with this thickness, in m.
+    pub fn state(self, thickness: f64) -> State {
+        match self {
+            Plane::Stress => State::PlaneStress { thickness },
+            Plane::Strain => State::PlaneStrain { thickness },
+        }
+    }
+
+    /// The plane state of this name.
     ///
     /// # Errors
     /// There is none; the error has the key `plane`.
@@ -190,13 +217,7 @@ impl Material {
         thickness: Option<f64>,
     ) -> Result<Material> {
         let state = match (dimension, plane) {
-            (2, plane) => {
-                let thickness = thickness.unwrap_or(1.0);
-                match plane {
-                    Some(Plane::Strain) => State::PlaneStrain { thickness },
-                    _ => State::PlaneStress { thickness },
-                }
-            }
+            (2, plane) => plane.unwrap_or(Plane::Stress).state(thickness.unwrap_or(1.0)),
             (_, Some(_)) => {
                 return Err(Error::at("plane", format!("expected a plane mesh, found {}", body(dimension))));
             }

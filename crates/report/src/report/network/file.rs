@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Dampers, largest_square, largest_square_of_blocks};
 use crate::element::SpringKind;
-use crate::material::{CellMap, Plane, RelaxationTerm, State};
+use crate::material::{CellMap, RelaxationTerm};
 use crate::mesh::Mesh;
 use crate::model::{Elastic, Network, Support, cell_places};
 use crate::network::{
@@ -204,13 +204,7 @@ fn material(outcome: &Outcome) -> Option<MaterialDataRecord> {
     Some(MaterialDataRecord {
         young: material.young(),
         poisson: material.poisson(),
-        state: match material.state() {
-            State::Rod { .. } => "rod",
-            State::Solid => "solid",
-            State::PlaneStress { .. } => "plane stress",
-            State::PlaneStrain { .. } => "plane strain",
-        }
-        .into(),
+        state: material.state().words().into(),
         thickness: material.thickness(),
         density: outcome.material.density().and_then(CellMap::uniform).copied(),
         law: outcome.law.clone(),
@@ -219,11 +213,7 @@ fn material(outcome: &Outcome) -> Option<MaterialDataRecord> {
 
 /// The state of a plane body or a surface, with its mean thickness `Σ A_e t_e/Σ A_e`.
 fn plane(outcome: &Outcome) -> Option<PlaneRecord> {
-    let state = match outcome.material.state() {
-        State::PlaneStress { .. } => Plane::Stress,
-        State::PlaneStrain { .. } => Plane::Strain,
-        State::Rod { .. } | State::Solid => return None,
-    };
+    let state = outcome.material.state().plane()?;
     let thicknesses = outcome.material.thicknesses();
     if let Some(&thickness) = thicknesses.uniform() {
         return Some(PlaneRecord { state, thickness, varies: false });

@@ -13,7 +13,7 @@ use super::json::Report;
 use super::notes::groups;
 use super::object::Object;
 use super::table::Table;
-use crate::material::State;
+
 use crate::study::{ModelMotion, MotionOutcome, Outcome};
 use crate::text::printable;
 use drawing::{Drawing, spread};
@@ -42,13 +42,7 @@ impl PageRecord {
             program: concat!("springfit ", env!("CARGO_PKG_VERSION")).into(),
             command: outcome.command.clone(),
             mesh: outcome.source.clone(),
-            state: match outcome.material.state() {
-                State::Rod { .. } => "rod",
-                State::Solid => "solid",
-                State::PlaneStress { .. } => "plane stress",
-                State::PlaneStrain { .. } => "plane strain",
-            }
-            .into(),
+            state: outcome.material.state().words().into(),
             notes: groups(outcome),
             tables: Table::all(&report),
             report,

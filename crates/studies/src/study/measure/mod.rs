@@ -50,10 +50,7 @@ impl MeasureOptions {
             return None;
         }
         let thickness = thickness.or(own.map(|own| own.1)).unwrap_or(1.0);
-        Some(match plane.or(own.map(|own| own.0)).unwrap_or(Plane::Stress) {
-            Plane::Stress => State::PlaneStress { thickness },
-            Plane::Strain => State::PlaneStrain { thickness },
-        })
+        Some(plane.or(own.map(|own| own.0)).unwrap_or(Plane::Stress).state(thickness))
     }
 }
 
