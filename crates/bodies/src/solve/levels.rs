@@ -24,6 +24,7 @@ const DOUBT: f64 = 1e-12;
 // largest, 3 000 steps lower it to 4e-19.
 const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
+// Boxes with a network take some 20 to the least ratio, and 14 or more to the largest.
 const LEAST_STEPS: usize = 100;
 const LARGEST_STEPS: usize = 32;
 
