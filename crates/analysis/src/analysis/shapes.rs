@@ -98,6 +98,7 @@ pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f
 pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let d = element.dimension();
     valid(element, count, seed, |random| {
+        // The determinant of such a map is at least 1/2 in the plane and 1/4 in space.
         let map = affine(d, 0.25, random);
         let terms = element.cell.straight_terms();
         let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random.symmetric()).collect();

@@ -65,6 +65,7 @@ pub(super) struct Answer {
 const SOLUTIONS: usize = 50;
 /// More unknowns are differentiated by one solution for each observed quantity. Both ways give the same derivatives:
 /// one takes a solution for each unknown, the other one for each quantity.
+// A search for 200 unknowns from 178 quantities under six loads takes half as long again by solutions for each unknown.
 const FORWARD: usize = 40;
 /// The relative error of derivatives where equations are solved by iterations.
 const PRODUCT: f64 = 1e-7;
