@@ -26,6 +26,7 @@ const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
 // Boxes with a network take some 20 to the least ratio, and 14 or more to the largest.
 const LEAST_STEPS: usize = 100;
+// On a bar of tetrahedra with Poisson's ratio 0.45 the largest ratio is 0.5 % too small after them.
 const LARGEST_STEPS: usize = 32;
 
 /// Vectors of a solution with its levels, about.

@@ -131,4 +131,6 @@ const SHARE: f64 = 0.02;
 // With one measurement more than unknowns noise alone leaves as much in 0.3 % of cases, and with two more in 0.01 %.
 pub(super) const MANY: f64 = 3.0;
 /// The ratio of the changes of successive meshes from which on they are too coarse to be extrapolated.
+// The order at a clamped edge is 1.42 at Poisson's ratio 0.3, 1.24 at 0.45 and never below 1.19: its ratio is 0.37 to
+// 0.44. A ratio of 0.5 is that of the first order, and a larger one of meshes without an order.
 const SLOW: f64 = 0.55;
