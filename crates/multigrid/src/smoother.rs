@@ -14,8 +14,8 @@ use rayon::prelude::*;
 const STEPS: usize = 15;
 /// Their Ritz value is below the eigenvalue by less than this share of it. A bound below the eigenvalue would let the
 /// polynomial grow beyond it, and the errors there with it.
-// With 1 iterations are one or two fewer than with 1.1 there, and with 0.9 they lead nowhere. With 1.3 there are one or
-// two more, and with 2 half as many more.
+// With a factor of 1 iterations are one or two fewer than with 1.1 there, and with 0.9 they lead nowhere. With 1.3
+// there are one or two more, and with 2 half as many more.
 const SAFETY: f64 = 1.1;
 
 /// Polynomial smoothing of errors between `upper / ratio` and `upper`.

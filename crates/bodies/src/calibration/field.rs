@@ -66,8 +66,8 @@ const BISECTIONS: usize = 3;
 // With this number they have 288 MB, and a factor takes `6000³/3 = 7e10` operations.
 const MOST: usize = 6000;
 /// The largest change of a logarithm in one step.
-// It holds back the first steps of bodies that are far from the guess: where the guess is 1.5 times the modulus, a
-// fourth of it would do.
+// The bound holds back the first steps of bodies that are far from the guess: where the guess is 1.5 times the modulus,
+// a fourth of it would do.
 const LARGEST: f64 = 1.0;
 
 struct Search<'a, 'b> {

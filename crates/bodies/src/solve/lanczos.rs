@@ -23,7 +23,7 @@ const LOOK: usize = 4;
 // the share above they take 32 to 40 steps, and nothing is condensed.
 const BASIS: usize = 60;
 /// The vectors of each end that are kept then. More than one, because those next to the end slow its convergence down.
-// With one vector these searches take 568 steps, with five 496, with 20 as many as with ten.
+// With one vector these searches take 568 steps, with five 496, and with 20 as many as with ten.
 const KEPT: usize = 10;
 
 /// An approximate eigenvalue θ of the operator A, and its vector.

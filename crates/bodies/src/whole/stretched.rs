@@ -17,8 +17,8 @@ use std::sync::Arc;
 /// The share of the body that is stretched at least as far as is wanted.
 const SHARE: f64 = 0.1;
 /// The relative difference from the wanted stretch that counts as none: errors of coarse bodies hardly change with it.
-// A fourth of it takes 13 % more equilibria for the loads of a bar of hexahedra at 30 %, and four times as much takes
-// 19 % fewer.
+// A fourth of this difference takes 13 % more equilibria for the loads of a bar of hexahedra at 30 %, and four times as
+// much takes 19 % fewer.
 const NEAR: f64 = 0.05;
 /// A load that leaves less than this share of the wanted stretch says little of large deformation, and is left out.
 const LEAST: f64 = 0.5;
