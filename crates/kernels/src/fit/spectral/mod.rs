@@ -44,7 +44,7 @@ const SHORTER: usize = 4;
 const KEPT: f64 = 0.3;
 /// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first, for a third fewer trials.
 const FAR: f64 = 0.95;
-/// A step goes at most this share of the way to where the first κ would be zero. A share of 0.25 takes a fifth more steps, and 0.95 as many.
+/// A step goes at most this share of the way to where the first κ would be zero. A share of 0.25 takes a fifth more steps, 0.95 as many.
 const TOWARDS_ZERO: f64 = 0.5;
 /// Newton steps at a fixed μ have stalled if the squared decrement stays above the first number, and above the second
 /// number times the previous one.
