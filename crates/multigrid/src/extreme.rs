@@ -9,8 +9,11 @@ use crate::random::Random;
 use crate::settings::{Event, Watch};
 
 /// The quotient is found once it changes by less than this share of itself.
+// The least quotient of a box of hexahedra with a network is 2e-3 too large then, after 20 steps. With 1e-2 it is
+// 1.2e-2 too large after 11, with 1e-4 3e-4 after 30.
 const SETTLED: f64 = 1e-3;
 /// The number of such changes, one after the other, that are needed: a search may rest on a saddle for a step or two.
+// With one such change it is 4e-3 too large, after three steps fewer.
 const TIMES: usize = 4;
 
 /// Which end of the quotients.

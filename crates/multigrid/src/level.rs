@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 /// Groups that leave more than this share of the nodes are none. A level with nearly as many nodes costs as much as the
 /// one before it and corrects little that its smoother does not.
+// Between 0.35 and 0.95 no level of boxes changes.
 const COARSER: f64 = 0.7;
 
 #[derive(Debug)]

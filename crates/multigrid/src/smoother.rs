@@ -9,9 +9,13 @@ use crate::tridiagonal::Tridiagonal;
 use rayon::prelude::*;
 
 /// Steps of Lanczos' method for the largest eigenvalue. The smoother needs no more digits than its margin has.
+// Conjugate gradients take as many iterations, to one, after 6 to 60 steps, on a box of hexahedra and on a bar of
+// tetrahedra with Poisson's ratio 0.45. After three the bound is too small, and the equations are not solved.
 const STEPS: usize = 15;
 /// Their Ritz value is below the eigenvalue by less than this share of it. A bound below the eigenvalue would let the
 /// polynomial grow beyond it, and the errors there with it.
+// With a factor of 1 iterations are one or two fewer than with 1.1 there, and with 0.9 they lead nowhere. With 1.3
+// there are one or two more, and with 2 half as many more.
 const SAFETY: f64 = 1.1;
 
 /// Polynomial smoothing of errors between `upper / ratio` and `upper`.

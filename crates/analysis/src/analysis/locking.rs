@@ -88,6 +88,8 @@ pub enum TooStiff {
 }
 
 /// The share of a body's energy that its cells lack, from which on they are too stiff: displacements under forces are about so much too small.
+// A bent bar of n simplices across lacks about `2/n²`, 22 % with three and 12 % with four: the share lies between what
+// counts as few below and what does not.
 pub const LACKING: f64 = 0.15;
 
 impl TooStiff {

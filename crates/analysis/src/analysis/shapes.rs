@@ -6,8 +6,12 @@ use crate::random::Random;
 use crate::stiffness::Geometry;
 
 /// How far nodes are moved, in units of the reference cell: far enough to distort it, and most shapes remain valid.
+// With this distance and the affine maps below all of 2 000 hexahedra of 8 or 20 nodes are valid, and 93 % of quadratic
+// tetrahedra. With twice the distance 52 % of the latter are valid, and with four times 14 %.
 const JITTER: f64 = 0.15;
 /// The size of the random entries of the affine maps of random shapes.
+// In the plane the determinant of such a map is at least `(1 − 0.4)² − 0.4² = 0.2`. With entries of up to 0.8 a third
+// of the quadratic tetrahedra and a quarter of the hexahedra of 20 nodes are tangled.
 const AFFINE: f64 = 0.4;
 
 /// How shapes are drawn.
@@ -94,6 +98,7 @@ pub fn random_shapes(element: &Element, count: usize, seed: u64) -> Result<Vec<f
 pub fn straight_shapes(element: &Element, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let d = element.dimension();
     valid(element, count, seed, |random| {
+        // The determinant of such a map is at least 1/2 in the plane and 1/4 in space.
         let map = affine(d, 0.25, random);
         let terms = element.cell.straight_terms();
         let bent: Vec<f64> = (0..d * terms.len()).map(|_| 0.1 * random.symmetric()).collect();

@@ -39,6 +39,8 @@ pub(super) struct Constraints {
 type Source<'a> = Option<(&'a [f64], &'a Block)>;
 
 /// Steps of the power method.
+// For the springs of 1 536 hexahedra 100 steps miss 2e-3 of the eigenvalue, 200 miss 1.5e-4, and 500 miss 1e-6. The
+// bound of stable sweeps is 1 % below 2.
 const POWERS: usize = 200;
 
 impl Constraints {

@@ -3,6 +3,7 @@
 use super::lanes::{Block, LANES, Lanes, dots};
 
 /// Iterations at most. The preconditioned stiffness has few eigenvalues far from one, those of the slowest motions.
+// The loads of a fit for a bar of 5 832 unknowns take 2 to 47 iterations.
 const MOST: usize = 300;
 
 /// The solutions of `A x = b` with the preconditioner `P ≈ A⁻¹`, to the relative residual `tolerance` or as far as 300 iterations lead, and

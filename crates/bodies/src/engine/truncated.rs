@@ -325,6 +325,8 @@ impl Truncated {
 /// The relative change of an eigenvalue in the last iteration with which it is known to the digits that are printed.
 const NEARLY: f64 = 1e-5;
 /// Inverse iterations at most.
+// The eigenvalue converges with the square of the quotient of the two lowest eigenvalues in each iteration: 500
+// iterations leave 2e-9 where the two frequencies differ by 1 %.
 const VIBRATIONS: usize = 500;
 
 /// The network with the constants `1/(h² g·W g)` at which the compliance of each spring is what its points have. Springs between held points stay.

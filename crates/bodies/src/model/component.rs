@@ -34,4 +34,6 @@ impl Component {
 }
 
 /// The polynomial degree with which a load that is not a polynomial is integrated.
+// The five points along a direction of such a rule integrate a sine that turns by 1 rad across the cell to 4e-13, and
+// by half a wave to 4e-8.
 const SMOOTH: usize = 8;

@@ -11,13 +11,19 @@ use nalgebra::DMatrix;
 // which is 4e-6 of the value where the next one is twice as large.
 const FOUND: f64 = 2e-3;
 /// Steps that are made at least: by then a value a hundredth beyond the next is seen.
+// Eight steps at least would save a third of the steps on networks of a small cylinder, and 4 % of those on a bar of 3 500
+// unknowns.
 const LEAST_STEPS: usize = 32;
 /// Steps between two looks at the values.
+// A look at each step would save 3 % of the steps.
 const LOOK: usize = 4;
 /// The vectors in the basis before it is condensed to those of each end. Each step costs products with all of them, and
 /// each is two vectors in memory.
+// Searches to 1e-8 on that bar take 480 steps with it, 496 with 30 vectors, and 476 with as many as there are steps. To
+// the share above they take 32 to 40 steps, and nothing is condensed.
 const BASIS: usize = 60;
 /// The vectors of each end that are kept then. More than one, because those next to the end slow its convergence down.
+// With one vector these searches take 568 steps, with five 496, and with 20 as many as with ten.
 const KEPT: usize = 10;
 
 /// An approximate eigenvalue θ of the operator A, and its vector.

@@ -24,7 +24,9 @@ const DOUBT: f64 = 1e-12;
 // largest, 3 000 steps lower it to 4e-19.
 const STEPS: usize = 3000;
 /// Steps to the least ratio of energies, and to the largest, which decides nothing.
+// Networks of boxes take some 20 steps to the least ratio, and 14 or more to the largest.
 const LEAST_STEPS: usize = 100;
+// On a bar of tetrahedra with Poisson's ratio 0.45 the largest ratio is 0.5 % too small after them.
 const LARGEST_STEPS: usize = 32;
 
 /// Vectors of a solution with its levels, about.

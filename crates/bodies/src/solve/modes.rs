@@ -11,6 +11,9 @@ use std::f64::consts::TAU;
 
 /// The number of vectors beyond those that are wanted. The last wanted one converges with the ratio of its eigenvalue
 /// to that of the first vector that is left out.
+// Symmetric bodies have up to five motions of one frequency (three unless the symmetry is that of an icosahedron), so
+// that all copies of the last one have a vector. Twelve modes of a bar of 5 488 hexahedra take 20 s with four, 16 s
+// with none and 25 s with eight.
 const SPARE: usize = 4;
 /// The number of blocks in the basis before it is condensed to its best two. A larger basis converges in fewer rounds
 /// and costs the square of its width in memory and products.

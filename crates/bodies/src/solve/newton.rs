@@ -80,6 +80,8 @@ pub struct Equilibrium {
 /// equilibrium. Beyond it the displacements would have less than four digits, which no report could show as a solution.
 pub(crate) const ROUGHEST: f64 = 1e-4;
 /// Forces of all points, held ones too, that exceed the bound of the rounding of the free ones by no more than this are none.
+// Both are Euclidean norms. Roundings that are alike at all points exceed those of the free ones by the root of the
+// quotient of the two numbers, which is 10 where one degree of freedom in a hundred is free.
 const RIGID: f64 = 10.0;
 /// The relative accuracy to which prescribed displacements are reached. The last part of a displacement is added to the
 /// others, whose rounding it leaves.

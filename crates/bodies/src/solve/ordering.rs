@@ -7,9 +7,11 @@
 use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
 
 /// A part with at most this number of nodes is not divided.
+// On 16³ hexahedra parts of 1 to 128 nodes take the same time, and parts of 512 a quarter more.
 const LEAF: usize = 8;
 /// The largest distance of a cut from the middle of a part, as a share of its nodes. Parts of about equal size keep the
 /// tree of the elimination low.
+// Shares of 0.02 to 0.2 take the same time there, and 0.4 a tenth more.
 const ASIDE: f64 = 0.1;
 /// The least number of nodes for which dissection is tried. Smaller graphs cost about the same in both orders.
 const NODES: usize = 500;

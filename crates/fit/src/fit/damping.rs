@@ -75,6 +75,7 @@ pub struct FittedDecay {
 }
 
 /// Frequencies in a decade at which damping is compared, at least so many in all. The damping of a Maxwell element falls by half in half a decade.
+// A peak in the middle between two of them is seen to 0.2 %: `2 x/(1 + x²)` is 0.998 at `x = 10^(1/40)`.
 const PER_DECADE: f64 = 20.0;
 /// Relaxation times in a decade of the band, as many as measured moduli have. They begin and end one time beyond the band: a Maxwell element damps
 /// both sides of its frequency alike, and the ends of the band would else lack the damping of one side.
@@ -83,9 +84,9 @@ const TIMES: f64 = 2.0;
 const NONE: f64 = 1e-9;
 /// Steps of Gauss and Newton at most; they end when the sum of squares falls no more. Measured: 4 to 12.
 const STEPS: usize = 100;
-/// Halves of a step at most.
+/// Halves of a step at most: a share of 2⁻²⁹ of a step lowers the linearised sum of squares by 4e-9 of itself at most.
 const HALVES: usize = 30;
-/// The fall of the sum of squares that is rounding.
+/// The fall of the sum of squares that is rounding: a hundred squares are rounded by up to 1e-14 of their sum.
 const FALL: f64 = 1e-13;
 
 /// Damping at one frequency.

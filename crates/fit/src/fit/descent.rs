@@ -115,9 +115,13 @@ impl Anneal for &Raw<'_> {
 }
 
 /// The probability with which a step of annealing flips one of the switches.
+// Of quad4, tet4 and hex8 probabilities of 0.03 to 0.5 leave objectives that are the same to 1 %; if each step flips a
+// switch they are 18 % larger.
 const FLIPPING: f64 = 0.25;
 /// The number of iterations after which a swarm has agreed on the set of springs. The remaining iterations go to
 /// another swarm.
+// Swarms of 25 to 400 iterations leave objectives that are the same to 2 % after 2 000 iterations; those of 800 leave 5
+// % more, and a single swarm 18 % more.
 const AGREED: u64 = 200;
 
 /// The constants of the element with nodes at `x`, `[springs]`, N/m. The objective, with the cost of the springs, is
@@ -141,6 +145,8 @@ pub fn search(
     let count = reduced.scales.len();
     let mut start = vec![reduced.uniform(); count];
     // Best equal constants tell the size of κ, of which a search knows nothing else.
+    // Half of this share leaves switched annealing 2 % more and a swarm without switches 6 % more, and twice of it
+    // leaves a swarm with switches 16 % more. Without switches twice of it leaves 1 to 6 % less.
     let stride = 0.3 * start.iter().sum::<f64>() / count as f64;
     // The seed is fixed: the same element has the same springs in each run. The
     // optimiser has the objective behind a shared reference, hence the lock.

@@ -6,6 +6,8 @@
 use super::{mix, unit_at};
 
 /// Rounds of the permutation; each mixes both halves of a number.
+// With random functions in each round, four are the least after which neither the permutation nor its inverse can be told from
+// a random one (Luby and Rackoff, SIAM J. Comput. 17, 1988).
 const ROUNDS: u64 = 4;
 
 /// A Latin hypercube of some points, of which each is known without the others.

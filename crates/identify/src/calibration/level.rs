@@ -62,11 +62,16 @@ pub(super) struct Answer {
 }
 
 /// Loads under one support are solved with one factor; the way to solve is chosen for so many.
+// Up to 60 loads leave the bound of the levels in space at 15 000 unknowns (`method.rs`); in the plane 50 raise it from
+// 50 000 to 62 500.
 const SOLUTIONS: usize = 50;
 /// More unknowns are differentiated by one solution for each observed quantity. Both ways give the same derivatives:
 /// one takes a solution for each unknown, the other one for each quantity.
+// A search for 200 unknowns from 178 quantities under six loads takes half as long again by solutions for each unknown.
 const FORWARD: usize = 40;
 /// The relative error of derivatives where equations are solved by iterations.
+// The moduli of two halves of a bar have eleven digits then. With 1e-3 they change by 2e-7, and a search takes a tenth
+// less time.
 const PRODUCT: f64 = 1e-7;
 /// The change of θ over which forces of laws are differentiated. Central differences err by its square, and the
 /// rounding of forces over it is 1e-12.

@@ -29,9 +29,12 @@ const NEAR: usize = 13;
 /// The weight of the proximal term, relative to the mean of the diagonal of the Hessian. The Hessian is singular where
 /// variables at their bounds leave a motion free. The term makes it regular, and the centre moves until it does not
 /// act.
+// Networks of three bodies of 357 to 1 436 tetrahedra take 4 to 7 steps with weights of 1e-12 to 1e-8, up to 11 with 1e-6,
+// and 32 to 60 with 1e-4, where one of them is not found.
 const PROXIMAL: f64 = 1e-8;
 /// The proximal term is centred again when the gradient is below this share of the residual. Then the minimum with this
 /// centre is near, and another centre takes its bias away.
+// Shares from 0.01 to 0.5 take as many steps.
 const CENTRED: f64 = 0.1;
 /// The largest number of steps, and of steps shorter than `SHORT`. Programmes with a solution took 6 to 15 steps, none of
 /// them short; those without one take short steps for ever.
@@ -40,6 +43,7 @@ const SHORT_STEPS: usize = 4;
 const SHORT: f64 = 1e-2;
 /// A search along a direction ends when the slope is below this share of the first. The next direction corrects what is
 /// left more cheaply than another round.
+// Shares from 0.025 to 1 take as many steps, but for one.
 const FLAT: f64 = 0.1;
 /// The largest number of rounds of that search: every second one halves the interval, so that its end is rounding.
 const HALVINGS: usize = 60;

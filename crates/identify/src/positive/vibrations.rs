@@ -10,8 +10,10 @@ use faer::sparse::Triplet;
 /// long.
 const BODIES: usize = 20;
 /// An ω² below this share of the shift is a rigid motion, or that of a hinge.
+// Rounding of ω² on slender bodies is some 1e-8 of it (`modes.rs`).
 const RIGID: f64 = 1e-7;
 /// A network is unstable if it has a negative ω² of this share of the least ω² of the body.
+// The rounding of the factor, some 1e-16 of the largest ω², is smaller unless that is 1e12 times the least.
 const UNSTABLE: f64 = 1e-4;
 
 /// The lowest vibrations of a free body with unit density.

@@ -12,6 +12,8 @@ use crate::model::ConsistentMasses;
 /// Steps at most.
 const STEPS: usize = 12;
 /// A shorter step is the last one.
+// The frequency of a mode that the mesh resolves changes with the share by less than itself: this step changes it by
+// less than 1e-4.
 const SHORT: f64 = 1e-4;
 
 /// The share s of lumped masses, `[points]`, kg, by Gauss–Newton steps from the consistent matrix.

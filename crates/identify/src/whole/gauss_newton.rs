@@ -29,10 +29,13 @@ impl Default for GaussNewton {
 /// The relative error of the products of a step where equations are solved by iterations: well below the accuracy of the step.
 const STEP: f64 = 1e-3;
 /// The first radius of the trust region: the root mean square of a step in θ, which is a logarithm.
+// Radii from 0.1 to 4 lead to the same errors to 0.5 %, in as many steps to three.
 const RADIUS: f64 = 1.0;
 /// A smaller radius ends the search. It is a relative change of the constants that no error of displacements shows.
 const LEAST_RADIUS: f64 = 1e-6;
 /// The least share of the predicted decrease that a step must achieve.
+// The η of algorithm 4.1 may be any number from 0 to 1/4 (Nocedal and Wright 2006). Above zero it keeps the search from
+// steps that lower the objective by rounding.
 const ACCEPTED: f64 = 1e-3;
 
 impl GaussNewton {

@@ -46,8 +46,11 @@ pub(super) struct SpringParts {
 
 /// Nearly vanishing constants start at this share of the median: large enough to take part in the fit, too small to
 /// change the start much.
+// Errors of fits to a cube of 412 tetrahedra, under loads that were not fitted, are the same to 3 % with shares of 0.01
+// to 1. With 0.003 each ρ exceeds the range of constants that is allowed.
 const LEAST: f64 = 0.03;
 /// The share of the median below which a constant is nearly vanishing.
+// Shares of 1e-6 to 1e-2 leave errors there that differ by 1 %: few constants lie between.
 const NOTHING: f64 = 1e-4;
 
 impl<'a> Object<'a> {

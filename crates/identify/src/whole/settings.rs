@@ -18,6 +18,7 @@ pub enum DescentMethod {
 }
 
 /// The default number of pairs of L-BFGS.
+// Numbers between 3 and 20 are usual (Nocedal and Wright 2006, section 7.2).
 const MEMORY: usize = 10;
 
 crate::named!(DescentMethod { "gauss-newton" => GaussNewton { 0: GaussNewton::default() }, "l-bfgs" => Lbfgs { memory: MEMORY } });

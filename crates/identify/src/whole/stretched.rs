@@ -17,6 +17,8 @@ use std::sync::Arc;
 /// The share of the body that is stretched at least as far as is wanted.
 const SHARE: f64 = 0.1;
 /// The relative difference from the wanted stretch that counts as none: errors of coarse bodies hardly change with it.
+// A fourth of this difference takes 13 % more equilibria for the loads of a bar of hexahedra at 30 %, and four times as
+// much takes 19 % fewer.
 const NEAR: f64 = 0.05;
 /// A load that leaves less than this share of the wanted stretch says little of large deformation, and is left out.
 const LEAST: f64 = 0.5;
@@ -25,8 +27,10 @@ const SOLUTIONS: usize = 20;
 /// Iterations at most for one of them: where Newton's method takes more, a shorter step is cheaper.
 const ITERATIONS: usize = 25;
 /// The first step, as a share of the factor at which the linear body has the wanted stretch.
+// Shares of 0.25 to 2 take as many equilibria there to 17 %, and an eighth takes a quarter more.
 const FIRST: f64 = 0.5;
 /// Shorter steps, as a share of the same factor, end the search.
+// With 0.08 six of 43 loads of that bar end before the wanted stretch, which they reach with 0.02.
 const SHORTEST: f64 = 0.02;
 /// The share of its last factor to which a load is scaled back that has lost its equilibrium: at the limit itself the displacements have no
 /// bound, and say nothing of a model.

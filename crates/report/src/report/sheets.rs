@@ -6,6 +6,8 @@ use crate::study::{FitOutcome, Outcome};
 use nalgebra::Matrix3;
 
 /// The thickness, relative to the extent of a body, beyond which shear across it counts.
+// At a tenth shear adds 0.8 % to the deflection of a cantilever's end and 12 % to that of the middle of a beam that is
+// clamped at both ends, as `E/(4 κ G) (t/L)²` and 16 times that with `κ = 5/6` and Poisson's ratio 0.3.
 const THICK: f64 = 0.1;
 
 /// That the sheet is thick, and how hinges bend.

@@ -17,6 +17,8 @@ use crate::springs::norm;
 use std::sync::{Mutex, OnceLock};
 
 /// The ratio of the contents of two meshes from which on they are of different bodies. Coarse meshes of curved bodies lack a sixth.
+// A prism in a cylinder has 0.83 of its content with six sides, 0.76 with five and 0.64 with four: quotients of 1.21,
+// 1.32 and 1.57.
 const OTHER: f64 = 1.4;
 /// The relative difference of the contents from which on it is reported. Errors of displacements change by about that
 /// share.

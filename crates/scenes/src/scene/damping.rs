@@ -57,6 +57,9 @@ pub struct MeasuredDamping {
 /// The largest decrement. What dies away faster is gone within a fiftieth of a period, and its damping ratio is above 0.99.
 const LARGEST_DECREMENT: f64 = 50.0;
 /// The largest error of a series that stands for measured damping, relative to it.
+// Over two decades series of two terms in each have constant damping to 0.05 % and damping that rises with the
+// frequency to 3 %. A peak that is the square of a Maxwell element's leaves 25 %, and damping that rises with the
+// square of the frequency 36 %.
 const LARGEST_ERROR: f64 = 0.2;
 
 impl DampingMeasurement {

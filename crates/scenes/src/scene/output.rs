@@ -64,6 +64,8 @@ pub struct DynamicModuliEntry {
 }
 
 /// Frequencies in a decade where no number is given.
+// The peak of a relaxing term in the middle between two of them is seen to 3 %: `2 x/(1 + x²)` is 0.974 at
+// `x = 10^(1/10)`.
 const PER_DECADE: f64 = 5.0;
 /// Frequencies at most.
 const MOST: u64 = 10_000;

@@ -10,6 +10,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// The largest error of a series that stands for measured moduli.
+// Over three decades series of two terms in each have moduli that fall as `t^(−1/2)` to 0.4 % and as `1/t` to 1.6 %. A
+// sudden fall to a fourth leaves 22 %, and one to a tenth 30 %.
 const LARGEST_ERROR: f64 = 0.2;
 
 /// How the moduli of a material relax.

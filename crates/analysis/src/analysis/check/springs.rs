@@ -13,10 +13,14 @@ use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// The `‖R − K‖/‖R‖` of an exact network that rounding may cause.
+// The shipped elements leave 6e-16 at most. A term that is wrong or lacking changes the first digits.
 const EXACT: f64 = 1e-10;
 /// The difference of two networks, relative to `‖R‖`, that rounding of the normal equations may cause.
+// The shipped elements, with conditions of the equations of up to some hundred, leave 2e-14 at most.
 const FORMULA: f64 = 1e-8;
 /// An element with more springs than this is compared at one shape, for which the formula takes a second.
+// Of the shipped elements the 352 springs of `hex27` take two seconds at that shape, and the 67 of `quad12`
+// milliseconds.
 const MANY: usize = 40;
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {

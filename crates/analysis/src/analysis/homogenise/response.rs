@@ -11,6 +11,8 @@ const SHIFT: f64 = 1e-9;
 /// The residual at which the corrections end, relative to the forces: some roundings.
 const ENOUGH: f64 = 1e-14;
 /// The residual beyond which the displacements are no solution.
+// The residual of a motion with 0.31 of the shift is divided by 1.31 in each of the 60 corrections below, and is this share
+// of the forces after them.
 const SOLVED: f64 = 1e-7;
 /// Forces below this share of those of all points, before images are added, are what rounding leaves of none.
 const NONE: f64 = 1e-12;

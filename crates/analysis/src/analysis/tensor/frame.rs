@@ -4,6 +4,9 @@ use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
 
 /// The projection of a coordinate axis onto a plane has no direction to rely on if it is shorter than this.
+// A plane that tilts by δ turns a projection of length s by up to `δ/s`. Some axis is always longer: a direction in a
+// plane that is orthogonal to the first axis has `1/√2` along one of the others, and a line has `1/√3` along one of
+// three.
 const SHORT: f64 = 0.1;
 
 /// The plane or line that fits the points of a sample best.

@@ -3,6 +3,7 @@
 use crate::scalar::Packed;
 
 /// Steps of the fourth order from 3 % to rounding.
+// The start errs by 3.4 % at most, which the first step takes to 1.7e-5 and the second to rounding.
 const REFINEMENTS: usize = 2;
 
 /// `j^(−1/3)` of numbers above zero: a third of the exponent, then `y ← y (1 + r/3 + 2 r²/9 + 14 r³/81)` with `r = 1 − j y³`, the beginning of the

@@ -1,5 +1,4 @@
-//! The spectral objective `min_κ ‖E(κ)‖₂`, `E = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`: the least t with `A = tI − E ⪰ 0` and
-//! `B = tI + E ⪰ 0`.
+//! The spectral objective `min_κ ‖E(κ)‖₂`, `E = R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ`: the least t with `A = tI − E ⪰ 0` and `B = tI + E ⪰ 0`.
 //!
 //! A barrier method follows the minimisers of `t/μ − log det A − log det B − Σ log κ` (the last term only for `κ ≥ 0`)
 //! to μ → 0 (Nesterov and Nemirovskii 1994). The matrices of the springs have rank one, so that the Hessian needs no
@@ -37,15 +36,15 @@ pub const GAP: f64 = 1e-8;
 pub const EXACT: f64 = 1e-6;
 /// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
 pub const AMBIGUOUS: f64 = 1e6;
-/// The largest number of steps. A lane that is not at the end then has a wider gap, which its certificate tells.
+/// The largest number of steps; cells of aspects up to 1000 take 94. A lane that is not at the end has the gap that its certificate tells.
 const STEPS: usize = 120;
-/// How often a step is halved within one iteration.
+/// How often a step is halved within one iteration. Two halvings take as many steps, and with one some lanes do not end.
 const SHORTER: usize = 4;
-/// A step keeps at least this share of the distance to the boundary that the path would keep.
+/// A step keeps at least this share of the distance to the boundary that the path would keep. Shares from 0.1 to 0.6 take as many steps.
 const KEPT: f64 = 0.3;
-/// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first.
+/// A step that would lower μ by more than this share nearly always leaves the domain: its half is tried first, for a third fewer trials.
 const FAR: f64 = 0.95;
-/// A step goes at most this share of the way to where the first κ would be zero.
+/// A step goes at most this share of the way to where the first κ would be zero. A share of 0.25 takes a fifth more steps, 0.95 as many.
 const TOWARDS_ZERO: f64 = 0.5;
 /// Newton steps at a fixed μ have stalled if the squared decrement stays above the first number, and above the second
 /// number times the previous one.
@@ -152,7 +151,7 @@ impl<T: Real> Spectral<T> {
         let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
         let mut mu = zero.clone();
         let mut kappa = self.kappa.clone();
-        // The trial step: z + α d, and μ (1 − α (1 − θ)).
+        // The trial step: z + α d, and μ (1 − α (1 − θ)). A first θ from 0.05 to 0.4 changes the number of steps by 3 %.
         let mut step: Vec<T> = self.newton.clone();
         for entry in &mut step {
             *entry = zero.clone();
@@ -196,7 +195,7 @@ impl<T: Real> Spectral<T> {
             // On the path the gap is μ times the complexity: at 0.4 of the gap that is asked for, a point beside the
             // path is within it as well.
             let end = self.value.greatest(&floor).scaled(&(0.4 * at_half::<T>(GAP) / complexity));
-            // Centred and at the end of the path: no further change.
+            // Centred and at the end of the path: no further change. Decrements from 0.05 to 0.8 change the number of steps by 2 %.
             let centred = one.constant(&0.2) - &decrement;
             let done = (end.clone().scaled(&1.001) - &mu).choose(&centred, &zero.clone().scaled(&-1.0));
             let done = inside.choose(&done, &(zero.clone() - &one));
@@ -208,11 +207,13 @@ impl<T: Real> Spectral<T> {
             // Next to the boundary each of the two matrices adds at most one to the decrement, and a full step doubles
             // the distance. Only beyond this number can the step be too long.
             let length = (one.constant(&complexity) - &decrement).choose(&one, &length);
+            // θ follows how easy steps are. Least values of 1e-5 to 1e-2, largest ones of 0.5 to 0.95, and decrements of 0.15 to 0.9 and of
+            // 0.5 to 4 between which θ stays change the number of steps by 3 % at most.
             let faster = theta.clone().squared().greatest(&one.constant(&1e-3));
             let slower = theta.clone().sqrt().least(&one.constant(&0.8));
             let next = (one.constant(&0.3) - &decrement).choose(&faster, &theta);
             let next = (decrement.clone() - &one).choose(&slower, &next);
-            // Halved twice: the path is followed too fast. (If α is zero no step has been tried.)
+            // Halved twice: the path is followed too fast. (If α is zero no step has been tried.) Above 0.5 one halving would count.
             let halved = (one.constant(&0.3) - &alpha).choose(&alpha, &zero);
             theta = inside.choose(&halved.choose(&slower, &next), &slower);
             let least = (end / &mu).least(&one);
@@ -248,8 +249,7 @@ impl<T: Real> Spectral<T> {
         }
     }
 
-    /// Evaluates both matrices at the trial point, which is written to `kappa`; positive if the point is inside the
-    /// domain.
+    /// Evaluates both matrices at the trial point, which is written to `kappa`; positive if the point is inside the domain.
     #[inline(always)]
     fn enter(&mut self, reduced: &Reduced<T>, kappa: &mut [T], alpha: &T, step: &[T]) -> T {
         let (p, c) = (reduced.order, kappa.len());
@@ -266,7 +266,7 @@ impl<T: Real> Spectral<T> {
         inside.least(&self.b.set(&self.e, p, &t, 1.0))
     }
 
-    /// The κ of the least-squares fit, and a t above its error.
+    /// The κ of the least-squares fit, and a t above its error: factors of 1.01 to 1.5 take as many steps to 2 %.
     #[inline(always)]
     fn start(&mut self, reduced: &Reduced<T>) {
         let (p, c) = (reduced.order, self.kappa.len());

@@ -13,6 +13,7 @@ use super::problem::{Optimum, Problem, Spectrum};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// The largest number of Newton steps; one is enough after the barrier method if no other eigenvalue is near.
+// From the largest first step, steps that converge quadratically are 0.1, 1e-2, 1e-4 and 1e-8.
 const STEPS: usize = 8;
 /// A first step above this, relative to t, does not start near the optimum.
 const LARGEST: f64 = 0.1;

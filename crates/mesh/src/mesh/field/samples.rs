@@ -77,6 +77,8 @@ impl Accepted {
 }
 
 /// How many places a plane is fitted to, in each number of dimensions.
+// The places are two to three and a half times as many as the `d + 1` numbers of a plane, so that the noise of single
+// values is evened out.
 const FITTED: [usize; 4] = [1, 4, 8, 14];
 
 impl Samples {

@@ -4,8 +4,11 @@ use super::place::{counted, length, place};
 use super::repair::Repair;
 
 /// A difference of volumes that must be known, percent.
+// A ball of stepped cubes differs by 25 % with five across, 11 % with seven, 6 % with ten and 2 % with thirteen.
 const FAR: f64 = 10.0;
 /// The area of steps, relative to that of their surface, which matters to a traction.
+// The steps of a plane with the normal n have `|n_x| + |n_y| + |n_z|` times its area: 1.05 where it is tilted by 3°
+// against the lattice, and 1.5 in the mean over a sphere. Sides along the lattice alone stay below.
 const STEPPED: f64 = 1.05;
 
 /// Faces that pass through each other.

@@ -4,9 +4,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Residuals of this multiple of the noise are more than noise.
+// Where ten numbers more than unknowns were measured, noise alone leaves as much once in 80 cases, and where thirty
+// were, once in 10 000: χ² over that number is then 2.25.
 const MISFIT: f64 = 1.5;
 
 /// Residuals of this multiple are those of another model or another noise, as in `springfit calibrate`.
+// With one number more than unknowns noise alone leaves as much in 0.3 % of cases, and with two more in 0.01 %.
 const MANY: f64 = 3.0;
 
 /// By what deviations by the stated noise are multiplied where residuals are more than noise (Birge 1932).

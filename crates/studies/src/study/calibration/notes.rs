@@ -119,6 +119,7 @@ impl CalibratedLoad {
 }
 
 /// Without a stated noise, residuals of half the size of what was measured are those of another body.
+// The share that is explained is one less the squares that are left, `1 − (1/2)²`.
 const EXPLAINED: f64 = 0.75;
 /// What is held has moved far if it has by this share of the displacements of the load.
 const SLIPPED: f64 = 0.1;
@@ -127,6 +128,9 @@ const OUTLIER: f64 = 5.0;
 /// Where the noise is not known, it has moved if it has by this share of the displacements of the load.
 const SHARE: f64 = 0.02;
 /// Residuals of this multiple of the stated noise are those of another model or another noise, whatever part of them is the error of the meshes.
+// With one measurement more than unknowns noise alone leaves as much in 0.3 % of cases, and with two more in 0.01 %.
 pub(super) const MANY: f64 = 3.0;
 /// The ratio of the changes of successive meshes from which on they are too coarse to be extrapolated.
+// The order at a clamped edge is 1.42 at Poisson's ratio 0.3, 1.24 at 0.45 and never below 1.19: its ratio is 0.37 to
+// 0.44. A ratio of 0.5 is that of the first order, and a larger one of meshes without an order.
 const SLOW: f64 = 0.55;

@@ -14,6 +14,8 @@ const STRAIN: f64 = 0.01;
 const MOST_PIECES: usize = 20;
 /// A body with fewer points than this share in the lowest layers is rounded: it is held over `DEPTH` of its length.
 const FEW: f64 = 0.05;
+// A ball has `3 t² − 2 t³` of its volume in a layer of the share t of its diameter: 4 % at this depth, with 12 % of its
+// surface.
 const DEPTH: f64 = 0.12;
 
 /// The supports and loads.
