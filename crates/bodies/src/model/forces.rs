@@ -63,12 +63,12 @@ impl Network {
     pub(super) fn pull_lengths(&self, x: &[f64], force: &mut [f64]) -> bool {
         force.fill(0.0);
         let mut sound = true;
-        self.pull(x, force, |spring, length| sound &= spring.has_direction(length));
+        self.visit_lengths(x, force, |spring, length| sound &= spring.has_direction(length));
         sound
     }
 
     /// Adds to the gradient what the springs between two points give, and tells `visit` the length of each.
-    fn pull(&self, x: &[f64], force: &mut [f64], visit: impl FnMut(&LengthSpring, f64)) {
+    fn visit_lengths(&self, x: &[f64], force: &mut [f64], visit: impl FnMut(&LengthSpring, f64)) {
         match self.dimension {
             1 => pull::<1>(&self.lengths, x, force, visit),
             2 => pull::<2>(&self.lengths, x, force, visit),
@@ -80,7 +80,7 @@ impl Network {
     /// whole length, N.
     pub(super) fn compare_lengths(&self, x: &[f64], force: &mut [f64]) -> [f64; 2] {
         let [mut largest, mut whole] = [0.0_f64; 2];
-        self.pull(x, force, |spring, length| {
+        self.visit_lengths(x, force, |spring, length| {
             largest = largest.max(spring.pull(length)[1].abs());
             whole = whole.max((spring.constant * length).abs());
         });
