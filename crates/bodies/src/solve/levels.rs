@@ -23,11 +23,10 @@ const DOUBT: f64 = 1e-12;
 // Each step lowers Chebyshev's bound by `e^−acosh((1 + θ)/(1 − θ))`: where the least eigenvalue θ is 5e-5 of the
 // largest, 3 000 steps lower it to 4e-19.
 const STEPS: usize = 3000;
-/// Steps to the least ratio of energies, and to the largest, which decides nothing.
-// Networks of boxes take some 20 steps to the least ratio, and 14 or more to the largest.
-const LEAST_STEPS: usize = 100;
-// On a bar of tetrahedra with Poisson's ratio 0.45 the largest ratio is 0.5 % too small after them.
-const LARGEST_STEPS: usize = 32;
+/// Steps to the least ratio of energies, and to the largest, at most.
+// Networks of boxes take some 20 steps to the least ratio, and 14 or more to the largest. After 32 steps the largest is 0.5 % too small on a
+// bar of tetrahedra with Poisson's ratio 0.45.
+const END_STEPS: usize = 100;
 
 /// Vectors of a solution with its levels, about.
 const VECTORS: usize = 12;
@@ -309,10 +308,10 @@ pub fn compare_levels(
     };
     let least = match (network, &shown) {
         // The least ratios are the largest ones of K⁻¹ R, and the levels of the network stand for K⁻¹.
-        (Ok(levels), None) => levels.extreme(End::Least, stiffness, own, None, LEAST_STEPS)?,
-        (_, start) => body.extreme(End::Least, stiffness, own, start.as_deref(), LEAST_STEPS)?,
+        (Ok(levels), None) => levels.extreme(End::Least, stiffness, own, None, END_STEPS)?,
+        (_, start) => body.extreme(End::Least, stiffness, own, start.as_deref(), END_STEPS)?,
     };
-    let largest = body.extreme(End::Largest, stiffness, own, None, LARGEST_STEPS)?;
+    let largest = body.extreme(End::Largest, stiffness, own, None, END_STEPS)?;
     let standing = standing(least.quotient, shown.is_none());
     // Both searches end early, so that the second may stay below what the first has found on a body where all ratios
     // are alike.
