@@ -25,8 +25,10 @@ impl Mesh {
 trait Items {
     type Index;
     fn count(&self) -> usize;
-    /// Calls `visit` with the points of each item, in their order.
-    fn each(&self, visit: impl FnMut(&[usize]));
+    /// Calls `visit` with the lowest point of each item, in their order.
+    fn each_lowest(&self, visit: impl FnMut(usize));
+    /// Calls `visit` with the lowest point of each item and a hash of its points, in their order.
+    fn each_hash(&self, visit: impl FnMut(usize, u64));
     fn index(&self, item: usize) -> Self::Index;
     /// The points of an item, in any order.
     fn points(&self, index: &Self::Index) -> impl Iterator<Item = usize>;
@@ -48,15 +50,25 @@ impl Items for Sides<'_> {
         self.count
     }
 
-    fn each(&self, mut visit: impl FnMut(&[usize])) {
-        let mut points = Vec::new();
+    fn each_lowest(&self, mut visit: impl FnMut(usize)) {
         for (_, block) in self.mesh.body_blocks() {
             let sides = block.element.sides();
             for nodes in block.cells() {
+                sides.iter().for_each(|side| visit(lowest(side.nodes.iter().map(|&a| nodes[a]))));
+            }
+        }
+    }
+
+    fn each_hash(&self, mut visit: impl FnMut(usize, u64)) {
+        // A point is mixed once for all sides of its cell.
+        let mut mixed = Vec::new();
+        for (_, block) in self.mesh.body_blocks() {
+            let sides = block.element.sides();
+            for nodes in block.cells() {
+                mixed.clear();
+                mixed.extend(nodes.iter().map(|&p| mix(p as u64)));
                 for side in sides {
-                    points.clear();
-                    points.extend(side.nodes.iter().map(|&a| nodes[a]));
-                    visit(&points);
+                    visit(lowest(side.nodes.iter().map(|&a| nodes[a])), sum(side.nodes.iter().map(|&a| mixed[a])));
                 }
             }
         }
@@ -89,12 +101,15 @@ impl<P: Fn(usize) -> usize> Items for Cells<'_, P> {
         self.count
     }
 
-    fn each(&self, mut visit: impl FnMut(&[usize])) {
-        let mut points = Vec::new();
+    fn each_lowest(&self, mut visit: impl FnMut(usize)) {
+        let cells = self.mesh.blocks.iter().flat_map(|block| block.cells());
+        cells.for_each(|nodes| visit(lowest(nodes.iter().map(|&p| (self.place)(p)))));
+    }
+
+    fn each_hash(&self, mut visit: impl FnMut(usize, u64)) {
         for nodes in self.mesh.blocks.iter().flat_map(|block| block.cells()) {
-            points.clear();
-            points.extend(nodes.iter().map(|&p| (self.place)(p)));
-            visit(&points);
+            let places = || nodes.iter().map(|&p| (self.place)(p));
+            visit(lowest(places()), sum(places().map(|p| mix(p as u64))));
         }
     }
 
@@ -106,6 +121,15 @@ impl<P: Fn(usize) -> usize> Items for Cells<'_, P> {
     fn points(&self, index: &CellIndex) -> impl Iterator<Item = usize> {
         self.mesh.cell_nodes(*index).iter().map(|&p| (self.place)(p))
     }
+}
+
+fn lowest(points: impl Iterator<Item = usize>) -> usize {
+    points.min().unwrap_or(0)
+}
+
+/// The hash of points from their mixed numbers. It does not depend on the order in which a cell names its points, and needs no sorting.
+fn sum(mixed: impl Iterator<Item = u64>) -> u64 {
+    mixed.fold(0, u64::wrapping_add)
 }
 
 /// The sum of the counts before each, and of all.
@@ -128,18 +152,14 @@ fn each_set<I: Items>(items: &I, bound: usize, mut visit: impl FnMut(&[I::Index]
     let count = items.count();
     let of_item = usize::BITS - count.leading_zeros();
     let of_hash = (u64::BITS - of_item).saturating_sub(usize::BITS - bound.leading_zeros()).max(1);
-    let least = |points: &[usize]| points.iter().copied().min().unwrap_or(0);
     // Counts of 32 bits take half of the memory; sides of more than 2³² would not fit into it by far.
     let mut next = vec![0_u32; bound.max(1) + 1];
-    items.each(|points| next[least(points) + 1] += 1);
+    items.each_lowest(|lowest| next[lowest + 1] += 1);
     (1..next.len()).for_each(|point| next[point] += next[point - 1]);
     let mut keys = vec![0_u64; count];
     let mut item = 0;
     // A second walk over the cells takes less time than a list of all keys in the first one, which is as long as all else.
-    items.each(|points| {
-        // A sum of mixed numbers does not depend on the order in which a cell names its points, and needs no sorting.
-        let hash = points.iter().fold(0u64, |sum, &p| sum.wrapping_add(mix(p as u64)));
-        let lowest = least(points);
+    items.each_hash(|lowest, hash| {
         let place = &mut next[lowest];
         // The lists are then sorted on all threads; the keys have no equal ones, so that the order is the same in each run.
         keys[*place as usize] = ((lowest as u64) << of_hash | hash >> (u64::BITS - of_hash)) << of_item | item;

@@ -6,7 +6,7 @@ use super::quality::Quality;
 use crate::element::Element;
 use crate::springs::norm;
 use crate::symbolic::Predicate;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Points, cells of known elements, and groups. Every point is a node of a cell or a director, and every cell has a positive volume.
@@ -234,13 +234,15 @@ impl Mesh {
 
     /// The first cells of each block, at most so many, without their groups. Their points are in the order in which the cells have them.
     pub fn of_first_cells(&self, count: usize) -> Mesh {
-        let mut places = HashMap::new();
+        // The number of each point from 1; 0 of one that no cell has had yet.
+        let mut numbers = vec![0; self.point_count()];
         let mut points = Vec::new();
         let mut place = |point: usize| {
-            *places.entry(point).or_insert_with(|| {
+            if numbers[point] == 0 {
                 points.extend_from_slice(self.point(point));
-                points.len() / self.dimension - 1
-            })
+                numbers[point] = points.len() / self.dimension;
+            }
+            numbers[point] - 1
         };
         let mut first = |block: &CellBlock| {
             let kept = count.min(block.cells().len()) * block.element.nodes();

@@ -25,7 +25,7 @@ impl Places {
         // Coordinates far from the origin, which a program has moved or scaled some times, are known to so many
         // roundings.
         let rounding = 16.0 * f64::EPSILON * mesh.points.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
-        let shortest_edge = shortest_edge(mesh);
+        let shortest_edge = shortest_edge(mesh, &points);
         // Points are one if they differ by rounding, and never if they are the ends of an edge.
         let unit = (1e-9 * extent).min(0.1 * shortest_edge).max(rounding);
         // Also refuses NaN.
@@ -44,20 +44,32 @@ impl Places {
     }
 }
 
+/// Squares of lengths in these bounds have neither overflowed nor underflowed, m².
+const ORDINARY: std::ops::Range<f64> = 1e-280..1e280;
+
 /// The length of the shortest edge, m; infinite if no edge has a length.
-fn shortest_edge(mesh: &Mesh) -> f64 {
-    let mut shortest = f64::INFINITY;
+fn shortest_edge(mesh: &Mesh, points: &[[f64; 3]]) -> f64 {
+    // An edge is seen from each of its cells: squares are compared, and one root is taken.
+    let (mut least_square, mut shortest) = (f64::INFINITY, f64::INFINITY);
     for block in &mesh.blocks {
         let corner = |c: usize| block.element.corner_node(c);
         let edges: Vec<[usize; 2]> =
             block.element.cell.edges().iter().filter_map(|[a, b]| Some([corner(*a)?, corner(*b)?])).collect();
         for nodes in block.cells() {
-            let lengths = edges.iter().map(|[a, b]| distance(mesh.point(nodes[*a]), mesh.point(nodes[*b])));
-            // Nodes at one place have an edge without length, which says nothing of how near points may be.
-            shortest = lengths.filter(|length| *length > 0.0).fold(shortest, f64::min);
+            for &[a, b] in &edges {
+                let [a, b] = [&points[nodes[a]], &points[nodes[b]]];
+                let square = (0..3).map(|k| (b[k] - a[k]) * (b[k] - a[k])).sum::<f64>();
+                if ORDINARY.contains(&square) {
+                    least_square = least_square.min(square);
+                    continue;
+                }
+                // Nodes at one place have an edge without length, which says nothing of how near points may be.
+                let length = distance(a, b);
+                shortest = if length > 0.0 { shortest.min(length) } else { shortest };
+            }
         }
     }
-    shortest
+    shortest.min(least_square.sqrt())
 }
 
 pub(super) fn spatial(x: &[f64]) -> [f64; 3] {

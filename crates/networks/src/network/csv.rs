@@ -65,7 +65,7 @@ pub(super) const COLUMNS: [&str; 8] = ["kind", "points", "constant", "rest", "un
 const CONSTANT: usize = 2;
 
 /// Bytes that are gathered before they are written. A write for each line would be a call of the system for each.
-const PIECE: usize = 8192;
+const PIECE: usize = 1 << 16;
 
 /// A table of springs that is being written. The text is that of the crate `csv`, of which the fields of most springs need no quotes.
 pub(super) struct SpringTable<W: Write> {

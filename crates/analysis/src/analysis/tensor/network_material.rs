@@ -129,15 +129,16 @@ fn material_of(mesh: &Mesh, material: &MaterialMap, owners: SpringOwners, networ
         .map(|i| flat_sample(&stars, seeds[(2 * i + 1) * points / (2 * count)], dimension))
         .collect();
     let order = axis_order(&flat.iter().map(|(_, plane)| plane).collect::<Vec<_>>());
+    let patches = Piece::patches_of(network);
     let measure = |(sample, plane): &(Sample, Plane)| {
         let directions = plane.frame(&order);
         let own = material.of_some(&sample.cells);
-        let whole = || Piece::of_network(mesh, &stars, sample, network);
+        let whole = || Piece::of_network(mesh, &stars, sample, network, &patches);
         let piece = match owners {
             SpringOwners::Body => whole(),
-            SpringOwners::Cells(cells) => Piece::of_cells(mesh, sample, cells, network),
+            SpringOwners::Cells(cells) => Piece::of_cells(mesh, sample, cells, &patches),
             SpringOwners::Edges(fit) => edge_springs(&sample.mesh, own.clone(), &fit)
-                .map_or_else(|_| whole(), |of_sample| Piece::of_sample(mesh, sample, of_sample, network)),
+                .map_or_else(|_| whole(), |of_sample| Piece::of_sample(mesh, sample, of_sample, &patches)),
         };
         let found = tensor(sample, &piece, &directions);
         let (found, asked) = match own.moduli() {

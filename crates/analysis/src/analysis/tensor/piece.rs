@@ -22,25 +22,28 @@ pub(super) struct Piece {
 impl Piece {
     /// The springs of the cells of the sample. A spring on the content of a patch belongs to the sample by the share of
     /// that content that is in the sample.
-    pub(super) fn of_cells(mesh: &Mesh, sample: &Sample, cells: &[CellFits], whole: &Network) -> Piece {
+    pub(super) fn of_cells(mesh: &Mesh, sample: &Sample, cells: &[CellFits], patches: &[&MeasureSpring]) -> Piece {
         let fits: Vec<CellFits> = cells.iter().zip(&sample.cells).map(|(fits, cells)| fits.of_cells(cells)).collect();
-        Piece::of_sample(mesh, sample, Network::assemble(&sample.mesh, &fits), whole)
+        Piece::of_sample(mesh, sample, Network::assemble(&sample.mesh, &fits), patches)
     }
 
     /// The springs `network` of the sample alone, and its share of the patches.
-    pub(super) fn of_sample(mesh: &Mesh, sample: &Sample, network: Network, whole: &Network) -> Piece {
+    pub(super) fn of_sample(mesh: &Mesh, sample: &Sample, network: Network, patches: &[&MeasureSpring]) -> Piece {
         let shares = vec![1.0; network.len()];
         let mut piece = Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() };
-        piece.add_patches(mesh, sample, whole);
+        piece.add_patches(mesh, sample, patches);
         piece
     }
 
-    fn add_patches(&mut self, mesh: &Mesh, sample: &Sample, whole: &Network) {
+    /// The springs on the contents of patches, which all samples ask for: a network has millions of other springs.
+    pub(super) fn patches_of(network: &Network) -> Vec<&MeasureSpring> {
+        network.others.iter().filter(|spring| matches!(spring.measure, Measure::Patch(_))).collect()
+    }
+
+    fn add_patches(&mut self, mesh: &Mesh, sample: &Sample, patches: &[&MeasureSpring]) {
         let d = mesh.dimension;
-        let near = |spring: &&MeasureSpring| {
-            matches!(spring.measure, Measure::Patch(_)) && spring.points.iter().any(|p| sample.places.contains_key(p))
-        };
-        let springs: Vec<&MeasureSpring> = whole.others.iter().filter(near).collect();
+        let near = |spring: &&&MeasureSpring| spring.points.iter().any(|p| sample.places.contains_key(p));
+        let springs: Vec<&MeasureSpring> = patches.iter().filter(near).copied().collect();
         if springs.is_empty() {
             return;
         }
@@ -76,7 +79,13 @@ impl Piece {
 
     /// The springs of a network that belong to no cell: each is shared equally among the cells that have all of its
     /// points or, if there is none, among those that have any. Patches are as in [`Piece::of_cells`].
-    pub(super) fn of_network(mesh: &Mesh, stars: &Stars, sample: &Sample, whole: &Network) -> Piece {
+    pub(super) fn of_network(
+        mesh: &Mesh,
+        stars: &Stars,
+        sample: &Sample,
+        whole: &Network,
+        patches: &[&MeasureSpring],
+    ) -> Piece {
         let has = |cell: usize, point: usize| stars.points(cell).contains(&point);
         let share_of = |cells: &mut dyn Iterator<Item = usize>| {
             let (own, count) =
@@ -109,7 +118,7 @@ impl Piece {
             }
         }
         let mut piece = Piece { network, points: sample.mesh.points.clone(), shares, patches: Vec::new() };
-        piece.add_patches(mesh, sample, whole);
+        piece.add_patches(mesh, sample, patches);
         piece
     }
 }
