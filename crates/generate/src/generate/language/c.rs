@@ -1,15 +1,26 @@
-//! C, from the standard of 1999 on, and C++.
+//! C, from the standard of 1999 on, and C++; and CUDA C++, whose functions are for the device, in double precision.
 
 use super::syntax::{Arguments, Syntax, has_status};
 use crate::generate::code::{Array, Function, Result};
 
-/// C.
+/// What the dialects of C differ in.
 #[derive(Debug)]
-pub struct C;
+pub struct Dialect {
+    /// The end of the guard's name.
+    guard: &'static str,
+    /// What stands before a function.
+    function: &'static str,
+    /// What stands before the type of a table.
+    table: &'static str,
+}
 
-impl Syntax for C {
+pub const C: Dialect = Dialect { guard: "H", function: "static inline", table: "static const" };
+pub const CUDA: Dialect =
+    Dialect { guard: "CUH", function: "static __device__ __forceinline__", table: "static __device__ const" };
+
+impl Syntax for Dialect {
     fn file(&self, prefix: &str) -> [Vec<String>; 2] {
-        let guard = format!("{}_H", prefix.to_uppercase());
+        let guard = format!("{}_{}", prefix.to_uppercase(), self.guard);
         let first = [
             format!("#ifndef {guard}"),
             format!("#define {guard}"),
@@ -45,7 +56,8 @@ impl Syntax for C {
     }
 
     fn table(&self, name: &str, length: usize, is_integer: bool, entries: &[String]) -> Vec<String> {
-        braced(format!("static const {} {name}[{length}] = {{", if is_integer { "int" } else { "double" }), entries)
+        let kind = if is_integer { "int" } else { "double" };
+        braced(format!("{} {kind} {name}[{length}] = {{", self.table), entries)
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {
@@ -57,7 +69,7 @@ impl Syntax for C {
     }
 
     fn open(&self, function: &Function, lists: &Arguments) -> Vec<String> {
-        vec![format!("static inline {} {{", signature(function, lists))]
+        vec![format!("{} {} {{", self.function, signature(function, lists))]
     }
 
     fn close(&self, function: &Function, _: &Arguments, value: Option<&str>) -> Vec<String> {
@@ -66,7 +78,7 @@ impl Syntax for C {
 }
 
 /// The type, the name and the arguments of a function.
-pub fn signature(function: &Function, lists: &Arguments) -> String {
+fn signature(function: &Function, lists: &Arguments) -> String {
     let arguments = lists.list(
         |array| format!("const double {}[{}]", array.name, array.length),
         |name| format!("double {name}"),
@@ -90,7 +102,7 @@ pub fn end(function: &Function, value: Option<&str>) -> Vec<String> {
 }
 
 /// A table in braces.
-pub fn braced(first: String, entries: &[String]) -> Vec<String> {
+fn braced(first: String, entries: &[String]) -> Vec<String> {
     let lines = entries.iter().map(|line| format!("    {line}"));
     std::iter::once(first).chain(lines).chain(["};".into()]).collect()
 }

@@ -1,7 +1,6 @@
 //! The languages in which functions are printed: one file and one row of [`LANGUAGES`] for each.
 
 mod c;
-mod cuda;
 mod glsl;
 mod javascript;
 mod latex;
@@ -38,7 +37,7 @@ const SHADER: usize = 4_096;
 /// The languages.
 pub const LANGUAGES: &[LanguageRow] = &[
     LanguageRow { name: "c", endings: &["h", "c", "hpp", "cpp", "cc"], most_work: STACK, syntax: &c::C },
-    LanguageRow { name: "cuda", endings: &["cuh", "cu"], most_work: DEVICE, syntax: &cuda::Cuda },
+    LanguageRow { name: "cuda", endings: &["cuh", "cu"], most_work: DEVICE, syntax: &c::CUDA },
     LanguageRow { name: "rust", endings: &["rs"], most_work: STACK, syntax: &rust::Rust },
     LanguageRow { name: "python", endings: &["py"], most_work: usize::MAX, syntax: &python::Python },
     LanguageRow { name: "javascript", endings: &["js", "mjs"], most_work: usize::MAX, syntax: &javascript::JavaScript },
