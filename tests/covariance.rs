@@ -174,14 +174,15 @@ proptest! {
         }
     }
 
-    /// Nothing that is finite gives what is not, in the whole range of shapes, sizes and moduli. Divergences of cells of many nodes, which take
-    /// up to seconds where the cell is thin, are met in one case of six.
+    /// Nothing that is finite gives what is not, in the whole range of shapes, sizes and moduli. Each case meets every second fit, the next one the
+    /// others; divergences of cells of many nodes, which take up to seconds where the cell is thin, are met in one case of twelve.
     #[test]
     fn constants_are_finite_or_refused(
         subject in 0usize..1000, seed in 0u64..1000, flat in -16.0f64..0.0, size in -28.0f64..28.0, young in -28.0f64..28.0,
     ) {
-        expect_finite(subject, (seed, [flat, size, young]), |fit, nodes| {
-            nodes <= 6 || seed % 6 == 0 || !matches!(fit.objective, Objective::Divergence(_))
+        expect_finite(subject, (seed, [flat, size, young]), |index, fit, nodes| {
+            (seed + index as u64).is_multiple_of(2)
+                && (nodes <= 6 || seed / 2 % 6 == 0 || !matches!(fit.objective, Objective::Divergence(_)))
         });
     }
 
@@ -190,19 +191,24 @@ proptest! {
     fn constants_of_every_objective_are_finite_or_refused(
         subject in 0usize..1000, seed in 0u64..1000, flat in -16.0f64..0.0, size in -28.0f64..28.0, young in -28.0f64..28.0,
     ) {
-        expect_finite(subject, (seed, [flat, size, young]), |_, _| true);
+        expect_finite(subject, (seed, [flat, size, young]), |_, _, _| true);
     }
 }
 
-/// The fits that are chosen, of a cell of this flatness, size and stiffness in powers of ten.
-fn expect_finite(subject: usize, (seed, [flat, size, young]): (u64, [f64; 3]), chosen: impl Fn(&Fit, usize) -> bool) {
+/// The fits that are chosen, by their place, themselves and the nodes, of a cell of this flatness, size and stiffness in powers of ten.
+fn expect_finite(
+    subject: usize,
+    (seed, [flat, size, young]): (u64, [f64; 3]),
+    chosen: impl Fn(usize, &Fit, usize) -> bool,
+) {
     let (element, springs) = &subjects()[subject % subjects().len()];
     let d = element.dimension();
     let mut x = sound(element, seed);
     x.iter_mut().enumerate().for_each(|(i, x)| *x *= 10f64.powf(if i % d == d - 1 { size + flat } else { size }));
     let plain = moduli(element, seed as usize);
     let moduli = Moduli { lambda: 10f64.powf(young) * plain.lambda, mu: 10f64.powf(young) * plain.mu };
-    for fit in fits(element).into_iter().filter(|fit| chosen(fit, element.nodes())) {
+    let all = fits(element).into_iter().enumerate();
+    for (_, fit) in all.filter(|(index, fit)| chosen(*index, fit, element.nodes())) {
         let Ok(k) = fit_element(element, springs, &x, moduli, &fit) else { continue };
         assert!(k.iter().all(|k| k.is_finite()), "{} {fit:?}: {k:?}", element.name);
     }

@@ -60,7 +60,11 @@ impl Pulling {
 
     /// k and T.
     fn solve(&self, fit: &Fit) -> Result<(Vec<f64>, Vec<f64>), Error> {
-        let fits = self.fits(fit)?;
+        self.fits(fit).map(|fits| self.taken(fits))
+    }
+
+    /// k and T of a fit that has been made.
+    fn taken(&self, fits: CellFits) -> (Vec<f64>, Vec<f64>) {
         let (k, count) = (&fits.constants, fits.constants.len());
         let pull = |s: usize| match fits.force {
             Force::FreeRest => k[s] * self.measures[s] - fits.parameters[s],
@@ -71,7 +75,7 @@ impl Pulling {
         // The measures here are from the origin, those of the fit from the first node: they differ by rounding.
         let is_rounding = largest(&pull) <= 1e-13 * largest(&|s| k[s] * self.measures[s]);
         let tensions = (0..count).map(|s| if is_rounding { 0.0 } else { pull(s) }).collect();
-        Ok((fits.constants, tensions))
+        (fits.constants, tensions)
     }
 
     /// `R − K`.
@@ -193,9 +197,14 @@ fn frobenius(weight: Weight, rest: Rest) -> Fit {
     Fit { rest, ..Fit::new(Objective::Frobenius(weight)) }
 }
 
-/// The springs of a fit; none where it is refused because nothing is in equilibrium, which is checked.
+/// k and T of a fit; none where it is refused because nothing is in equilibrium, which is checked.
 fn solved(subject: &Pulling, fit: &Fit) -> Option<(Vec<f64>, Vec<f64>)> {
-    match subject.solve(fit) {
+    fitted(subject, fit).map(|fits| subject.taken(fits))
+}
+
+/// The fit itself, as [`solved`] has its springs.
+fn fitted(subject: &Pulling, fit: &Fit) -> Option<CellFits> {
+    match subject.fits(fit) {
         Ok(found) => Some(found),
         Err(error) => {
             assert!(subject.is_stuck(fit.rest, fit.tied), "{}: {error}", subject.case.name);
@@ -276,13 +285,14 @@ fn optima_are_stationary() {
                 if is_skipped(&subject, &fit) {
                     continue;
                 }
-                let Some((k, t)) = solved(&subject, &fit) else { continue };
+                let Some(fits) = fitted(&subject, &fit) else { continue };
+                let is_deficient = fits.deficient > 0;
+                let (k, t) = subject.taken(fits);
                 let seen = subject.case.weighted(weight, &subject.residual(&k, &t));
                 let (a, c) = subject.columns(weight, &subject.unknowns(rest, tied));
                 let slopes = a.tr_mul(&DVector::from_column_slice(seen.as_slice()));
                 let left = beyond_rows(&c, slopes).amax();
                 let size = subject.rhs(weight).norm();
-                let is_deficient = subject.fits(&fit).unwrap().deficient > 0;
                 // A direction that counts as dependent, below 5e-7 of the stiffest, keeps its slope.
                 let most = if is_deficient { 5e-6 } else { 1e-9 };
                 assert!(left <= most * size, "{} {fit:?}: {left} of {size}", subject.case.name);
@@ -378,8 +388,9 @@ fn nonnegative_optima_are_those_of_an_active_set_method() {
     for subject in subjects().into_iter().filter(|subject| subject.case.springs.len() <= 11) {
         for (weight, rest) in weights().into_iter().flat_map(|w| [(w, Rest::Free), (w, Rest::Zero)]) {
             let fit = Fit { nonnegative: true, ..frobenius(weight, rest) };
-            let Some((k, t)) = solved(&subject, &fit) else { continue };
-            assert_eq!(subject.fits(&fit).unwrap().unreached, 0, "{} {fit:?}", subject.case.name);
+            let Some(fits) = fitted(&subject, &fit) else { continue };
+            assert_eq!(fits.unreached, 0, "{} {fit:?}", subject.case.name);
+            let (k, t) = subject.taken(fits);
             let unknowns = subject.unknowns(rest, false);
             let (a, c) = subject.columns(weight, &unknowns);
             let b = subject.rhs(weight);

@@ -131,14 +131,28 @@ fn wrong_cells_and_moduli_have_a_status() {
     }
 }
 
+/// The checker of WGSL takes a time that grows with the square of a text: a fifth of a second at this length in bytes. Longer texts have more lines, of the kinds
+/// that shorter ones have.
+const LONG: usize = 60_000;
+
 /// The syntax of the languages whose compilers are rarely there.
 #[test]
 fn shaders_and_cuda_are_valid_where_they_can_be_checked() {
     let cases = every(|case| case.element.nodes() <= 8 || case.element.nodes() == 27);
-    for tool in [Tool::Shaders, Tool::Glslang, Tool::Cuda] {
-        match tool.check(&cases) {
+    for (tool, most) in [(Tool::Shaders, LONG), (Tool::Glslang, usize::MAX), (Tool::Cuda, usize::MAX)] {
+        match tool.check(&cases, 0..most) {
             Some(count) => assert!(count > 10, "{tool:?} checked {count} files"),
             None => println!("not run: {tool:?} is not on PATH"),
         }
+    }
+}
+
+#[test]
+#[ignore = "takes half a minute; .ci/long has it"]
+fn long_shaders_are_valid() {
+    let cases = every(|case| case.element.nodes() <= 8 || case.element.nodes() == 27);
+    match Tool::Shaders.check(&cases, LONG..usize::MAX) {
+        Some(count) => assert!(count > 3, "{count} files"),
+        None => println!("not run: {:?} is not on PATH", Tool::Shaders),
     }
 }

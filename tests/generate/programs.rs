@@ -3,6 +3,7 @@
 use super::case::{Case, Sample};
 use std::fmt::Write;
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 use std::process::{Command, Output};
 use tempfile::TempDir;
@@ -255,15 +256,16 @@ pub enum Tool {
 }
 
 impl Tool {
-    /// Checks the texts of all cases that the language has room for; their number, or none without the tool.
-    pub fn check(self, cases: &[Case]) -> Option<usize> {
+    /// Checks the texts of all cases that the language has room for, of lengths in bytes that are asked for; their number, or none without the tool.
+    pub fn check(self, cases: &[Case], lengths: Range<usize>) -> Option<usize> {
         let folder = TempDir::new().unwrap();
         let (language, program) = match self {
             Tool::Shaders => ("wgsl", "springfit-shaders"),
             Tool::Glslang => ("glsl", "glslangValidator"),
             Tool::Cuda => ("cuda", "c++"),
         };
-        let texts: Vec<String> = cases.iter().filter_map(|case| case.text(language)).collect();
+        let texts = cases.iter().filter_map(|case| case.text(language)).filter(|text| lengths.contains(&text.len()));
+        let texts: Vec<String> = texts.collect();
         let whole = |i: usize, text: &String| match self {
             Tool::Shaders => (format!("{i}_code.wgsl"), text.clone()),
             Tool::Glslang => {

@@ -63,7 +63,7 @@ pub fn interleaved(works: &mut [TimedWork]) -> Result<Vec<Times>> {
     interleaved_after(&first, works)
 }
 
-/// Times the works as [`interleaved`] does, whose first passes took these times.
+/// Times works that take turns, whose first passes took these times.
 ///
 /// # Errors
 /// That of a work.
