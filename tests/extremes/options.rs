@@ -121,6 +121,17 @@ fn is_numeric(run: &[&str], option: &str) -> bool {
 
 #[test]
 fn every_number_of_the_command_line_may_be_extreme() {
+    try_numbers(3);
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/long has it"]
+fn every_number_of_every_run_may_be_extreme() {
+    try_numbers(1);
+}
+
+/// Gives each number of the first run that takes it every extreme, and in each further run one of so many, in turn.
+fn try_numbers(share: usize) {
     let (mut numeric, mut taken, mut wrong, mut cases) = (BTreeSet::new(), BTreeSet::new(), Vec::new(), 0);
     let (mut commands, mut runs) = (BTreeSet::new(), BTreeMap::<String, usize>::new());
     for run in RUNS {
@@ -134,9 +145,8 @@ fn every_number_of_the_command_line_may_be_extreme() {
             {
                 continue;
             }
-            // The first run that takes the option has every extreme, each of the others a third of them, in turn.
             let before = *runs.entry(name.clone()).and_modify(|before| *before += 1).or_insert(0);
-            let (first, step) = if before == 0 { (0, 1) } else { (before % 3, 3) };
+            let (first, step) = if before == 0 { (0, 1) } else { (before % share, share) };
             taken.insert(name);
             for value in EXTREMES.into_iter().skip(first).step_by(step) {
                 cases += 1;
