@@ -433,7 +433,7 @@ fn searches_without_regularization_find_their_optimum() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes; .ci/long has it"]
 fn intervals_hold_the_truth_in_a_hundred_cases() {
     on_the_same_mesh(100);
     on_a_coarse_network(100);

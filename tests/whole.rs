@@ -756,7 +756,7 @@ fn boxes_of_tetrahedra_need_the_exact_start() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes; .ci/long has it"]
 fn larger_boxes_of_tetrahedra_need_the_exact_start() {
     boxes_of_tetrahedra(&[9, 12, 16]);
 }
