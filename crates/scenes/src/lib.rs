@@ -68,13 +68,15 @@ pub use outcome::{
 };
 pub use own_name::{BODY, QUADRATIC, expect_own_name};
 pub use progress::{Event, Progress};
-pub use scene::load_element;
 pub use scene::{
     AppliedForce, BoxEntry, CalibrationRecipe, CellValues, DampingRecipe, DiscEntry, FillEntry, ForcePrecision, Hold,
     InMemory, LoadCase, LoadKind, Materials, MeasuredDamping, MeshInput, MeshLength, MotionRecipe, Output, Part,
-    PrescribedMotion, Reaction, ReferenceEntry, Scene, Setting, check_unit, load_elements, motion_title, scene_schema,
+    PrescribedMotion, Reaction, ReferenceEntry, Scene, Setting, check_unit, load_element, load_elements, motion_title,
+    scene_schema,
 };
 pub use sweep::SweepEntry;
 pub use time::{RELEASE, Raised, TimePlan};
-pub use timing::{Costed, STACK, Statics, TimedWork, interleaved_after, model_times, on_one_thread, time_fits};
-pub use timing::{FitTimes, ModelTimes, Times};
+pub use timing::{
+    Costed, FitTimes, ModelTimes, STACK, Statics, TimedWork, Times, interleaved_after, model_times, on_one_thread,
+    time_fits,
+};
