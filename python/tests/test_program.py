@@ -49,7 +49,9 @@ def test_the_command_is_in_files_as_it_was_typed(tmp_path):
 @pytest.mark.skipif(os.name != "posix", reason="not run: signals are those of POSIX")
 def test_interrupts_end_the_program(scenes, tmp_path):
     command = [sys.executable, "-m", "springfit", "sweep", str(scenes / "square_quad.toml"), "--set", "sweep.over={material.poisson={from=0.0,to=0.4,count=100000}}", "--out", "o"]
-    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    # A program that a shell has started in the background ignores interrupts, and so would its children.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
+    process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=heard)
     # A signal that comes while Python starts is not one to the program.
     log, end = tmp_path / "o" / "studies.jsonl", time.monotonic() + 60
     while not (log.exists() and log.stat().st_size) and time.monotonic() < end:
