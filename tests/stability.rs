@@ -63,7 +63,7 @@ fn no_case_of_a_large_element_with_springs_on_angles_is_lost() {
     others.iter().for_each(|name| expect_none_lost(name));
 }
 
-/// Those of 20 nodes, with 214 springs, and of 27, with 376.
+/// The elements of 20 nodes have 214 springs then, that of 27 nodes 376.
 #[test]
 #[ignore = "takes an hour of a processor; .ci/long has it"]
 fn no_case_of_the_largest_elements_with_springs_on_angles_is_lost() {

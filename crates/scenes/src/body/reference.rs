@@ -106,7 +106,7 @@ impl FineBody {
     }
 }
 
-/// That the total force of a load on the finer mesh is another one than on the mesh of the scene.
+/// The note that the total force of a load on the finer mesh is another one than on the mesh of the scene.
 fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
     let [own, other] = [case, fine].map(|case| resultant(&case.forces, dimension));
     let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
