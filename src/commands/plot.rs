@@ -4,7 +4,7 @@ use super::choice::choice;
 use crate::terminal::Terminal;
 use clap::Args;
 use springfit_foundation::error::{Error, Result};
-use springfit_foundation::{file::check_apart, file::check_file, file::write_whole};
+use springfit_foundation::file::{check_apart, check_file, write_whole};
 use springfit_report::report::{Columns, Cost, Figure, Markup, PictureFormat, RunFolder, Table, folder_tables};
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -76,7 +76,8 @@ fn every_number_of_a_scene_may_have_every_extreme() {
     sweep(|_| 1);
 }
 
-/// Changes every number of all samples to some of the extremes: one of so many, by how many numbers with its key there were before it.
+/// Sets every number of all samples to extremes. A number takes every `stride(n)`-th of the extremes, where n numbers with the same key came
+/// before it.
 fn sweep(stride: impl Fn(usize) -> usize) {
     let folder = folder();
     let path = folder.path().join("scene.toml");

@@ -130,7 +130,7 @@ fn every_number_of_every_run_may_be_extreme() {
     try_numbers(1);
 }
 
-/// Gives each number of the first run that takes it every extreme, and in each further run one of so many, in turn.
+/// Gives every extreme to each option in the first run that takes it. Each further run gives it every `share`-th extreme, from another start.
 fn try_numbers(share: usize) {
     let (mut numeric, mut taken, mut wrong, mut cases) = (BTreeSet::new(), BTreeSet::new(), Vec::new(), 0);
     let (mut commands, mut runs) = (BTreeSet::new(), BTreeMap::<String, usize>::new());

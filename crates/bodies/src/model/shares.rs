@@ -172,9 +172,8 @@ struct Star<'a> {
     fit: &'a CellFits,
     /// The index in `places` at which those of each point begin, `[points + 1]`.
     starts: Vec<usize>,
-    /// Indices into the connectivity, grouped by their point; of 32 bits, which take half of the memory. A connectivity with more of them would not fit into
-    /// it by far.
-    places: Vec<u32>,
+    /// Indices into the connectivity, grouped by their point.
+    places: Vec<usize>,
     /// For each node of the cell its length springs: the spring, and the node at the other end.
     springs: Vec<Vec<(usize, usize)>>,
 }
@@ -187,9 +186,9 @@ impl<'a> Star<'a> {
             starts[i] += starts[i - 1];
         }
         let mut next = starts.clone();
-        let mut places = vec![0_u32; block.connectivity.len()];
+        let mut places = vec![0; block.connectivity.len()];
         for (place, &point) in block.connectivity.iter().enumerate() {
-            places[next[point]] = place as u32;
+            places[next[point]] = place;
             next[point] += 1;
         }
         let mut springs = vec![Vec::new(); block.element.nodes()];
@@ -205,7 +204,7 @@ impl<'a> Star<'a> {
     fn gather(&self, mesh: &Mesh, i: usize, joins: impl Fn(usize) -> bool, shares: &mut Vec<LengthShare>) {
         let (n, m) = (self.springs.len(), self.fit.springs.len());
         for &place in &self.places[self.starts[i]..self.starts[i + 1]] {
-            let (cell, node) = (place as usize / n, place as usize % n);
+            let (cell, node) = (place / n, place % n);
             let nodes = &self.block.connectivity[cell * n..(cell + 1) * n];
             let constants = &self.fit.constants[cell * m..(cell + 1) * m];
             for &(s, other) in &self.springs[node] {

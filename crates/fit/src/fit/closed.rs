@@ -45,7 +45,7 @@ pub struct Closed<T> {
 enum Equations {
     /// `M = 2I`: each constant is half of its right-hand side.
     Decoupled,
-    /// Those of the nodes, which are fewer than those of the springs.
+    /// The equations of the nodes are fewer than those of the springs.
     PerNode,
     /// One for each spring.
     PerSpring,

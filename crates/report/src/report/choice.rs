@@ -1,28 +1,18 @@
-//! Choices that a person makes by name.
+//! Choices that a person makes by name, with what help says of them.
 
-/// A closed list of values with their names and sentences, from which help, parsers and errors are made.
-pub trait Choice: Copy + PartialEq + Send + Sync + 'static {
+/// A closed list of values with their names and sentences, from which options of the command line are made.
+pub trait Choice: Copy + Send + Sync + 'static {
     /// Each value with its names, of which help shows the first, and its sentence.
     const ALL: &'static [(Self, &'static [&'static str], &'static str)];
-
-    /// The value with this name, if there is one.
-    fn named(name: &str) -> Option<Self> {
-        Self::ALL.iter().find(|(_, names, _)| names.contains(&name)).map(|(value, _, _)| *value)
-    }
-
-    /// The first name.
-    fn name(self) -> &'static str {
-        let row = Self::ALL.iter().find(|(value, _, _)| *value == self);
-        row.expect("the list has every value").1[0]
-    }
 }
 
-/// Defines an enum and its list of choices. The documentation of a variant is its sentence.
+/// Defines an enum, its names as [`named`](springfit_foundation::named!) does, and its list of choices. The documentation of a variant is its
+/// sentence.
 macro_rules! choices {
     (
         $(#[$of_all:meta])*
         pub enum $choice:ident {
-            $(#[doc = $sentence:literal] $(#[$more:meta])* $variant:ident = $($name:literal)|+,)+
+            $(#[doc = $sentence:literal] $(#[$more:meta])* $variant:ident = $name:literal $(| $alias:literal)*,)+
         }
     ) => {
         $(#[$of_all])*
@@ -30,9 +20,11 @@ macro_rules! choices {
             $(#[doc = $sentence] $(#[$more])* $variant,)+
         }
 
+        springfit_foundation::named!($choice { $($name => $variant),+ });
+
         impl $crate::report::choice::Choice for $choice {
             const ALL: &'static [(Self, &'static [&'static str], &'static str)] =
-                &[$(($choice::$variant, &[$($name),+], $sentence)),+];
+                &[$(($choice::$variant, &[$name $(, $alias)*], $sentence)),+];
         }
     };
 }

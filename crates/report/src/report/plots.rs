@@ -7,7 +7,7 @@ use super::figure::{
 };
 use crate::error::{Error, Result};
 use crate::file::files_in;
-use crate::report::choice::{Choice, choices};
+use crate::report::choice::choices;
 use crate::report::fit_record::FitRecord;
 use crate::report::json::Report;
 use crate::report::table::Table;

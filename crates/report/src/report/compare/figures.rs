@@ -2,7 +2,6 @@
 
 use super::pairs::{fits, method};
 use crate::error::{Error, Result};
-use crate::report::choice::Choice;
 use crate::report::figure::{Axis, Chart, Cost, Series, Shape};
 use crate::study::statistics::{Quantiles, median};
 use crate::study::{CaseRecord, MethodRecord};
@@ -301,10 +300,10 @@ pub fn all(records: &[CaseRecord]) -> Vec<(String, Drawn)> {
     let methods = || records.iter().flat_map(|record| &record.methods);
     let has_times = |kind: &str| methods().any(|method| method.times.contains_key(kind));
     let mut all = Vec::new();
-    for (cost, ..) in Cost::ALL {
+    for cost in Cost::all() {
         let (kind, ..) = cost.of_comparison();
-        let name = if *cost == Cost::Fit { "precision".into() } else { format!("precision-{kind}") };
-        all.extend(has_times(kind).then_some((name, Drawn::Precision(*cost))));
+        let name = if cost == Cost::Fit { "precision".into() } else { format!("precision-{kind}") };
+        all.extend(has_times(kind).then_some((name, Drawn::Precision(cost))));
     }
     all.push(("ecdf".into(), Drawn::Ecdf));
     for key in ["poisson", "distortion", "aspect"] {
