@@ -7,6 +7,7 @@ use crate::material::{Energy, State, Tangent};
 use nalgebra::{DMatrix, Matrix3};
 
 /// The largest number of steps of the search for the stretch through the thickness that leaves no stress there.
+// Newton's steps double the digits, and twenty steps back end the search as well: one that takes more does not end.
 const STEPS: usize = 60;
 
 /// Energy, forces and tangent of an element at given positions.

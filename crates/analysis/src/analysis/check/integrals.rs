@@ -8,6 +8,7 @@ use crate::element::{Element, Integrand, Quadrature, Tabulation};
 /// The tolerance of integrals of numbers of size one over the reference cell: some ten thousand rounding errors.
 const ROUNDING: f64 = 1e-11;
 /// The degree of the loads with which the rules are tested.
+// A rule is chosen by the degree of the load, and the choice has no cases that begin above two.
 const LOAD: usize = 2;
 /// The degree of the reference rule, by dimension.
 // A rule of degree 60 has 31 points along each direction, and one of degree 30 in space 16, which are 4 096 in a box.

@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 /// Points of networks come from files with six digits or more.
 const CUBIC: f64 = 1e-6;
 /// A strain whose stiffness is below this share of the largest meets no resistance.
+// A stiffness is the affine one less what points release as they give way. Where both are equal, rounding leaves some 1e-15 of
+// them, and more where soft motions amplify it; a share that is far above would hide strains that are soft and resist.
 const NOTHING: f64 = 1e-9;
 
 /// An elasticity tensor and what it says.

@@ -9,7 +9,7 @@ use serde::Serialize;
 const RESAMPLES: usize = 1000;
 /// The seed of the resamples: the same values always have the same interval.
 const SEED: u64 = 1979;
-/// The share of the resamples below the interval, and above it.
+/// The share of the resamples below the interval, and above it: 95 % are in between.
 const TAIL: f64 = 0.025;
 
 /// An interval that holds 95 % of the resampled figures.

@@ -8,11 +8,14 @@ use serde::Serialize;
 /// Figures of two methods that differ by less than this share are the same one, but for rounding.
 const SAME: f64 = 1e-9;
 /// Two methods tie if their medians differ by less than this share, whatever the probability.
+// Tables tell three or four digits of a median. Methods that are the same in theory differ by what their solvers leave, 1e-8 and
+// less, on every case alike, which a test of ranks would take for certain.
 const EQUAL: f64 = 1e-6;
 /// Pairs of at most this number have an exact probability. With more, the normal distribution is accurate to the digits
 /// that are told, and the count of ranks grows with the cube.
 const EXACT: usize = 25;
 /// A verdict is wrong with at most this probability.
+// It is that of the intervals of 95 % that are told beside it.
 const LEVEL: f64 = 0.05;
 
 /// What is said of two methods whose figures are better the smaller they are.

@@ -16,7 +16,9 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The largest number of samples. On unstructured tetrahedra the distances of samples differ by a tenth.
+/// The largest number of samples.
+// On unstructured tetrahedra the distances of samples differ by a tenth: the mean of six is known to about 4 %, and each further
+// sample costs a dense solution.
 const SAMPLES: usize = 6;
 /// The number of points whose cells form a sample. More points allow more relaxation: on unstructured tetrahedra the
 /// distance of classical fits is 0.70 to 0.80 with single cells, 0.31 with the cells around 1 point, 0.165 around 8,
@@ -31,6 +33,8 @@ const FLAT: f64 = 0.05;
 /// of the height above stay below it.
 const ALONG: f64 = 0.866;
 /// Heights above the plane of a sample, relative to its size, that are rounding errors.
+// Coordinates that are rounded to 1.1e-16 of their size leave less up to 1e6 sizes away from the origin. A flat sample above the bound
+// has its tensor compared with that of its finite elements, which costs time alone.
 const ROUNDING: f64 = 1e-9;
 
 /// A network as a material.

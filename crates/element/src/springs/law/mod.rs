@@ -21,6 +21,7 @@ use std::sync::Arc;
 /// The variables of a law besides its parameters: the strain `s = (c − c₀)/c₀`, `c` and `c₀`.
 const VARIABLES: [&str; 3] = ["s", "c", "c0"];
 /// What rounding may leave between a function and the sum over its parameters, relative to the force.
+// Slopes are differences that err by some 1e-12 (`STEP` of `function.rs`), and may be larger than the force that they add up to.
 const LINEAR: f64 = 1e-9;
 
 /// A force law `T(c)`, the derivative of a spring's energy in its measure c: in N if c is a length, in Pa if it is a

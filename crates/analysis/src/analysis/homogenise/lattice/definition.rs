@@ -58,8 +58,12 @@ impl Root {
 }
 
 /// The denominator of all coordinates.
+// It is the least common multiple of the halves, thirds, quarters and sixths in which lattices have their points: whole numbers
+// then find the bonds of a shell by equal squares, without a tolerance.
 pub(super) const UNIT: i64 = 12;
 /// Bonds reach at most so many cells.
+// The bonds of all lattices of the table end in the next cell. A row with a more oblique cell may need one cell more, and a
+// search among 5³ cells takes no time.
 const REACH: i64 = 2;
 
 impl NamedLattice {
@@ -235,4 +239,5 @@ impl NamedLattice {
 }
 
 /// Points of a piece at most.
+// With up to 13 springs of 32 bytes for each point (`cubic`) their network has 4 GB.
 const MOST: usize = 10_000_000;
