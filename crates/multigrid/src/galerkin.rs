@@ -7,6 +7,8 @@ use crate::pattern::Pattern;
 use std::sync::Arc;
 
 /// Bytes of `A P` that are in memory at a time, about.
+// Rows of `A P` at the border of two batches are worked out for both, so that small batches cost work. Beside the levels of a body
+// that fills a machine 128 MB do not count.
 const ROOM: usize = 1 << 27;
 const ABSENT: u32 = u32::MAX;
 

@@ -8,7 +8,7 @@ use crate::scalar::{Coordinates, CoordinatesWork, with_coordinates};
 /// iterations are as few, and folded membranes seldom lose a pivot.
 const TRIALS: [[f64; 2]; 9] =
     [[0.8, 0.0], [0.0, 0.0], [0.0, 0.01], [0.0, 0.03], [0.0, 0.1], [0.0, 0.3], [0.0, 1.0], [0.0, 10.0], [0.0, 100.0]];
-/// The highest level of fill.
+/// The highest level of fill. It is the fastest on membranes, see [`PRODUCTS`].
 const LEVELS: usize = 2;
 /// Products of blocks that a factor with fill may take for each block of A. Membranes of triangles take 8 at level 2, where factor and
 /// iterations together are fastest; boxes of hexahedra take 17 at level 1, which costs more than it saves.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use std::fmt::Debug;
 
 /// Rows that one thread takes at a time.
+// A row has four numbers, of which a body in space uses three: these rows have as many numbers as a piece.
 const ROWS: usize = PIECE / 4;
 
 /// A motion in rows.

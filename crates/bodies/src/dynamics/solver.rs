@@ -25,6 +25,8 @@ pub enum LinearSolver {
 }
 
 /// The default tolerance of conjugate gradients.
+// A Newton iteration leaves this share of the forces, so that two of them reach the 1e-10 at which a step ends by default. A
+// smaller one takes iterations for digits that the next linearisation changes.
 const TOLERANCE: f64 = 1e-8;
 
 crate::named!(LinearSolver {

@@ -53,6 +53,7 @@ struct State {
 }
 
 /// The solver of Newton leaves points where they are whose block has no larger determinant.
+// The bound is the `abs(determinant(h)) > 1e-8` of `particle_vbd_kernels.py`, whatever the units are.
 const LEAST: f64 = 1e-8;
 
 impl Descents {

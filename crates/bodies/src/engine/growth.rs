@@ -83,4 +83,6 @@ const GROWN: f64 = 1e3;
 /// The largest eigenvalue of `ω D⁻¹ A` with which sweeps end, below 2 by what the power method may miss.
 const STABLE: f64 = 1.98;
 /// More substeps than are looked for.
+// Those of a frame of 1/60 s last 1 ns then. A point at 1 m/s moves by 1e-9 m in one, less than a digit of single precision in a body of
+// 10 cm.
 const LARGE: usize = 1 << 24;

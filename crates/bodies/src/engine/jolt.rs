@@ -9,6 +9,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Points of a group.
+// It is `SoftBodyUpdateContext::cVertexConstraintBatch` of Jolt: another number gives another order of the springs, and another body.
 const GROUP: usize = 256;
 /// Jolt computes in single precision, and ties are decided by its rounding.
 type Place = [f32; 3];

@@ -1,6 +1,7 @@
 //! Displacements under several loads side by side, so that one pass over the springs serves them all.
 
 /// The number of loads in a block.
+// They are the doubles of one register of 512 bits, and a pass reads each spring once for all of them.
 pub(super) const LANES: usize = 8;
 /// A number for each load of a block.
 pub(super) type Lanes = [f64; LANES];

@@ -17,6 +17,8 @@ pub struct TruncatedModel<'a> {
 }
 
 /// A relative difference of a measure from its rest value that is rounding.
+// Measures of springs whose length is a millionth of the distance from the origin are rounded by 1e-10. The pull of a spring
+// beyond the bound is refused, as sweeps at rest have none.
 const SLACK: f64 = 1e-9;
 
 impl TruncatedModel<'_> {

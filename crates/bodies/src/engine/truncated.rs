@@ -48,6 +48,7 @@ enum Solver {
 /// Up to this number of free degrees of freedom the whole matrix costs less than iterations for the loads of a fit; it has 128 MB.
 const DENSE: usize = 4000;
 /// The relative residual at which iterations end.
+// It is that of the statics of a scene by default: the body in the engine has as many digits as the one beside it.
 const RESIDUAL: f64 = 1e-10;
 /// What they may leave where rounding ends them, in units of what was asked. Eight digits are left then, more than a
 /// fit of displacements asks for.

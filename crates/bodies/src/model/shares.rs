@@ -134,6 +134,7 @@ pub(super) fn merge(mesh: &Mesh, fits: &[CellFits]) -> (Vec<LengthSpring>, Vec<M
 }
 
 /// The number of points that one thread visits at a time.
+// In a tetrahedral mesh they have some 3 600 springs, beside which it takes no time to hand them to a thread.
 const CHUNK: usize = 512;
 /// The number of chunks whose results wait in memory to be taken: enough for many threads, and a small part of a large body.
 const ROUND: usize = 64;

@@ -9,6 +9,8 @@ use std::sync::{Arc, LazyLock};
 const FARTHEST: f64 = 1e10;
 
 /// A rest length below this share of the length is zero.
+// It is the length less a pull over the constant, which are equal where springs have no rest length: rounding of sums over a
+// point's cells leaves some 1e-15 of either.
 const NO_LENGTH: f64 = 1e-12;
 
 /// Whether a spring with the force `pull` at rest, where it measures c, has no rest measure `c − T/k` that can be

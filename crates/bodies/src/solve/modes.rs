@@ -21,6 +21,8 @@ const BLOCKS: usize = 6;
 /// The largest number of blocks that are computed. Pairs that are not found then are still checked one by one with K.
 const ROUNDS: usize = 60;
 /// An eigenpair is accepted if `‖A y − θ y‖` is below this share of θ,
+// A is symmetric, so that an eigenvalue is as near. Where the rounding of solutions leaves more, all rounds are made, and
+// [`TOLERANCE`] decides.
 const FOUND: f64 = 1e-11;
 /// or below this share of the largest θ, which is the level of rounding.
 const ROUNDING: f64 = 1e-14;

@@ -17,8 +17,11 @@ const NEAR_STEPS: usize = 40;
 /// without energy is the rounding of both stiffnesses times the condition of that of the body.
 pub(super) const NOTHING: f64 = 1e-9;
 /// The energy of a motion by its displacements is rounded by up to this share of the body's, where the body is slender.
+// The rounding is the condition of the body's stiffness times 1.1e-16, which is 1e-6 where the condition is 1e10.
 const ROUNDED: f64 = 1e-6;
 /// A ratio below zero by this share of the largest is found without a factor of the network.
+// The search knows a ratio to 2e-3 of itself (`FOUND` of `lanczos.rs`). That is 2e-6 of the largest here, about what is let pass as
+// rounding, so that a ratio nearer to zero is looked for by its reciprocal.
 const CLEAR: f64 = 1e-3;
 /// An energy ratio below this indicates that the network is close to a mechanism: it is a hundred times softer than the
 /// body.

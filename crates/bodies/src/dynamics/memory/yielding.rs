@@ -49,7 +49,8 @@ pub(super) struct Yield {
 
 /// Halvings of an interval, down to rounding.
 const HALVINGS: usize = 60;
-/// Passes in which x and what drives the flow are found from each other; the second has the order of the rule.
+/// Passes in which x and what drives the flow are found from each other.
+// Each pass gains an order in the step: the second has that of the rule, and the third keeps its error beside that of the rule small.
 const PASSES: usize = 3;
 
 impl Yield {

@@ -9,6 +9,8 @@ use crate::dynamics::settle::{Step, StepOutcome};
 use crate::dynamics::state::MotionState;
 
 /// The largest number of pieces of a step.
+// The error is of the second order: with so many pieces it is a millionth of that of one. A step that needs more is far too long, and
+// counts with the error that it has.
 const MOST: usize = 1024;
 /// An estimate below this share of what is allowed halves the number of pieces: half as many have four times the error.
 const SMALL: f64 = 0.1;

@@ -58,6 +58,7 @@ pub struct Bars<N> {
 }
 
 /// The number of bars whose square roots and quotients are computed together.
+// It is a multiple of the numbers of any register, and the block, less than 2 kB, stays in the first cache.
 const BLOCK: usize = 32;
 
 impl<N: Coordinate> Bars<N> {

@@ -6,6 +6,7 @@ use crate::springs::{Law, LawRoom};
 use std::sync::Arc;
 
 /// The number of springs that are evaluated together.
+// Each step of a formula is looked up once for all of them, and the doubles fill whole registers of any width.
 const BLOCK: usize = 16;
 
 /// A spring with a law on the content `V = scale · det` of a cell.

@@ -5,6 +5,7 @@ use crate::scalar::Coordinate;
 use rayon::prelude::*;
 
 /// Points whose forces one thread adds at a time.
+// They are as many as the springs of a part (`part.rs`), for the same reason.
 const POINTS: usize = 1 << 14;
 
 /// The rows of the parts that belong to each point, so that threads which add the forces of some points do not meet.
