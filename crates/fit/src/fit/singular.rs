@@ -12,8 +12,10 @@ use super::normal::{Normal, slope_tolerance};
 /// the first step decides it; the last ones reach equations that are nearly singular.
 const DELTAS: [f64; 10] = [1e-8, 1e-9, 1e-10, 1e-10, 1e-11, 1e-11, 1e-11, 1e-11, 1e-11, 1e-11];
 /// The slopes at which the steps end, as a share of what is tolerated.
+// The last steps are near the limit of what rounding lets them gain: two digits are left for what is tolerated.
 const ENOUGH: f64 = 1e-2;
 /// A slope below this share of the largest |b| is rounding.
+// A slope is a difference of sums of up to some hundred products, each rounded by 1.1e-16.
 const ROUNDING: f64 = 1e-14;
 
 /// The optimum of least norm, in the scaling of the equations; `None` if rounding leaves no point that satisfies the

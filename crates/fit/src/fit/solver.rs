@@ -61,6 +61,7 @@ impl Solver {
     /// The names of the solvers, as files and options have them.
     pub const NAMES: &'static [&'static str] = Name::NAMES;
     /// The number of iterations of a general optimiser if none is given.
+    // A swarm agrees after 200 (`AGREED` of `descent.rs`): so many are ten swarms.
     pub const DEFAULT_ITERATIONS: u64 = 2000;
 
     /// The solver called `name`; `iterations` and `topology` belong to the general solvers.

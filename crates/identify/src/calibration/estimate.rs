@@ -48,6 +48,8 @@ pub enum Fault {
 }
 
 /// Steps at most.
+// With the bound below, ten steps lead to a modulus of a million times the guess. A search that takes so many is reported as one
+// that has not ended.
 const STEPS: usize = 60;
 /// A step that counts as none: far below any interval.
 const SETTLED: f64 = 1e-7;

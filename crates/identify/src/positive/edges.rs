@@ -8,6 +8,7 @@ use crate::stiffness::each_cell;
 
 /// The share of the volume of two cells that counts for a spring across their common side. It is small, so that such
 /// springs are a last resort.
+// A tetrahedron counts for each of its six edges by 1/6, four times as much.
 const ACROSS: f64 = 1.0 / 24.0;
 
 /// Pairs of points, sorted, each with the data that the programme requires.

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::model::ConsistentMasses;
 
 /// Steps at most.
+// Newton's steps in one unknown double the digits. Each takes the modes under every support.
 const STEPS: usize = 12;
 /// A shorter step is the last one.
 // The frequency of a mode that the mesh resolves changes with the share by less than itself: this step changes it by

@@ -251,6 +251,7 @@ impl Carriers {
 }
 
 /// A constant for λ below this share of that for μ is a rounding error.
+// It is the difference of two constants of that size, each a sum of some products rounded by 1.1e-16.
 const ROUNDING: f64 = 1e-12;
 
 /// The stiffness of a small network, `[size × size]`.

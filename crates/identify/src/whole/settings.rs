@@ -62,6 +62,7 @@ impl Default for WholeSettings {
             iterations: 20,
             method: DescentMethod::GaussNewton(GaussNewton::default()),
             weighing: Weighing::default(),
+            // The longest explicit step goes with the inverse root of the stiffest constant: it may become thirty times as short.
             range: 1e3,
         }
     }

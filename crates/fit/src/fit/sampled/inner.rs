@@ -13,6 +13,7 @@ use super::starts::{StartEnd, distance, scales};
 use crate::error::{Error, ErrorKind, Result};
 
 /// The iteration has converged when a step cannot lower the sum of squares by more than this share.
+// The sum is quadratic around its optimum: parameters are known to the root of this share, 1e-6, before the last step of Newton.
 const PROMISE: f64 = 1e-12;
 /// A start, which searches on some of the shapes, has converged when a step cannot lower the sum of squares by more
 /// than this share. That tells optima apart; those that are kept are finished to the finer share on all shapes.
@@ -27,6 +28,8 @@ const EQUAL: f64 = 1e-6;
 /// parameters are exponents and rates of strains, numbers whose size is mostly near one.
 const STARTS: [f64; 2] = [0.1, 10.0];
 /// The least number of shapes on which starts search, and the least number of their equations for each unknown.
+// The fit to so many equations is near enough to an optimum on all shapes to tell optima apart. A start that is kept is finished on
+// all shapes.
 const FEW: [usize; 2] = [64, 8];
 /// A prime by which the few shapes are spread over all. As it is prime, no shape comes twice unless their number is a
 /// multiple of it, and it meets no period of a list.

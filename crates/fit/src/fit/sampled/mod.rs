@@ -55,6 +55,8 @@ use shapes::Drawing;
 use std::sync::Arc;
 
 /// The number of consecutive cells that one thread fits.
+// A cell takes a tenth of a millisecond or more, beside which a thread begins for nothing; longer chunks would leave threads
+// without work at the end of a round.
 const CHUNK: usize = 8;
 /// The largest number of values that a norm other than the Euclidean one may store for a cell: half a gigabyte.
 const MOST_NUMBERS: usize = 1 << 26;

@@ -100,6 +100,7 @@ impl Descent<'_> {
                 // What is promised is below the rounding of the sums.
                 damping *= 0.1;
             } else {
+                // A damping of nothing begins here, above the least that counts as some.
                 damping = (10.0 * damping).max(1e-6);
                 if damping > STIFFEST {
                     return Ok(end);

@@ -5,7 +5,7 @@ use crate::random::{Latin, Sobol, unit_at};
 /// The length of a sequence of Sobol points; the next shapes use another seed. The generator knows so many points of a
 /// sequence.
 const LONGEST: usize = 1 << 16;
-/// The number of coordinates of a Sobol point.
+/// The number of coordinates of a Sobol point, the most that the generator knows.
 const WIDEST: usize = 256;
 /// The number of coordinates from which the deformation of a family is drawn; those after it displace the nodes.
 pub const OF_FAMILIES: usize = 9;

@@ -9,11 +9,13 @@ use crate::fit::normal::{Normal, Rank};
 use crate::random::unit_at;
 use springfit_numerics::newton::falls_enough;
 
-/// The largest number of steps.
+/// The largest number of steps. A search that is not there then is reported as one that has not ended.
 const STEPS: usize = 500;
 /// The largest number of times that a step is halved. After them the step is 1e-12 of itself, which no value shows.
 const HALVINGS: i32 = 40;
 /// The iteration has converged when a step cannot lower the value by more than this share of its scale.
+// The value is quadratic around its minimum: parameters are known to the root of this share, 1e-6, which is below what a fit to
+// samples tells.
 const PROMISE: f64 = 1e-12;
 /// Where no step lowers the value, it has converged if the promise is less than this share of the scale. A sum over
 /// many shapes has lost some digits of sixteen; at a kink the promise is larger.

@@ -10,6 +10,8 @@ use crate::fit::input::{check_finite, check_length};
 use std::sync::Arc;
 
 /// Every fifth shape of a list is held out.
+// What is held out must be enough for a mean error, and is lost for the fit: a fifth is a usual share (Hastie, Tibshirani, Friedman
+// 2009, section 7.10).
 pub const APART: usize = 5;
 /// A deformation gradient of a list with a smaller det F is flat or turns cells inside out. Laws with ln J or 1/J have
 /// no force to fit there.
@@ -150,6 +152,7 @@ impl Sampling {
         if !(0.0..=2.0).contains(&self.perturbation) {
             return Err(Error::expected("perturbation", "a share from 0 to 2", self.perturbation));
         }
+        // In a sum with such a weight, a shape of the weight 1 has four digits left.
         if !(self.weight > 0.0 && self.weight <= 1e12) {
             return Err(Error::expected("weight", "a number above 0, up to 1e12", self.weight));
         }

@@ -140,6 +140,7 @@ fn inner_optimum(start: &DMatrix<f64>, changes: &[DMatrix<f64>], t: f64) -> DVec
                 break;
             }
             w += &step * length;
+            // The value is of the size of one: a smaller decrease is its rounding.
             if decrease < 1e-14 {
                 break;
             }

@@ -32,7 +32,7 @@ use side::ShiftedMatrix;
 /// The requested duality gap, relative to t, or relative to `EXACT ‖R‖` if t is smaller. It is half of the digits of
 /// `f64`; numbers of another precision use half of theirs.
 pub const GAP: f64 = 1e-8;
-/// Below this fraction of ‖R‖, rounding in R itself hides t.
+/// Below this fraction of ‖R‖, rounding in R itself hides t: the gap relative to it is 1e-14 of ‖R‖, some fifty roundings.
 pub const EXACT: f64 = 1e-6;
 /// If the curvature of the barrier (see [`Spectral`]) is below this, the optimum may not be unique.
 pub const AMBIGUOUS: f64 = 1e6;

@@ -25,6 +25,8 @@ use rayon::prelude::*;
 use std::sync::Arc;
 
 /// The number of cells that one thread fits at a time.
+// A cell takes the solution of a programme, beside which a thread begins for nothing; longer chunks would leave threads without work
+// at the end of a round.
 const CHUNK: usize = 16;
 
 /// The springs of all cells.
