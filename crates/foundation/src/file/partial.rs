@@ -21,6 +21,8 @@ const SUFFIX: &str = ".partial";
 pub(super) const LOCK: &str = ".springfit.lock";
 
 /// How often a folder is removed in which something is being written, and the time between.
+// A thread that was about to make a file makes it within the first moments. All trials together take a tenth of a second, for which
+// whoever interrupts a program waits at most.
 const TRIALS: usize = 20;
 const MOMENT: Duration = Duration::from_millis(5);
 

@@ -7,6 +7,8 @@ use num_traits::{One, ToPrimitive};
 /// The largest number of terms, well above that of any shape function. Larger expansions are given up.
 const MOST_TERMS: usize = 5000;
 /// The largest degree of an expansion.
+// The largest rule integrates the degree 63: the bound is far above what is of use, and keeps a text such as `x^4000000000` from
+// hours of work.
 const LARGEST_DEGREE: u32 = 1000;
 /// The largest power of a sum that is expanded.
 const LARGEST_POWER: u32 = 64;

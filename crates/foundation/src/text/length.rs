@@ -8,7 +8,7 @@ const LONGEST_QUOTED: usize = 120;
 const LONGEST_WORD: usize = 240;
 /// The longest message. Lists of known names are a few hundred characters long.
 const LONGEST: usize = 4000;
-/// Characters that are left of what is cut.
+/// Characters that are left of what is cut: a line of a terminal.
 const KEPT: usize = 80;
 /// Characters that are left of a message that is cut, few enough that what is said of its length makes it no longer than the longest.
 const KEPT_OF_MESSAGE: usize = 3900;

@@ -228,6 +228,8 @@ struct CellBox {
 /// node to the last digit.
 const SAME: f64 = 1e-9;
 /// The rounding of a place relative to the size of a box.
+// Boxes sort out cells before places are looked for in them: more slack would cost searches alone, and less would lose places on
+// sides that are written with seven digits.
 const SLACK: f64 = 1e-6;
 
 impl CellBox {

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 /// The content of a lock begins so, and goes on with the number of the process and its command.
 const OWNER: &str = "process ";
 /// Characters of the command in the lock.
+// They are enough to know it again, and a message quotes no more.
 const LONGEST: usize = 120;
 
 /// A lock that this process holds. It is released when the process ends, however it ends; the file may stay then, and is taken over.

@@ -4,6 +4,7 @@ use super::function::{Function, Result, Role, Statement};
 use super::node::Node;
 
 /// The largest number of operations of an expression on one line.
+// With it lines are about as wide as those of tables, 100 characters.
 const LONGEST: usize = 12;
 
 /// How the values of a function are used.

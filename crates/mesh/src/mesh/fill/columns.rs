@@ -25,7 +25,7 @@ pub(super) struct Crossing {
     height: f64,
 }
 
-/// The largest number of entries of bins; with more, bins are made wider.
+/// The largest number of entries of bins; with more, bins are made wider. They have 200 MB.
 const MOST_ENTRIES: usize = 50_000_000;
 
 impl<'a> Columns<'a> {

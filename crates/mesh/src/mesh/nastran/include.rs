@@ -3,6 +3,7 @@
 use crate::mesh::include::Inclusion;
 
 /// The largest number of lines on which the name of a file stands.
+// Eight lines of 72 columns hold any usual path; a quote that is never closed would else take the whole deck for a name.
 const MOST_LINES: usize = 8;
 
 /// `INCLUDE 'file'` stands for the lines of the file; a long name goes on until its quote ends.

@@ -6,6 +6,8 @@ use crate::error::{Error, ErrorKind, Result};
 use std::collections::HashMap;
 
 /// Shape functions below this at a point are zero there.
+// Values of functions of size one are known to some thousand roundings. Those that do not vanish at nodes of a divided cell are
+// fractions with small denominators.
 const ZERO: f64 = 1e-12;
 
 /// The division of an element: its points, its cells, and the parts of its sides and edges.

@@ -4,6 +4,7 @@ use super::piece::Piece;
 use crate::error::{Error, ErrorKind, Result};
 
 /// The largest number of points of a lattice whose points are not listed in the file one by one, and of voxels that are cells.
+// A file of a few lines can ask for any number. So many points have 200 MB, and the corners of as many voxels 540 MB.
 const MOST: usize = 1 << 23;
 
 /// The keys of the coordinates along each axis in a file.

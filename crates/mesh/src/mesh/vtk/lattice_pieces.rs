@@ -5,6 +5,7 @@ use super::piece::{DataArray, Labels, Piece};
 use crate::error::{Error, Result};
 
 /// Coordinates of a shared point in two pieces may differ by this share of the largest coordinate of the grid.
+// Pieces are often written in single precision, which rounds by 6e-8, by processes that have computed the point on their own.
 const SAME: f64 = 1e-6;
 
 /// The place of a piece in the whole lattice.

@@ -10,6 +10,7 @@ use crate::mesh::source::{Format, MeshSource, SourceBlock};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// The largest number of different values of an array that names groups.
+// Arrays with more values number cells or hold quantities: each value would become a group with a list of its cells.
 const MOST_GROUPS: usize = 1000;
 
 /// Points and cells, as both kinds of file hold them.
@@ -35,6 +36,7 @@ const GHOSTS: &str = "vtkGhostType";
 const GHOSTLY: i128 = 1 | 8 | 32;
 
 /// The largest number of different values of an array of real numbers that are labels because all are whole.
+// Real numbers that are whole may be measurements in coarse steps; bodies seldom have as many materials.
 const MOST_REAL_LABELS: usize = 64;
 
 /// An array with one whole number per cell.

@@ -15,8 +15,10 @@ use std::borrow::Cow;
 /// equal numbers may have a thousand, but few files consist of such arrays.
 const MOST_GROWTH: u64 = 100;
 /// The number of bytes that is allowed in any file.
+// A short file of equal numbers may grow more than a hundredfold, and 16 MB harm nobody.
 const ALWAYS_ALLOWED: u64 = 1 << 24;
 /// The largest number of damaged arrays of a piece that are left out.
+// Each is a remark. With more of them the file is damaged as a whole, and the first that is not left out is the error.
 const MOST_DAMAGED: usize = 20;
 
 /// Reads a grid, its arrays as text, in base64 or appended in base64 or raw, in either byte
