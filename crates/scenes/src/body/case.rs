@@ -8,6 +8,7 @@ use crate::scalar::norm;
 use crate::solve::Applied;
 
 /// Nodes that move by less than this share of the directors' displacements stay where they are: a rod that twists alone.
+// A solution moves such nodes by rounding. Relative to that, every error of theirs would be of the size of one.
 const STILL: f64 = 1e-9;
 
 /// A load case on a mesh: its support and nodal forces.

@@ -9,6 +9,8 @@ use crate::scene::{LoadCase, Part, Scene};
 /// The share of a force on held points from which on it is reported. Tractions on sides that meet a held side have a few percent there.
 const SWALLOWED: f64 = 0.1;
 /// The distance of a measured displacement from the one that its support prescribes, relative to the largest, that is more than noise.
+// A support that gives way by a share of the displacements makes a body look softer by about this share. The bound was chosen above
+// the noise of most measurements, so that it is mistakes of groups and units that are told.
 const CONTRADICTS: f64 = 0.05;
 
 /// What must be known of the loads of a scene on its mesh, one sentence each.

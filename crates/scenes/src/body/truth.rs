@@ -25,6 +25,8 @@ const PER_SORTED: f64 = 300.0;
 /// More points are not even counted: their analysis alone would be noticed.
 const MOST_POINTS: usize = 40_000;
 /// Two levels that differ by more, in percent of the largest displacement, say nothing of the truth.
+// Where halved cells change half of the motion, no order is reached by which what is left could be bounded: at the second order a third
+// of the change would be left, and on cells that still lock it may be nearly all.
 const MOST_APART: f64 = 50.0;
 /// The key that asks for the finite elements of the mesh.
 const CELLS: &str = "from = \"cells\" in [reference] compares with the finite elements of the mesh";

@@ -144,6 +144,7 @@ struct ForceEntry {
 }
 
 /// The largest number of states that are written by default, after the first.
+// A curve of so many points looks smooth, and files of large bodies stay of a size that other programs open.
 const STATES: f64 = 100.0;
 
 impl MotionEntry {

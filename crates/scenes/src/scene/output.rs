@@ -67,7 +67,7 @@ pub struct DynamicModuliEntry {
 // The peak of a relaxing term in the middle between two of them is seen to 3 %: `2 x/(1 + x²)` is 0.974 at
 // `x = 10^(1/10)`.
 const PER_DECADE: f64 = 5.0;
-/// Frequencies at most.
+/// Frequencies at most. Each takes a solution for every strain, and ten decades with a thousand in each are as many.
 const MOST: u64 = 10_000;
 
 impl DynamicModuliEntry {

@@ -16,6 +16,7 @@ use std::sync::Arc;
 pub(super) use crate::mesh::Accepted;
 
 /// The distance from the nearest place of the data, relative to the extent of the mesh, up to which a cell has values.
+// Data of the same body end within a cell or two of its surface. Those of another place, axis or unit are farther away.
 const FARTHEST: f64 = 0.1;
 /// The ratio of the extents of data and body from which on they have another unit: units of length differ by ten at least, and data in the cells
 /// of a body extend less far than it does.

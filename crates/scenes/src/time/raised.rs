@@ -7,6 +7,7 @@ use crate::solve::{Masses, System};
 use faer::sparse::Triplet;
 
 /// A model releases energy if some ω² is negative by this share of the largest; less is rounding.
+// The sums of a stiffness are rounded by some 1e-15 of the largest entry, and the factor of a large body by some hundred times that.
 pub const RELEASE: f64 = 1e-9;
 
 /// The equations for any σ, with one analysis of their pattern.

@@ -11,6 +11,7 @@ use crate::model::{Elastic, Network, Support};
 /// The time step of the implicit method, s: that of pictures that move.
 const IMPLICIT_STEP: f64 = 1.0 / 60.0;
 /// The step of the explicit method as a share of the longest one that is stable.
+// The limit is that of the body at rest: with half of it springs may become four times as stiff as they deform.
 const SHARE: f64 = 0.5;
 /// A pass of steps takes about this time, s: much more than a look at the clock.
 const PASS: f64 = 2e-4;

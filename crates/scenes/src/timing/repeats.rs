@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// A work is repeated until its passes have taken this processor time together, s.
 const TOGETHER: f64 = 0.02;
-/// A work is repeated this often at least.
+/// A work is repeated this often at least: two passes that were interrupted do not move the median of five.
 const LEAST: usize = 5;
 /// A work is repeated this often at most.
 const MOST: usize = 400;

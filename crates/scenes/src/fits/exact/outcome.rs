@@ -6,6 +6,8 @@ use crate::material::{CellMap, Hooke, Moduli};
 use crate::positive::PositiveOutcome;
 
 /// λ/μ at Poisson's ratio 1/3.
+// It is half of the ratio from which finite elements are said to lock (`LOCKS` of `locking.rs`): networks are compared with cells
+// that do not.
 const UNLOCKED: f64 = 2.0;
 
 /// The body to which the network is equal.

@@ -51,6 +51,7 @@ impl FitKind for SampledRecipe {
 }
 
 /// The most materials of a body for which the law of a fit is worked out.
+// Each has a law that is read and proved on its own. A body with more has moduli that vary from cell to cell.
 const MATERIALS: usize = 64;
 
 /// The fits of each block of cells.

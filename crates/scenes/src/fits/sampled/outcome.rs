@@ -118,7 +118,7 @@ impl SampledOutcome {
     }
 }
 
-/// The largest number of starts in a report.
+/// The largest number of starts in a report: so many fit on a screen, and `data` writes all of them.
 const STARTS: usize = 16;
 /// The largest number of single shapes in a report.
 const WORST: usize = 8;
@@ -182,6 +182,7 @@ fn worst(found: &[SampledFits]) -> Vec<WorstShape> {
 }
 
 /// A fit with a larger relative error than this does not describe the body.
+// It was chosen as large as the share of the elasticity tensor from which on a network is said to be another material.
 const UNEXPLAINED: f64 = 0.1;
 
 impl SampledOutcome {

@@ -14,7 +14,7 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{self, Deserializer, SeqAccess, Visitor};
 use std::fmt;
 
-/// The default seed of the random loads.
+/// The default seed of the random loads. Any number would do; it is the year of the paper.
 const SEED: u64 = 2010;
 /// ρ where few unknowns are found from measured displacements: too small to move what they see, large enough to hold what they do not.
 pub(super) const FEW: f64 = 1e-9;

@@ -97,7 +97,7 @@ pub enum ValidationRecipe {
     None,
 }
 
-/// The stretch of made loads at large deformation, where the scene names none.
+/// The stretch of made loads at large deformation, where the scene names none: that of the paper's table 3.
 pub const STRETCH: f64 = 0.3;
 /// The name of the loads that are generated from the mesh.
 pub const MADE: &str = "made";

@@ -23,6 +23,8 @@ const RANDOM: usize = 4;
 const VARIED: usize = 16;
 
 /// The least range of constants that a fit for an engine may use.
+// A sweep adds the compliance of a spring to what its points have between them. Single precision drops what is below 6e-8 of that: a
+// constant 1e8 times as large as another is rigid beside it, and a larger one is no other spring.
 const BOUNDED: f64 = 1e8;
 
 /// Makes loads from a mesh and its support. Those that are drawn at random are others with each seed.

@@ -122,10 +122,12 @@ impl CalibratedLoad {
 // The share that is explained is one less the squares that are left, `1 − (1/2)²`.
 const EXPLAINED: f64 = 0.75;
 /// What is held has moved far if it has by this share of the displacements of the load.
+// A support that gives way by a share of the displacements makes a body look softer by about this share: moduli are a tenth too low.
 const SLIPPED: f64 = 0.1;
 /// It has moved if it has by this many deviations of the noise, which no one of a million does by chance.
 const OUTLIER: f64 = 5.0;
 /// Where the noise is not known, it has moved if it has by this share of the displacements of the load.
+// It was chosen: moduli are off by about as much, which is worth a note, and the noise of most measurements is smaller.
 const SHARE: f64 = 0.02;
 /// Residuals of this multiple of the stated noise are those of another model or another noise, whatever part of them is the error of the meshes.
 // With one measurement more than unknowns noise alone leaves as much in 0.3 % of cases, and with two more in 0.01 %.

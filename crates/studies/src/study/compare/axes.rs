@@ -25,7 +25,7 @@ const LISTS: [(&str, usize); 13] = [
 ];
 /// Tables whose keys may have lists as well.
 const TABLES: [&str; 1] = ["shapes"];
-/// Fits at most.
+/// Fits at most: a table of more is not read, and lists of a few keys multiply to more by mistake.
 const MOST: usize = 1000;
 
 /// A fit of a comparison, and the values of the keys that vary among the fits of its entry.

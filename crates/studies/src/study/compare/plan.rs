@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub(super) const YOUNG: f64 = 10e3;
 /// Elements have this Poisson's ratio if the comparison gives none.
 const POISSON: f64 = 0.3;
-/// Cases of elements at most.
+/// Cases of elements at most: each is fitted by every fit, and has a line of its own in the files.
 const MOST_CASES: f64 = 1e5;
 /// The largest stretch of sampled shapes where no fit is listed.
 const STRETCH: f64 = 0.35;

@@ -6,7 +6,7 @@ use crate::bound::{self, check_count};
 use crate::error::{Error, Result};
 use springfit_scenes::{choice, keys};
 
-/// Sets of a table at most.
+/// Sets of a table at most: lists of five keys multiply to more by mistake.
 const MOST: f64 = 1e5;
 
 /// The sets of shapes of `shapes`: all combinations of the values of each table.

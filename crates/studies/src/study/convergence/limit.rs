@@ -6,6 +6,8 @@ use serde::Serialize;
 const EQUAL: f64 = 1e-9;
 /// The lowest order from which a limit is extrapolated. At order ½ the extrapolation adds 2.4 times the last
 /// difference.
+// The displacements at the tip of a crack grow with the root of the distance, so that values there have this order. Lower ones are mostly
+// those of meshes that show no order yet.
 const SLOWEST: f64 = 0.5;
 
 /// The limit of a sequence.

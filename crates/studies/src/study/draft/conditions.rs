@@ -6,13 +6,16 @@ use crate::text::{not_a_line, rounded, toml as quoted};
 /// Names of groups that are probably meant to be held.
 const HELD: [&str; 8] = ["fix", "clamp", "support", "base", "bottom", "rim", "left", "min"];
 /// The share of the points that a group without such a name may hold.
+// A group of more points is the body, or its whole surface in a coarse mesh: little would be left that moves.
 const MOST_HELD: f64 = 0.4;
 /// What the load strains the body by, about. A stress of a hundredth of the modulus shows on a picture, and small
 /// displacements still hold.
 const STRAIN: f64 = 0.01;
 /// The largest number of pieces besides the first that are held one by one.
+// A draft is read and changed by hand, and more conditions than fit on a screen are not.
 const MOST_PIECES: usize = 20;
 /// A body with fewer points than this share in the lowest layers is rounded: it is held over `DEPTH` of its length.
+// The lowest layer of a box has more up to twenty layers. A finer box is held over a depth as well, which a draft shows.
 const FEW: f64 = 0.05;
 // A ball has `3 t² − 2 t³` of its volume in a layer of the share t of its diameter: 4 % at this depth, with 12 % of its
 // surface.

@@ -9,6 +9,7 @@ pub(super) const POISSON: f64 = 0.3;
 /// The modulus of a draft without one, Pa.
 const YOUNG: f64 = 10e3;
 /// The largest number of labels of which each gets a material of its own.
+// A draft is read and changed by hand, and tables of more materials than fit on a screen are not.
 const MOST_REGIONS: usize = 12;
 
 /// The material of a first scene, as values of TOML. A value that is `None` is replaced by a default.

@@ -14,7 +14,7 @@ mod material;
 
 pub use material::DraftMaterial;
 
-/// Groups that are listed at most.
+/// Groups that are listed at most: a draft with more is no longer read, and `springfit groups` lists them all.
 const LISTED: usize = 40;
 /// The largest mesh whose draft asks for quadratic elements beside it, which take several times the memory.
 const MOST_COMPARED: usize = 10_000;

@@ -3,6 +3,8 @@
 use crate::springs::{cross, dot, norm};
 
 /// A point this far from a side, relative to the extent of all points, is on it.
+// Products of differences of coordinates are rounded by some 1e-16 of the square of the extent. With a wider bound a smoothly rounded
+// body would lose corners of its hull.
 const ON: f64 = 1e-9;
 
 /// The convex hull of points of two or three coordinates.

@@ -9,7 +9,7 @@ use crate::springs::Springs;
 use springfit_scenes::{NamedFit, load_element};
 use std::path::Path;
 
-/// The number of steps along each constant.
+/// The number of steps along each constant: a surface of 11 × 11 fits, which shows where they follow the modulus.
 const STEPS: usize = 10;
 
 /// The moduli of a box of one element, for logarithmic steps of Young's modulus and equal steps of Poisson's ratio.
