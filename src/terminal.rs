@@ -50,7 +50,7 @@ struct Stage {
     is_announced: bool,
 }
 
-/// The time between two lines of progress.
+/// The time between two lines of progress: long enough that a log of hours stays short, and short enough to see that work goes on.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// A stage states the remaining time after it has run this long and so many parts in a hundred are done, or after the longer time: the first parts
 /// are seldom like the others.

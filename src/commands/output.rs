@@ -11,7 +11,7 @@ use springfit_studies::study::Outcome;
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
-/// Notes that are printed of an outcome, unless all are asked for.
+/// Notes that are printed of an outcome, unless all are asked for: more would push the table off the screen.
 const MOST_NOTES: usize = 8;
 
 /// The options of a command that prints tables.

@@ -13,7 +13,7 @@ use springfit_report::report::{NetworkRecord, NodalLoadRecord, Parts, of_locking
 /// A spring of [`Stands::SquaredLengths`] pushes with `k/(2 L²) (L² − l²) l`, at most 0.192 k L, at `l = L/√3`. A spring of the network
 /// pushes as much at this share of its length; pressed further, cells of such a program give way until they are flat.
 const PRESSED: f64 = 0.808;
-/// Beyond this strain the two energies differ by more than a tenth.
+/// Beyond this strain the two energies differ by more than a tenth: their ratio is `(1 + s/2)²`.
 const UNLIKE: f64 = 0.1;
 
 /// Equilibria that take more operations, together some seconds, are not solved.
@@ -26,6 +26,7 @@ const MOST_POINTS: usize = 40_000;
 /// that release energy. It is beyond the rounding of the factor, and below what any spring resists.
 const SHIFT: f64 = 1e-9;
 /// Displacements below this share of the body are those of the linear theory.
+// The theory omits squares of strains and rotations, which are far below the two digits of a stretch that are told.
 const SMALL: f64 = 1e-3;
 /// How exactly forces balance. Stretches are told with four digits, and fewer iterations take less of the seconds that
 /// an export may take.

@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// A model whose energy of tension is nearer than this to its own is not repaired, percent.
+// A body at rest may still move by 0.03 % of its displacement, and single precision rounds it: the factor of a repair is known to a few
+// times that, and one that is nearer to one says nothing of the engine.
 const RIGHT: f64 = 0.5;
 /// The load by which a modulus is repaired.
 const TENSION: &str = "tension";

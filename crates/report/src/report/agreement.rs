@@ -20,10 +20,12 @@ pub struct Agreement {
     pub agree: bool,
 }
 
-/// An error e_rms below this, in percent, is taken as zero.
+/// An error e_rms below this, in percent, is taken as zero: the ratio of two such errors would tell nothing.
 const NONE: f64 = 0.1;
 
 /// Up to this share they are said to agree.
+// Starts agree within a tenth on bodies of tetrahedra (`docs/src/studies/whole-object.md`). With twice that one of them has found another
+// optimum.
 const SAME: f64 = 0.2;
 
 /// The fits of a scene from several starts.

@@ -4,6 +4,7 @@ use super::note::{Note, Weight};
 use crate::study::{FitOutcome, Outcome};
 
 /// The share by which a tensor or Young's modulus may be off before a network is warned of.
+// Displacements are off by about as much. It was chosen: the moduli of most bodies are known no better.
 const FAR: f64 = 0.1;
 
 /// Whether the network is the material that was asked for, as far as a fit is to be it.

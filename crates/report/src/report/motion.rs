@@ -77,8 +77,11 @@ fn ended(model: &MotionRecord) -> String {
 }
 
 /// A body that is held and moves by more than this multiple of its own size is torn off.
+// A held body that bends or turns moves by twice its size at most. To move so far it would be stretched about tenfold, which few
+// elastomers bear.
 const FAR: f64 = 10.0;
 /// Linear finite elements that are strained by this much say nothing of a body.
+// The term `½ Hᵀ H` that their strain omits is half as large as the strain then.
 const LOST_LINEAR: f64 = 1.0;
 
 /// Says that motions are not to be trusted, and why: one that did not come to its end, an unstable network, inverted cells, or a body that leaves
@@ -187,6 +190,7 @@ pub(super) fn motion_notes(outcome: &Outcome) -> Vec<Note> {
 }
 
 /// The share of the energy from which on what an integrator takes is reported.
+// The amplitude has lost half as much, half a percent: less hardly shows in a motion.
 const LOST: f64 = 0.01;
 
 /// How much energy an integrator that damps has taken from the model that lost most, where that is known. A vibration has lost half of that share

@@ -209,6 +209,8 @@ fn of_fit(outcome: &Outcome, fit: &FitOutcome) -> Vec<Note> {
 }
 
 /// Forces at rest below this share of the largest pull are no fault of the network.
+// A spring pulls by its constant times the length of an edge at most where it has no rest length. What is left of the pulls then moves a
+// point by 2 % of an edge at most, as other springs hold it too.
 const SMALL: f64 = 0.02;
 
 /// A note on a network that moves without a load. Only sampled laws of force and fitted rest measures can make such a network.

@@ -9,7 +9,7 @@ use super::verdict::{LOCKS, TOO_STIFF};
 use crate::study::statistics::median;
 use crate::study::{BODY, LoadOutcome, Measured, Times};
 
-/// With more loads than this, the median and the worst of them are shown.
+/// With more loads than this, the median and the worst of them are shown: a column of each would be wider than a terminal.
 const MOST_LOADS: usize = 5;
 
 /// A column, and its cell for a fit and for the finite elements.

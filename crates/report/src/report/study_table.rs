@@ -17,9 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// The first line of a table begins so.
 const BEGINNING: &[u8] = b"study,";
-/// Studies that are printed at most.
+/// Studies that are printed at most: a screen has few more lines, and `table.csv` has all.
 const PRINTED: usize = 40;
-/// Studies whose errors are printed at most.
+/// Studies whose errors are printed at most. They are mostly alike, and the table of the file has all.
 const FAULTS: usize = 10;
 /// How networks stand whose errors mean little.
 const UNSTABLE: [Standing; 3] = [Standing::Soft, Standing::Indefinite, Standing::Singular];

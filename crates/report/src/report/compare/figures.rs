@@ -37,9 +37,10 @@ impl Drawn {
     }
 }
 
-/// Points of a scatter for each fit at most.
+/// Points of a scatter for each fit at most: more cover each other, and a picture of dozens of fits stays of a size that opens.
 const MOST: usize = 1000;
 /// Errors below this share of the largest are those of rounding.
+// An axis of logarithms that had them would be mostly empty, and those of fits that differ would be pressed together.
 const ROUNDING: f64 = 1e-9;
 
 /// The chart, of the cases whose element or scene is `of`, or of all.

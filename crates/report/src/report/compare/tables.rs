@@ -10,7 +10,7 @@ use crate::text::printable;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Rows of cases and of pairs that the terminal shows at most; files have all.
+/// Rows of cases and of pairs that the terminal shows at most; files have all. A terminal has 24 lines at least.
 const SHOWN: usize = 24;
 /// Medians that differ by less than this share are both the best.
 const EQUAL: f64 = 1e-6;

@@ -15,9 +15,11 @@ const MARGIN: f64 = 12.0;
 const WIDE: f64 = 26.0;
 const CAPTION: f64 = 18.0;
 /// Pixels from a node to the middle of its number, which is tried in so many directions.
+// A number of two digits is 11 wide, and a dot 4: so far away they do not touch in any direction.
 const AWAY: f64 = 10.0;
 const DIRECTIONS: usize = 24;
 /// Pixels from the middle of a number within which nothing else should be, and down to its foot.
+// Half of a number is 6 wide and 4 high; the rest is the air that keeps it apart from an edge.
 const CLEAR: f64 = 9.0;
 const FOOT: f64 = 3.5;
 /// The part of an edge that the arms of an angle take.

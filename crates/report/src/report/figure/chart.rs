@@ -84,6 +84,8 @@ const DOT: i32 = 3 * FINE / 2;
 const FONT: i32 = FINE * LETTERS as i32 * 5 / 4;
 
 /// Units around a panel, at its right end, and of the numbers and titles below it and at its left.
+// At the right half of the last number stands beyond the axis; below there are a line of numbers and one of the title; at the left there
+// are numbers of up to six digits beside a title that is turned.
 const EDGE: i32 = 6 * FINE;
 const RIGHT: i32 = 14 * FINE;
 const UNDER: i32 = 36 * FINE;
@@ -91,7 +93,7 @@ const LEFT: i32 = 52 * FINE;
 /// Units of an axis that a title cannot have: across, and up.
 const BESIDE: i32 = LEFT + EDGE + RIGHT;
 const BELOW: i32 = UNDER + 2 * EDGE;
-/// Letters of an axis' title are not smaller than this share of the others.
+/// Letters of an axis' title are not smaller than this share of the others: they would be hard to read, and the title is cut instead.
 const SMALLEST: f64 = 0.75;
 
 /// Values that an axis has at most: its marks are counted in powers of ten.

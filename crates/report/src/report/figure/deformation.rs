@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The largest displacement is drawn as this part of the body's size.
 const SHOWN: f64 = 0.2;
-/// Springs of which all are drawn; of more, those on the surface.
+/// Springs of which all are drawn; of more, those on the surface: lines of the others would cover them.
 const MOST_SPRINGS: usize = 4000;
 
 /// The shapes of a body under a load.

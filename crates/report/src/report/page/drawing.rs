@@ -10,9 +10,9 @@ use crate::report::outline::cell_edges;
 pub const MOST_SPRINGS: usize = 100_000;
 /// Springs of all networks, and their displacements under all loads, as numbers: they fill about 60 MB of a page.
 const MOST_NUMBERS: usize = 12_000_000;
-/// Triangles of a surface.
+/// Triangles of a surface. A browser draws all of them anew at each turn.
 const MOST_TRIANGLES: usize = 300_000;
-/// Points of a body whose points are all kept.
+/// Points of a body whose points are all kept. Each has a displacement for each load and network; of more, those that are drawn are enough.
 const FEW_POINTS: usize = 50_000;
 
 /// The part of a body that is drawn.

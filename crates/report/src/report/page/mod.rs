@@ -20,9 +20,9 @@ use drawing::{Drawing, spread};
 use serde_json::json;
 use std::io::{self, Write};
 
-/// States of a motion that are played.
+/// States of a motion that are played: as many as ten seconds of a film have.
 const MOST_STATES: usize = 240;
-/// Numbers of all states.
+/// Numbers of all states: they fill about 30 MB of a page.
 const MOST_MOTION: usize = 6_000_000;
 
 /// Writes the page of a run.
