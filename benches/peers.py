@@ -1,7 +1,7 @@
 """What other programs take for the work of `cargo bench --bench peers`: `peers.py WORK FOLDER` prints seconds of the processor, seconds of
 the clock, and a number that both must agree in. One thread.
 
-FOLDER holds raw arrays: points, cells, and the stiffness in blocks as `crates/multigrid/examples/peers.py` reads it.
+FOLDER holds raw arrays: points, cells, and the stiffness in blocks as `crates/multigrid/benches/peers.py` reads it.
 """
 
 import sys
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "crates/multigrid/examples"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "crates/multigrid/benches"))
 import peers as multigrid
 
 
