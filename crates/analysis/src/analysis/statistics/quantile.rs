@@ -16,9 +16,12 @@ pub fn quantile(sorted: &[f64], p: f64) -> f64 {
 
 /// The median of values in any order.
 pub fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    quantile(&sorted, 0.5)
+    let Some(last) = values.len().checked_sub(1) else { return f64::NAN };
+    let mut values = values.to_vec();
+    // A bootstrap takes thousands of medians. To select the middle takes a time in proportion to the number of values, and no order of the others.
+    let (_, middle, above) = values.select_nth_unstable_by(last / 2, f64::total_cmp);
+    let next = above.iter().copied().min_by(f64::total_cmp).unwrap_or(*middle);
+    *middle + 0.5 * (last % 2) as f64 * (next - *middle)
 }
 
 /// The quantiles of a sample, with its mean.
