@@ -3,7 +3,7 @@
 //! A generic function is compiled, and optimised, with the package that calls it. These are compiled here, so that callers whose own code is
 //! not optimised run them at full speed.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// All λ with `A v = λ v`, of a symmetric matrix A, n × n, in no order. It is done in n³ operations.
 ///
@@ -14,6 +14,19 @@ use nalgebra::{DMatrix, DVector};
 /// ```
 pub fn eigenvalues(a: DMatrix<f64>) -> DVector<f64> {
     a.symmetric_eigenvalues()
+}
+
+/// λ and v with `A v = λ v`, of a symmetric matrix A, n × n; the vectors are orthonormal columns in the order of the values. It is done in
+/// n³ operations.
+///
+/// ```
+/// use nalgebra::dmatrix;
+/// let eigen = springfit_numerics::dense::eigen(dmatrix![2.0, 1.0; 1.0, 2.0]);
+/// let v = eigen.eigenvectors.column(0);
+/// assert!((dmatrix![2.0, 1.0; 1.0, 2.0] * v - eigen.eigenvalues[0] * v).norm() < 1e-14);
+/// ```
+pub fn eigen(a: DMatrix<f64>) -> SymmetricEigen<f64, Dyn> {
+    a.symmetric_eigen()
 }
 
 /// The x of least norm that minimises ‖A x − b‖, by the singular values σ of A; those of at most `epsilon` count as zero. `None` if they do not

@@ -119,7 +119,7 @@ fn lanczos(n: usize, apply: impl Fn(&[f64]) -> Vec<f64>) -> Option<f64> {
             if projected.iter().any(|x| !x.is_finite()) {
                 return None;
             }
-            let eigen = projected.symmetric_eigen();
+            let eigen = springfit_numerics::dense::eigen(projected);
             let top = eigen.eigenvalues.imax();
             let (theta, residual) = (eigen.eigenvalues[top], size * eigen.eigenvectors[(step - 1, top)].abs());
             if residual <= FOUND * theta {

@@ -101,7 +101,7 @@ fn solve(inner: DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
         // The iterations for eigenvalues need not end with numbers that are none.
         return force * f64::NAN;
     }
-    let eigen = inner.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(inner);
     let floor = 1e-10 * eigen.eigenvalues.amax();
     let inverse = eigen.eigenvalues.map(|e| if e.abs() > floor { 1.0 / e } else { 0.0 });
     &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.tr_mul(force)

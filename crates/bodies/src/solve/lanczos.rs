@@ -127,7 +127,7 @@ fn eigen(projected: &DMatrix<f64>, m: usize) -> Option<Eigen> {
     if whole.iter().any(|x: &f64| !x.is_finite()) {
         return None;
     }
-    let eigen = whole.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(whole);
     let mut order: Vec<usize> = (0..m).collect();
     // The decomposition gives eigenvalues in no order.
     order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));

@@ -184,7 +184,7 @@ fn largest_eigenpairs(
             let error = Error::at("stiffness", "its inverse is beyond the range of numbers");
             return Err(error.of_kind(ErrorKind::Infeasible));
         }
-        let eigen = projected.clone().symmetric_eigen();
+        let eigen = springfit_numerics::dense::eigen(projected.clone());
         let mut order: Vec<usize> = (0..m).collect();
         // The decomposition gives eigenvalues in no order.
         order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));

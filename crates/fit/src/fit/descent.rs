@@ -52,10 +52,10 @@ impl Raw<'_> {
         let e = DMatrix::from_fn(p, p, |i, j| e[i.max(j) * p + i.min(j)]);
         match self.objective {
             Objective::Frobenius(_) => e.norm(),
-            Objective::Spectral(_) => e.symmetric_eigenvalues().amax(),
+            Objective::Spectral(_) => springfit_numerics::dense::eigenvalues(e).amax(),
             Objective::Divergence(balance) => {
                 let balance = balance.value();
-                let eigenvalues = (DMatrix::identity(p, p) - e).symmetric_eigenvalues();
+                let eigenvalues = springfit_numerics::dense::eigenvalues(DMatrix::identity(p, p) - e);
                 if eigenvalues.min() <= 0.0 {
                     // The objective is infinite here. A number keeps the difference of two such points defined, which
                     // annealing asks for.

@@ -244,7 +244,7 @@ impl GivenStiffness {
             return Err(Error::expected("objective", expected, fit.objective.name()).of_kind(ErrorKind::Infeasible));
         }
         let rest = &self.matrix - plain::network(&self.gradients(pairs), &constants);
-        let largest = |a: &DMatrix<f64>| a.clone().symmetric_eigenvalues().amax();
+        let largest = |a: &DMatrix<f64>| springfit_numerics::dense::eigenvalues(a.clone()).amax();
         Ok(GivenFit {
             frobenius: rest.norm() / self.matrix.norm(),
             spectral: largest(&rest) / largest(&self.matrix),

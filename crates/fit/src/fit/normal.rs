@@ -253,7 +253,7 @@ impl Normal {
         let (scaled, scale) = self.scaled();
         let m = self.size();
         // With a unit diagonal the eigenvalues have no unit, whatever springs measure: they can be compared with each other.
-        let eigen = DMatrix::from_vec(m, m, scaled.gram).symmetric_eigen();
+        let eigen = springfit_numerics::dense::eigen(DMatrix::from_vec(m, m, scaled.gram));
         let least = RANK * f64::epsilon() * eigen.eigenvalues.amax();
         let mut coefficients = eigen.eigenvectors.tr_mul(&DVector::from_vec(scaled.rhs));
         for (c, &value) in coefficients.iter_mut().zip(&eigen.eigenvalues) {

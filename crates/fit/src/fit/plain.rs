@@ -157,7 +157,7 @@ fn vector(a: &DMatrix<f64>) -> DVector<f64> {
 
 /// A power of a symmetric matrix on the motions that it does not vanish on.
 fn power(a: &DMatrix<f64>, exponent: f64) -> DMatrix<f64> {
-    let eigen = a.clone().symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(a.clone());
     let least = ROUNDING * eigen.eigenvalues.amax();
     let powers = eigen.eigenvalues.map(|value| if value > least { value.powf(exponent) } else { 0.0 });
     &eigen.eigenvectors * DMatrix::from_diagonal(&powers) * eigen.eigenvectors.transpose()

@@ -250,7 +250,7 @@ pub fn condition(weight: Weight, element: &Element, springs: &Springs, x: &[f64]
     let normal = equations(&0.0, element, springs, x, moduli, weight.closed(false)?)?;
     let (scaled, _) = normal.scaled();
     let m = scaled.size();
-    let eigenvalues = nalgebra::DMatrix::from_vec(m, m, scaled.gram).symmetric_eigenvalues();
+    let eigenvalues = springfit_numerics::dense::eigenvalues(nalgebra::DMatrix::from_vec(m, m, scaled.gram));
     let (least, largest) = (eigenvalues.min(), eigenvalues.max());
     // An eigenvalue below rounding of the largest has no meaning.
     let is_regular = least > m as f64 * f64::EPSILON * largest;

@@ -219,7 +219,7 @@ fn damped(columns: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
     let scaled = |p: usize, q: usize| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]);
     let normal = DMatrix::from_fn(m, m, |p, q| scaled(p, q) + if p == q { damping } else { 0.0 });
     let slopes = DVector::from_fn(m, |p, _| dot(&columns[p], residuals) / norms[p]);
-    let eigen = normal.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(normal);
     let mut step = vec![0.0; m];
     for (value, vector) in
         // A combination that measurements see to less than a millionth stays where it is.
@@ -237,7 +237,7 @@ fn inverse(columns: &[Vec<f64>]) -> DMatrix<f64> {
     // A column of zeros, which no measurement sees, stays zero and is not 0/0.
     let norms: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt().max(f64::MIN_POSITIVE)).collect();
     let normal = DMatrix::from_fn(m, m, |p, q| dot(&columns[p], &columns[q]) / (norms[p] * norms[q]));
-    let eigen = normal.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(normal);
     let mut sum = DMatrix::zeros(m, m);
     for (value, vector) in
         // The square of the share from which on a combination counts as seen where deviations are worked out.

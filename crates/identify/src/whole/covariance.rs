@@ -91,7 +91,7 @@ impl Determination {
                 f64::from(u8::from(p == q))
             }
         });
-        let eigen = scaled.symmetric_eigen();
+        let eigen = springfit_numerics::dense::eigen(scaled);
         let pairs = || eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());
         let deviation = |p: usize| {
             if !is_seen(p) {

@@ -28,7 +28,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let Optimum { kappa, value: t, .. } = optimum;
     let (p, t, springs) = (problem.order(), *t, problem.matrices());
     let e = problem.error(kappa);
-    let eigen = e.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(e);
     let (active, rest): (Vec<usize>, Vec<usize>) =
         (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
     // All eigenvalues are active, or none if t is only the rounding of an exact fit.
@@ -49,7 +49,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     // nalgebra's thin decomposition has no vectors beyond the smaller dimension.
     let range = v.rows(0, rank).transpose();
     let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
-    let free = projection.symmetric_eigen();
+    let free = springfit_numerics::dense::eigen(projection);
     let directions: Vec<DVector<f64>> = (0..kappa.len())
         // A projection has the eigenvalues zero and one.
         .filter(|&i| free.eigenvalues[i] > 0.5)
@@ -72,7 +72,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     // The directions are accurate to rounding over `FREE`: the move goes as far as the value does not increase.
     for length in [1.0, 0.99, 0.9, 0.5] {
         let moved: Vec<f64> = kappa.iter().zip(step.iter()).map(|(k, d)| k + length * d).collect();
-        let value = problem.error(&moved).symmetric_eigenvalues().amax() + problem.rounding(&moved);
+        let value = springfit_numerics::dense::eigenvalues(problem.error(&moved)).amax() + problem.rounding(&moved);
         // The value is computed anew with its rounding: the directions alone prove nothing.
         if value <= t * (1.0 + KEPT) {
             *optimum = Optimum { kappa: moved, value: t.max(value), ..*optimum };

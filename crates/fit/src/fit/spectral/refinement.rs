@@ -299,7 +299,7 @@ fn make_positive(a: &mut DMatrix<f64>) {
     }
     // Without its negative eigenvalues the matrix is the nearest one that is positive (Higham, Linear Algebra Appl.
     // 103, 1988).
-    let eigen = a.clone().symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(a.clone());
     *a = combination(&eigen.eigenvectors, &DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| e.max(0.0))));
 }
 
@@ -315,7 +315,7 @@ fn solve(system: DMatrix<f64>, rhs: &DVector<f64>) -> Option<DVector<f64>> {
     if factors.lu_internal().diagonal().amin() > SINGULAR {
         return factors.solve(rhs);
     }
-    let eigen = system.symmetric_eigen();
+    let eigen = springfit_numerics::dense::eigen(system);
     let mut parts = eigen.eigenvectors.transpose() * rhs;
     for (part, value) in parts.iter_mut().zip(eigen.eigenvalues.iter()) {
         *part = if value.abs() > SINGULAR { *part / value } else { 0.0 };
