@@ -16,6 +16,7 @@ use springfit_bodies::model::{
 use springfit_bodies::solve::System;
 use springfit_element::element::SpringKind;
 use springfit_foundation::error::{Error, Result};
+use springfit_foundation::number::first_not_finite;
 use springfit_mesh::mesh::Mesh;
 use springfit_report::report::NetworkFacts;
 use std::sync::Arc;
@@ -59,11 +60,11 @@ impl SpringBody {
         pairs: PyReadonlyArray2<i64>,
         blocks: Vec<(Py<CellConstants>, PyReadonlyArray2<i64>)>,
     ) -> PyResult<SpringBody> {
-        let ends = places(py, "springs", pairs.as_array().iter())?;
+        let ends = places(py, "springs", pairs.as_array())?;
         let mut others = Vec::new();
         for (constants, cells) in &blocks {
             let rule = &constants.get().rule;
-            let cells = places(py, "cells", cells.as_array().iter())?;
+            let cells = places(py, "cells", cells.as_array())?;
             let springs = &rule.springs;
             let functions = springs.functions().iter().map(|f| f.kind);
             let areas = springs.areas().iter().map(|_| SpringKind::PointArea);
@@ -185,7 +186,7 @@ impl SpringBody {
             if values.len() != count {
                 return Err(invalid(py, key, &format!("an array of shape ({count},)"), values.len()));
             }
-            match values.iter().position(|value| !value.is_finite()) {
+            match first_not_finite(&values) {
                 Some(place) => Err(invalid(py, &format!("{key}[{place}]"), "a finite number", values[place])),
                 None => Ok(values),
             }

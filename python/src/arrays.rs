@@ -1,24 +1,29 @@
 //! Arrays of NumPy as slices of the library, and back.
 
 use crate::error::invalid;
-use numpy::ndarray::Array2;
+use numpy::ndarray::{Array2, ArrayView, Dimension};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use springfit_foundation::number;
 
 /// The rows of a matrix one after the other.
 pub fn rows<T: numpy::Element + Copy>(matrix: &PyReadonlyArray2<T>) -> Vec<T> {
-    matrix.as_array().iter().copied().collect()
+    copied(matrix.as_array())
+}
+
+/// The numbers of an array in the order of its rows. This package is not optimised: a loop over numbers is left to others.
+fn copied<T: Copy, D: Dimension>(array: ArrayView<T, D>) -> Vec<T> {
+    array.as_slice().map_or_else(|| array.iter().copied().collect(), <[T]>::to_vec)
 }
 
 /// Places from 0; a negative one is an error.
-pub fn places<'a>(py: Python, key: &str, list: impl Iterator<Item = &'a i64>) -> PyResult<Vec<usize>> {
-    let place = |&p: &i64| usize::try_from(p).map_err(|_| invalid(py, key, "places from 0", p));
-    list.map(place).collect()
+pub fn places<D: Dimension>(py: Python, key: &str, list: ArrayView<i64, D>) -> PyResult<Vec<usize>> {
+    number::places(copied(list)).map_err(|p| invalid(py, key, "places from 0", p))
 }
 
 /// One place in each row's list, from 0.
 pub fn place_list(py: Python, key: &str, list: &PyReadonlyArray1<i64>) -> PyResult<Vec<usize>> {
-    places(py, key, list.as_array().iter())
+    places(py, key, list.as_array())
 }
 
 /// `values` as a matrix of rows of this `width`.
@@ -38,7 +43,7 @@ pub fn vectors(py: Python, key: &str, given: &PyReadonlyArray2<f64>, [points, d]
         return Err(invalid(py, key, &format!("an array of shape ({points}, {d})"), found));
     }
     let values = rows(given);
-    match values.iter().position(|value| !value.is_finite()) {
+    match number::first_not_finite(&values) {
         Some(place) => Err(invalid(py, &format!("{key}[{}]", place / d), "finite numbers", values[place])),
         None => Ok(values),
     }

@@ -171,7 +171,7 @@ impl BodyShare {
     ) -> PyResult<BodyShare> {
         let settings = settings_of(py, settings)?;
         let block = |(name, nodes): &(String, PyReadonlyArray2<i64>)| {
-            Ok((name.clone(), places(py, &format!("cells of {name}"), nodes.as_array().iter())?))
+            Ok((name.clone(), places(py, &format!("cells of {name}"), nodes.as_array())?))
         };
         let blocks = blocks.iter().map(block).collect::<PyResult<Vec<_>>>()?;
         let (d, points) = (points.as_array().ncols(), rows(&points));

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use springfit_bodies::model::{CompressedRows, Deformation, Support};
 use springfit_bodies::solve::{Factor, System};
 use springfit_foundation::error::{Error, Result};
+use springfit_foundation::number::first_not_finite;
 use springfit_report::report::beyond_linear;
 use std::sync::Arc;
 
@@ -141,7 +142,7 @@ pub fn loads(py: Python, key: &str, given: &PyReadonlyArray3<f64>, shape: [usize
     let of_load = |load: numpy::ndarray::ArrayView2<f64>| load.iter().copied().collect::<Vec<f64>>();
     let all: Vec<Vec<f64>> = given.as_array().outer_iter().map(of_load).collect();
     for values in &all {
-        if let Some(place) = values.iter().position(|value| !value.is_finite()) {
+        if let Some(place) = first_not_finite(values) {
             let key = format!("{key}[{}]", place / shape[2]);
             return Err(raised(py, Error::expected(key, "finite numbers", values[place])));
         }

@@ -30,7 +30,7 @@ fn source(py: Python, (points, polygons): Surface) -> PyResult<MeshSource> {
         let nodes_per_cell = cells.shape()[1];
         let known = POLYGONS.into_iter().find(|(corners, _)| *corners == nodes_per_cell);
         let (_, cell_type) = known.ok_or_else(|| invalid(py, "surface", "triangles or quadrangles", nodes_per_cell))?;
-        let connectivity = places(py, "surface", cells.as_array().iter())?;
+        let connectivity = places(py, "surface", cells.as_array())?;
         if let Some(outside) = connectivity.iter().find(|&&p| p >= points.shape()[0]) {
             return Err(invalid(py, "surface", &format!("places of {} points", points.shape()[0]), outside));
         }

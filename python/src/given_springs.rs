@@ -297,7 +297,7 @@ pub fn values(py: Python, key: &str, given: &PyReadonlyArray1<f64>, count: usize
 }
 
 fn checked_places(py: Python, key: &str, given: &PyReadonlyArray2<i64>, count: usize) -> PyResult<Vec<usize>> {
-    let found = places(py, key, given.as_array().iter())?;
+    let found = places(py, key, given.as_array())?;
     match found.iter().find(|p| **p >= count) {
         Some(wrong) => Err(invalid(py, key, &format!("places of points from 0 and below {count}"), wrong)),
         None => Ok(found),

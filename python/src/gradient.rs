@@ -329,7 +329,7 @@ impl CellRule {
                 return Err(invalid(py, key, &format!("an array of shape ({name}, {width})"), found));
             }
         }
-        Ok((rows(points), places(py, "cells", cells.as_array().iter())?))
+        Ok((rows(points), places(py, "cells", cells.as_array())?))
     }
 }
 

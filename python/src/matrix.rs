@@ -44,7 +44,7 @@ pub fn fit_stiffness<'py>(
         if springs.shape()[1] != 2 {
             return Err(invalid(py, "springs", "an array of shape (springs, 2)", format!("{:?}", springs.shape())));
         }
-        let nodes = places(py, "springs", springs.as_array().iter())?;
+        let nodes = places(py, "springs", springs.as_array())?;
         Ok(nodes.as_chunks::<2>().0.to_vec())
     });
     let pairs = pairs.transpose()?;
@@ -53,7 +53,7 @@ pub fn fit_stiffness<'py>(
             let expected = format!("an array of shape ({}, {d})", points.shape()[0]);
             return Err(invalid(py, "displacements", &expected, format!("{:?}", kept.shape())));
         }
-        places(py, "displacements", kept.as_array().iter())
+        places(py, "displacements", kept.as_array())
     });
     let kept = kept.transpose()?;
     let points = rows(&points);

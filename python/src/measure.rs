@@ -10,6 +10,7 @@ use springfit_bodies::model::{LengthSpring, Network, Specimen, Support};
 use springfit_element::material::Plane;
 use springfit_element::springs::distance;
 use springfit_foundation::error::{Error, Result};
+use springfit_foundation::number::first_not_finite;
 use springfit_report::report::{ContentPart, Parts, SpecimenOptions, read_specimen};
 use springfit_studies::study::{EngineEntry, MeasureOptions, measure};
 use std::path::PathBuf;
@@ -51,7 +52,7 @@ fn values(py: Python, key: &str, array: &PyReadonlyArray1<f64>, count: usize) ->
     if values.len() != count {
         return Err(invalid(py, key, &format!("an array of {count} numbers"), values.len()));
     }
-    match values.iter().position(|value| !value.is_finite()) {
+    match first_not_finite(&values) {
         Some(at) => Err(invalid(py, &format!("{key}[{at}]"), "a finite number", values[at])),
         None => Ok(values),
     }
@@ -67,7 +68,7 @@ fn place_rows(
     if array.shape()[1] != width {
         return Err(invalid(py, key, &format!("an array of shape (n, {width})"), format!("{:?}", array.shape())));
     }
-    let nodes = places(py, key, array.as_array().iter())?;
+    let nodes = places(py, key, array.as_array())?;
     match nodes.iter().position(|node| *node >= count) {
         Some(at) => {
             let hint = if nodes[at] == count { "; are points numbered from 1?" } else { "" };

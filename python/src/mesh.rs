@@ -54,7 +54,7 @@ fn arrays_of(
             let expected = format!("an array of shape (cells, {n})");
             return Err(invalid(py, &key, &expected, format!("{:?}", nodes.shape())));
         }
-        Ok((element.0.clone(), places(py, &key, nodes.as_array().iter())?))
+        Ok((element.0.clone(), places(py, &key, nodes.as_array())?))
     };
     let listed = |key: &str, lists: &Places| {
         let list = |(name, places): (&String, &PyReadonlyArray1<i64>)| {

@@ -1,4 +1,4 @@
-//! Numbers in JSON, which has neither infinities nor NaN: null stands for them.
+//! Numbers at the edges: in JSON, which has neither infinities nor NaN, null stands for them; lists from outside may hold any.
 
 use serde::{Deserialize, Deserializer};
 
@@ -22,4 +22,17 @@ pub fn or_nan<'de, D: Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
 pub fn each_or_nan<'de, D: Deserializer<'de>>(source: D) -> Result<Vec<f64>, D::Error> {
     let all: Vec<Option<f64>> = Deserialize::deserialize(source)?;
     Ok(all.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
+}
+
+/// Whole numbers as places from 0.
+///
+/// # Errors
+/// The first number below zero.
+pub fn places(numbers: Vec<i64>) -> Result<Vec<usize>, i64> {
+    numbers.into_iter().map(|number| usize::try_from(number).map_err(|_| number)).collect()
+}
+
+/// The place of the first value that is infinite or not a number.
+pub fn first_not_finite(values: &[f64]) -> Option<usize> {
+    values.iter().position(|value| !value.is_finite())
 }
