@@ -13,7 +13,7 @@ use springfit_fit::fit::{
 use springfit_mesh::mesh::BoxMesh;
 use springfit_studies::study::FitEntry;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Every weight; of the modal ones the default and that of no weight.
 pub fn weights() -> Vec<Weight> {
@@ -32,6 +32,8 @@ pub struct Case {
     pub moduli: Moduli,
     pub r: DMatrix<f64>,
     pub g: Vec<DVector<f64>>,
+    /// W of the relative weight, once it is asked for.
+    relative: OnceLock<DMatrix<f64>>,
 }
 
 pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
@@ -42,7 +44,16 @@ pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli
     let g = rows.chunks_exact(x.len()).map(DVector::from_column_slice).collect();
     let name = format!("{} with {} springs", element.name, springs.len());
     let r = geometry.stiffness(moduli);
-    Case { name, element: element.clone(), springs: springs.clone(), x: x.to_vec(), moduli, r, g }
+    Case {
+        name,
+        element: element.clone(),
+        springs: springs.clone(),
+        x: x.to_vec(),
+        moduli,
+        r,
+        g,
+        relative: OnceLock::new(),
+    }
 }
 
 /// Every element, with and without its optional springs, at random shapes, for every material.
@@ -107,10 +118,13 @@ impl Case {
                 Some(&projection + higher.value() * (identity - &projection))
             }
             Weight::Relative => {
-                let eigen = self.r.clone().symmetric_eigen();
-                let root = |e: f64| if e > 1e-9 * self.r.norm() { 1.0 / e.sqrt() } else { 0.0 };
-                let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(root));
-                Some(&eigen.eigenvectors * roots * eigen.eigenvectors.transpose())
+                let form = || {
+                    let eigen = springfit_numerics::dense::eigen(self.r.clone());
+                    let root = |e: f64| if e > 1e-9 * self.r.norm() { 1.0 / e.sqrt() } else { 0.0 };
+                    let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(root));
+                    &eigen.eigenvectors * roots * eigen.eigenvectors.transpose()
+                };
+                Some(self.relative.get_or_init(form).clone())
             }
         }
     }

@@ -307,7 +307,9 @@ fn optima_are_stationary() {
 fn beyond_rows(c: &DMatrix<f64>, mut v: DVector<f64>) -> DVector<f64> {
     let mut rows: Vec<DVector<f64>> = c.row_iter().map(|row| row.transpose()).collect();
     let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
-    while let Some(pivot) = (0..rows.len()).max_by(|&i, &j| rows[i].norm().total_cmp(&rows[j].norm())) {
+    loop {
+        let norms: Vec<f64> = rows.iter().map(|row| row.norm()).collect();
+        let Some(pivot) = (0..rows.len()).max_by(|&i, &j| norms[i].total_cmp(&norms[j])) else { break };
         let row = rows.swap_remove(pivot);
         if row.norm() <= 1e-12 * largest {
             break;

@@ -108,6 +108,8 @@ fn settled(bar: &Bar, setting: &Setting, force: &[f64]) -> Vec<f64> {
         }
         Order::Jolt => unreachable!("it has a test of its own"),
     };
+    let stiff = |row: usize| all[row].iter().zip(&rows[row].1).map(|(&dof, g)| weight(dof) * g * g).sum();
+    let stiff: Vec<f64> = (0..rows.len()).map(stiff).collect();
     let (mut u, mut v) = (vec![0.0; size], vec![0.0; size]);
     for _ in 0..30_000 {
         let before = u.clone();
@@ -142,14 +144,13 @@ fn settled(bar: &Bar, setting: &Setting, force: &[f64]) -> Vec<f64> {
                 for _ in 0..setting.iterations {
                     let start = u.clone();
                     for &row in &order {
+                        if stiff[row] == 0.0 {
+                            continue;
+                        }
                         let (_, g, k) = &rows[row];
                         let stretch = along(row, if setting.sweep == Sweep::Jacobi { &start } else { &u });
                         let soft = 1.0 / (k * h * h);
-                        let stiff: f64 = all[row].iter().zip(g).map(|(&dof, g)| weight(dof) * g * g).sum();
-                        if stiff == 0.0 {
-                            continue;
-                        }
-                        let step = -setting.relaxation * (stretch + soft * multipliers[row]) / (stiff + soft);
+                        let step = -setting.relaxation * (stretch + soft * multipliers[row]) / (stiff[row] + soft);
                         multipliers[row] += step;
                         all[row].iter().zip(g).for_each(|(&dof, g)| u[dof] += weight(dof) * g * step);
                     }

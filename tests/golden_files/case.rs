@@ -173,6 +173,13 @@ impl Case {
 
 /// Whether a text is of a pattern, in which `*` stands for any letters and `#` for a whole number.
 pub fn fits(text: &str, pattern: &str) -> bool {
+    // Most texts and patterns differ in their first letter, and there are millions of such pairs.
+    if let (Some(first), Some(expected)) = (text.as_bytes().first(), pattern.as_bytes().first())
+        && first != expected
+        && !matches!(expected, b'*' | b'#')
+    {
+        return false;
+    }
     let Some(at) = pattern.find(['*', '#']) else { return text == pattern };
     let Some(text) = text.strip_prefix(&pattern[..at]) else { return false };
     let rest = &pattern[at + 1..];
