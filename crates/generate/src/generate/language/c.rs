@@ -1,26 +1,44 @@
-//! C, from the standard of 1999 on, and C++; and CUDA C++, whose functions are for the device, in double precision.
+//! C, from the standard of 1999 on, and C++; CUDA C++, whose functions are for the device; both in double precision; and GLSL from 4.3 on,
+//! and of OpenGL ES from 3.1 on, in single precision.
 
-use super::syntax::{Arguments, Syntax, has_status};
-use crate::generate::code::{Array, Function, Result};
+use super::syntax::{Arguments, Syntax, between, end};
+use crate::generate::code::{Function, Result};
 
 /// What the dialects of C differ in.
 #[derive(Debug)]
 pub struct Dialect {
-    /// The end of the guard's name.
-    guard: &'static str,
+    /// The end of the guard's name, of a file that is included.
+    guard: Option<&'static str>,
     /// What stands before a function.
     function: &'static str,
     /// What stands before the type of a table.
     table: &'static str,
+    /// The type of numbers.
+    number: &'static str,
+    /// The types of a value, of an array that is read and of one that is written.
+    types: [&'static str; 3],
 }
 
-pub const C: Dialect = Dialect { guard: "H", function: "static inline", table: "static const" };
-pub const CUDA: Dialect =
-    Dialect { guard: "CUH", function: "static __device__ __forceinline__", table: "static __device__ const" };
+pub const C: Dialect = Dialect {
+    guard: Some("H"),
+    function: "static inline ",
+    table: "static const",
+    number: "double",
+    types: ["const double", "const double", "double"],
+};
+pub const CUDA: Dialect = Dialect {
+    guard: Some("CUH"),
+    function: "static __device__ __forceinline__ ",
+    table: "static __device__ const",
+    ..C
+};
+pub const GLSL: Dialect =
+    Dialect { guard: None, function: "", table: "const", number: "float", types: ["float", "in float", "inout float"] };
 
 impl Syntax for Dialect {
     fn file(&self, prefix: &str) -> [Vec<String>; 2] {
-        let guard = format!("{}_{}", prefix.to_uppercase(), self.guard);
+        let Some(end) = self.guard else { return [Vec::new(), Vec::new()] };
+        let guard = format!("{}_{end}", prefix.to_uppercase());
         let first = [
             format!("#ifndef {guard}"),
             format!("#define {guard}"),
@@ -31,8 +49,8 @@ impl Syntax for Dialect {
         [first.into(), vec![format!("#endif // {guard}")]]
     }
 
-    fn entry(&self, _: &Array, name: &str, at: &str) -> String {
-        format!("{name}[{at}]")
+    fn is_single(&self) -> bool {
+        self.number == "float"
     }
 
     fn equal(&self, a: &str, b: &str) -> String {
@@ -44,20 +62,20 @@ impl Syntax for Dialect {
     }
 
     fn define(&self, name: &str, value: &str) -> String {
-        format!("const double {name} = {value};")
-    }
-
-    fn store(&self, entry: &str, value: &str) -> String {
-        format!("{entry} = {value};")
+        format!("{} {name} = {value};", self.types[0])
     }
 
     fn memory(&self, name: &str, length: usize) -> String {
-        format!("double {name}[{length}];")
+        format!("{} {name}[{length}];", self.number)
     }
 
     fn table(&self, name: &str, length: usize, is_integer: bool, entries: &[String]) -> Vec<String> {
-        let kind = if is_integer { "int" } else { "double" };
-        braced(format!("{} {kind} {name}[{length}] = {{", self.table), entries)
+        let kind = if is_integer { "int" } else { self.number };
+        let first = format!("{} {kind} {name}[{length}] = ", self.table);
+        match self.is_single() {
+            true => between(format!("{first}{kind}[{length}]("), entries, ");"),
+            false => between(format!("{first}{{"), entries, "};"),
+        }
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {
@@ -69,40 +87,21 @@ impl Syntax for Dialect {
     }
 
     fn open(&self, function: &Function, lists: &Arguments) -> Vec<String> {
-        vec![format!("{} {} {{", self.function, signature(function, lists))]
+        let [_, input, output] = self.types;
+        let arguments = lists.list(
+            |array| format!("{input} {}[{}]", array.name, array.length),
+            |name| format!("{} {name}", self.number),
+            |array| format!("{output} {}[{}]", array.name, array.length),
+        );
+        let result = match function.result {
+            Result::Status => "int",
+            Result::Value(_) => self.number,
+            Result::Nothing => "void",
+        };
+        vec![format!("{}{result} {}({arguments}) {{", self.function, function.name)]
     }
 
     fn close(&self, function: &Function, _: &Arguments, value: Option<&str>) -> Vec<String> {
-        end(function, value)
+        end(function, value.map(|value| format!("return {value};")), "return 0;")
     }
-}
-
-/// The type, the name and the arguments of a function.
-fn signature(function: &Function, lists: &Arguments) -> String {
-    let arguments = lists.list(
-        |array| format!("const double {}[{}]", array.name, array.length),
-        |name| format!("double {name}"),
-        |array| format!("double {}[{}]", array.name, array.length),
-    );
-    let result = match function.result {
-        Result::Status => "int",
-        Result::Value(_) => "double",
-        Result::Nothing => "void",
-    };
-    format!("{result} {}({arguments})", function.name)
-}
-
-/// The end of a function.
-pub fn end(function: &Function, value: Option<&str>) -> Vec<String> {
-    let result = match value {
-        Some(value) => Some(format!("    return {value};")),
-        None => has_status(function).then(|| "    return 0;".into()),
-    };
-    result.into_iter().chain(["}".into()]).collect()
-}
-
-/// A table in braces.
-fn braced(first: String, entries: &[String]) -> Vec<String> {
-    let lines = entries.iter().map(|line| format!("    {line}"));
-    std::iter::once(first).chain(lines).chain(["};".into()]).collect()
 }

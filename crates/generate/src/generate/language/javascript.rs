@@ -1,6 +1,6 @@
 //! JavaScript, a module without packages. Sequences of numbers are flat; a status is an exception.
 
-use super::syntax::{Arguments, Syntax, function_of_c};
+use super::syntax::{Arguments, Syntax, between, function_of_c};
 use crate::generate::code::{Array, Function, Status};
 use crate::symbolic;
 
@@ -30,10 +30,6 @@ impl Syntax for JavaScript {
         [first, Vec::new()]
     }
 
-    fn entry(&self, _: &Array, name: &str, at: &str) -> String {
-        format!("{name}[{at}]")
-    }
-
     fn equal(&self, a: &str, b: &str) -> String {
         format!("({a} === {b} ? 1.0 : 0.0)")
     }
@@ -61,17 +57,12 @@ impl Syntax for JavaScript {
         format!("const {name} = {value};")
     }
 
-    fn store(&self, entry: &str, value: &str) -> String {
-        format!("{entry} = {value};")
-    }
-
     fn memory(&self, name: &str, length: usize) -> String {
         format!("const {name} = new Float64Array({length});")
     }
 
     fn table(&self, name: &str, _: usize, _: bool, entries: &[String]) -> Vec<String> {
-        let lines = entries.iter().map(|line| format!("    {line}"));
-        std::iter::once(format!("const {name} = [")).chain(lines).chain(["];".into()]).collect()
+        between(format!("const {name} = ["), entries, "];")
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {

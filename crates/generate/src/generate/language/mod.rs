@@ -1,7 +1,6 @@
-//! The languages in which functions are printed: one file and one row of [`LANGUAGES`] for each.
+//! The languages in which functions are printed: one row of [`LANGUAGES`] for each, and one file for each or for dialects that differ little.
 
 mod c;
-mod glsl;
 mod javascript;
 mod latex;
 mod printer;
@@ -42,7 +41,7 @@ pub const LANGUAGES: &[LanguageRow] = &[
     LanguageRow { name: "python", endings: &["py"], most_work: usize::MAX, syntax: &python::Python },
     LanguageRow { name: "javascript", endings: &["js", "mjs"], most_work: usize::MAX, syntax: &javascript::JavaScript },
     LanguageRow { name: "wgsl", endings: &["wgsl"], most_work: SHADER, syntax: &wgsl::Wgsl },
-    LanguageRow { name: "glsl", endings: &["glsl", "comp"], most_work: SHADER, syntax: &glsl::Glsl },
+    LanguageRow { name: "glsl", endings: &["glsl", "comp"], most_work: SHADER, syntax: &c::GLSL },
     LanguageRow { name: "latex", endings: &["tex"], most_work: usize::MAX, syntax: &latex::Latex },
 ];
 

@@ -1,7 +1,7 @@
 //! Python, without packages. Sequences of numbers are flat; a status is an exception.
 
-use super::syntax::{Arguments, Syntax, function_of_c};
-use crate::generate::code::{Array, Function, Status};
+use super::syntax::{Arguments, Syntax, between, function_of_c};
+use crate::generate::code::{Function, Status};
 use crate::symbolic;
 
 /// Python.
@@ -48,10 +48,6 @@ impl Syntax for Python {
         if name == "lambda" { "lambda_".into() } else { name.into() }
     }
 
-    fn entry(&self, _: &Array, name: &str, at: &str) -> String {
-        format!("{name}[{at}]")
-    }
-
     fn equal(&self, a: &str, b: &str) -> String {
         format!("(1.0 if {a} == {b} else 0.0)")
     }
@@ -85,8 +81,7 @@ impl Syntax for Python {
     }
 
     fn table(&self, name: &str, _: usize, _: bool, entries: &[String]) -> Vec<String> {
-        let lines = entries.iter().map(|line| format!("    {line}"));
-        std::iter::once(format!("{name} = (")).chain(lines).chain([",)".into()]).collect()
+        between(format!("{name} = ("), entries, ",)")
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {

@@ -1,7 +1,7 @@
 //! Rust, without dependencies.
 
-use super::syntax::{Arguments, Syntax, has_status};
-use crate::generate::code::{Array, Function, Result};
+use super::syntax::{Arguments, Syntax, between, end};
+use crate::generate::code::{Function, Result};
 use crate::symbolic;
 
 /// Rust.
@@ -9,10 +9,6 @@ use crate::symbolic;
 pub struct Rust;
 
 impl Syntax for Rust {
-    fn entry(&self, _: &Array, name: &str, at: &str) -> String {
-        format!("{name}[{at}]")
-    }
-
     fn equal(&self, a: &str, b: &str) -> String {
         format!("(if {a} == {b} {{ 1.0 }} else {{ 0.0 }})")
     }
@@ -37,18 +33,13 @@ impl Syntax for Rust {
         format!("let {name} = {value};")
     }
 
-    fn store(&self, entry: &str, value: &str) -> String {
-        format!("{entry} = {value};")
-    }
-
     fn memory(&self, name: &str, length: usize) -> String {
         format!("let mut {name} = [0.0f64; {length}];")
     }
 
     fn table(&self, name: &str, length: usize, is_integer: bool, entries: &[String]) -> Vec<String> {
         let kind = if is_integer { "usize" } else { "f64" };
-        let lines = entries.iter().map(|line| format!("    {line}"));
-        std::iter::once(format!("static {name}: [{kind}; {length}] = [")).chain(lines).chain(["];".into()]).collect()
+        between(format!("static {name}: [{kind}; {length}] = ["), entries, "];")
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {
@@ -75,10 +66,6 @@ impl Syntax for Rust {
     }
 
     fn close(&self, function: &Function, _: &Arguments, value: Option<&str>) -> Vec<String> {
-        let result = match value {
-            Some(value) => Some(format!("    {value}")),
-            None => has_status(function).then(|| "    Ok(())".into()),
-        };
-        result.into_iter().chain(["}".into()]).collect()
+        end(function, value.map(String::from), "Ok(())")
     }
 }

@@ -47,7 +47,9 @@ pub trait Syntax: Debug + Sync {
     }
 
     /// An entry of an array.
-    fn entry(&self, array: &Array, name: &str, at: &str) -> String;
+    fn entry(&self, _array: &Array, name: &str, at: &str) -> String {
+        format!("{name}[{at}]")
+    }
 
     /// An integer.
     fn integer(&self, integer: isize) -> String {
@@ -69,7 +71,9 @@ pub trait Syntax: Debug + Sync {
 
     /// A function.
     fn call(&self, function: symbolic::Function, argument: &str) -> String {
-        format!("{}({argument})", function_of_c(function))
+        // Shaders have one name for the absolute values of all kinds of numbers.
+        let is_short = self.is_single() && function == symbolic::Function::Abs;
+        format!("{}({argument})", if is_short { "abs" } else { function_of_c(function) })
     }
 
     /// A choice.
@@ -89,7 +93,9 @@ pub trait Syntax: Debug + Sync {
     fn define(&self, name: &str, value: &str) -> String;
 
     /// A step that writes a value.
-    fn store(&self, entry: &str, value: &str) -> String;
+    fn store(&self, entry: &str, value: &str) -> String {
+        format!("{entry} = {value};")
+    }
 
     /// Memory of a function.
     fn memory(&self, name: &str, length: usize) -> String;
@@ -142,24 +148,24 @@ impl<'a> Arguments<'a> {
     }
 }
 
-/// Whether a function returns a status.
-pub fn has_status(function: &Function) -> bool {
-    function.result == Result::Status
+/// A table whose entries stand between two lines.
+pub fn between(first: String, entries: &[String], last: &str) -> Vec<String> {
+    let lines = entries.iter().map(|line| format!("    {line}"));
+    std::iter::once(first).chain(lines).chain([last.into()]).collect()
+}
+
+/// The end of a function in braces, which returns a value or, if it has a status, ends with `done`.
+pub fn end(function: &Function, value: Option<String>, done: &str) -> Vec<String> {
+    let last = value.or_else(|| (function.result == Result::Status).then(|| done.into()));
+    last.map(|line| format!("    {line}")).into_iter().chain(["}".into()]).collect()
 }
 
 /// The name of a function in C.
 pub fn function_of_c(function: symbolic::Function) -> &'static str {
     use symbolic::Function;
     match function {
-        Function::Exp => "exp",
         Function::Ln => "log",
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Tan => "tan",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
         Function::Abs => "fabs",
-        Function::Step => "step",
+        other => other.name(),
     }
 }

@@ -1,8 +1,7 @@
 //! WGSL, in single precision.
 
-use super::syntax::{Arguments, Syntax, has_status};
+use super::syntax::{Arguments, Syntax, between, end};
 use crate::generate::code::{Array, Function, Result, Role};
-use crate::symbolic;
 
 /// WGSL.
 #[derive(Debug)]
@@ -28,11 +27,6 @@ impl Syntax for Wgsl {
         format!("select(0.0, 1.0, {a} == {b})")
     }
 
-    fn call(&self, function: symbolic::Function, argument: &str) -> String {
-        let name = if function == symbolic::Function::Ln { "log" } else { function.name() };
-        format!("{name}({argument})")
-    }
-
     fn select(&self, greater: &str, than: &str, yes: &str, no: &str) -> String {
         format!("select({no}, {yes}, {greater} > {than})")
     }
@@ -41,18 +35,13 @@ impl Syntax for Wgsl {
         format!("let {name}: f32 = {value};")
     }
 
-    fn store(&self, entry: &str, value: &str) -> String {
-        format!("{entry} = {value};")
-    }
-
     fn memory(&self, name: &str, length: usize) -> String {
         format!("var {name}: array<f32, {length}>;")
     }
 
     fn table(&self, name: &str, length: usize, is_integer: bool, entries: &[String]) -> Vec<String> {
         let kind = format!("array<{}, {length}>", if is_integer { "u32" } else { "f32" });
-        let lines = entries.iter().map(|line| format!("    {line}"));
-        std::iter::once(format!("var<private> {name}: {kind} = {kind}(")).chain(lines).chain([");".into()]).collect()
+        between(format!("var<private> {name}: {kind} = {kind}("), entries, ");")
     }
 
     fn repeat(&self, variable: &str, from: &str, to: &str) -> [Option<String>; 2] {
@@ -76,10 +65,6 @@ impl Syntax for Wgsl {
     }
 
     fn close(&self, function: &Function, _: &Arguments, value: Option<&str>) -> Vec<String> {
-        let result = match value {
-            Some(value) => Some(format!("    return {value};")),
-            None => has_status(function).then(|| "    return 0u;".into()),
-        };
-        result.into_iter().chain(["}".into()]).collect()
+        end(function, value.map(|value| format!("return {value};")), "return 0u;")
     }
 }
