@@ -24,57 +24,25 @@ enum Named {
 
 impl Deck {
     pub(super) fn read(&mut self, lines: &Lines, line: &[u8]) -> Result<()> {
-        let block = std::mem::take(&mut self.block);
-        self.block = match block {
+        let mut block = std::mem::take(&mut self.block);
+        match &mut block {
             Block::Passed if !self.has_keyword => {
                 return Err(lines.expected("a keyword such as *NODE", &quoted(line)));
             }
-            Block::Passed => Block::Passed,
-            Block::Prescribed(keyword) => {
-                self.annotations.prescribe(&format!("*{keyword}"));
-                Block::Prescribed(keyword)
-            }
-            Block::Nodes(set, system) => {
-                self.read_node(lines, line, set, system)?;
-                Block::Nodes(set, system)
-            }
-            Block::Elements(mut element) => {
-                self.read_elements(lines, line, &mut element)?;
-                Block::Elements(element)
-            }
-            Block::NodeSet(set, generate) => {
-                self.read_set(lines, line, set, generate, true)?;
-                Block::NodeSet(set, generate)
-            }
-            Block::ElementSet(set, generate) => {
-                self.read_set(lines, line, set, generate, false)?;
-                Block::ElementSet(set, generate)
-            }
-            Block::Surface(of_nodes) => {
-                self.read_patch(lines, line, of_nodes)?;
-                Block::Surface(of_nodes)
-            }
-            Block::Union => {
-                self.read_union(lines, line)?;
-                Block::Union
-            }
-            Block::Instance => {
-                self.placement.push(reals(lines, line)?);
-                Block::Instance
-            }
-            Block::System => {
-                self.system.extend(reals(lines, line)?);
-                Block::System
-            }
-            Block::Generation(mut generation) => {
-                self.read_generation(lines, line, &mut generation)?;
-                Block::Generation(generation)
-            }
-            Block::Datum(datum) => {
-                self.sections.read(datum, line);
-                Block::Datum(datum)
-            }
-        };
+            Block::Passed => {}
+            Block::Prescribed(keyword) => self.annotations.prescribe(&format!("*{keyword}")),
+            Block::Nodes(set, system) => self.read_node(lines, line, *set, *system)?,
+            Block::Elements(element) => self.read_elements(lines, line, element)?,
+            Block::NodeSet(set, generate) => self.read_set(lines, line, *set, *generate, true)?,
+            Block::ElementSet(set, generate) => self.read_set(lines, line, *set, *generate, false)?,
+            Block::Surface(of_nodes) => self.read_patch(lines, line, *of_nodes)?,
+            Block::Union => self.read_union(lines, line)?,
+            Block::Instance => self.placement.push(reals(lines, line)?),
+            Block::System => self.system.extend(reals(lines, line)?),
+            Block::Generation(generation) => self.read_generation(lines, line, generation)?,
+            Block::Datum(datum) => self.sections.read(*datum, line),
+        }
+        self.block = block;
         Ok(())
     }
 
