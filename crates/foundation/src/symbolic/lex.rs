@@ -34,12 +34,12 @@ pub(super) fn function(name: &str) -> Option<Called> {
         "ramp" => return Some(Called::Ramp),
         _ => {}
     }
-    Function::ALL.iter().find(|(n, _)| *n == name).map(|(_, f)| Called::Function(*f))
+    Function::all().find(|function| function.name() == name).map(Called::Function)
 }
 
 pub(super) fn unknown_function(name: &str) -> String {
-    let names: Vec<_> = Function::ALL.iter().map(|(n, _)| *n).collect();
-    format!("expected an operator, or a function of sqrt, ramp, {}, found \"{name}(\"", names.join(", "))
+    let names = Function::NAMES.join(", ");
+    format!("expected an operator, or a function of sqrt, ramp, {names}, found \"{name}(\"")
 }
 
 pub(super) fn malformed(problem: impl Into<String>) -> Error {

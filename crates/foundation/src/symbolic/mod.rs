@@ -70,26 +70,10 @@ pub enum Function {
     Step,
 }
 
-impl Function {
-    /// All functions with their names.
-    pub const ALL: [(&'static str, Function); 10] = [
-        ("exp", Function::Exp),
-        ("ln", Function::Ln),
-        ("sin", Function::Sin),
-        ("cos", Function::Cos),
-        ("tan", Function::Tan),
-        ("asin", Function::Asin),
-        ("acos", Function::Acos),
-        ("atan", Function::Atan),
-        ("abs", Function::Abs),
-        ("step", Function::Step),
-    ];
-
-    /// The name of the function in expressions.
-    pub fn name(self) -> &'static str {
-        Function::ALL.iter().find(|(_, f)| *f == self).map_or("", |(name, _)| name)
-    }
-}
+crate::named!(Function {
+    "exp" => Exp, "ln" => Ln, "sin" => Sin, "cos" => Cos, "tan" => Tan, "asin" => Asin, "acos" => Acos, "atan" => Atan,
+    "abs" => Abs, "step" => Step,
+});
 
 /// A power of a number with a larger exponent stays unevaluated, so that no text can ask for gigabytes of digits.
 const LARGEST_FOLDED_EXPONENT: i64 = 256;
