@@ -48,27 +48,26 @@ impl Fraction {
             return Fraction::number(BigRational::zero(), denominator.variables());
         }
         let [_, numerator, denominator] = numerator.with_cofactors(&denominator);
-        Fraction(Arc::new(Terms {
-            content: numerator.content() / denominator.content(),
-            numerator: numerator.primitive(),
-            denominator: denominator.primitive(),
-        }))
+        let content = numerator.content() / denominator.content();
+        Fraction::of(content, numerator.primitive(), denominator.primitive())
+    }
+
+    /// The fraction of polynomials that are as those of a fraction must be.
+    fn of(content: BigRational, numerator: Polynomial, denominator: Polynomial) -> Fraction {
+        Fraction(Arc::new(Terms { content, numerator, denominator }))
     }
 
     /// The number `c`, as a function of `variables` variables.
     pub fn number(c: BigRational, variables: usize) -> Fraction {
         let one = Polynomial::constant(BigRational::one(), variables);
         let numerator = if c.is_zero() { Polynomial::default() } else { one.clone() };
-        Fraction(Arc::new(Terms { content: c, numerator, denominator: one }))
+        Fraction::of(c, numerator, one)
     }
 
     /// The variable with this index, of `variables` variables.
     pub fn variable(index: usize, variables: usize) -> Fraction {
-        Fraction(Arc::new(Terms {
-            content: BigRational::one(),
-            numerator: Polynomial::variable(index, variables),
-            denominator: Polynomial::constant(BigRational::one(), variables),
-        }))
+        let one = Polynomial::constant(BigRational::one(), variables);
+        Fraction::of(BigRational::one(), Polynomial::variable(index, variables), one)
     }
 
     /// The number in front, with its sign.
@@ -108,17 +107,12 @@ impl Fraction {
     /// If `self` is zero.
     pub fn inverse(&self) -> Fraction {
         assert!(!self.is_zero(), "a fraction is divided by zero");
-        Fraction(Arc::new(Terms {
-            content: self.0.content.recip(),
-            numerator: self.0.denominator.clone(),
-            denominator: self.0.numerator.clone(),
-        }))
+        Fraction::of(self.0.content.recip(), self.0.denominator.clone(), self.0.numerator.clone())
     }
 
     /// Puts another number, which is not zero, in front of the polynomials.
     fn of_content(&self, content: BigRational) -> Fraction {
-        let (numerator, denominator) = (self.0.numerator.clone(), self.0.denominator.clone());
-        Fraction(Arc::new(Terms { content, numerator, denominator }))
+        Fraction::of(content, self.0.numerator.clone(), self.0.denominator.clone())
     }
 
     /// The sum of `self` and `c` times the polynomials of the other (Henrici): only common factors of the denominators
@@ -136,11 +130,8 @@ impl Fraction {
             return Fraction::number(BigRational::zero(), self.variables());
         }
         let [_, numerator, shared] = numerator.with_cofactors(&shared);
-        Fraction(Arc::new(Terms {
-            content: small::product(&numerator.content(), &unit),
-            numerator: numerator.primitive(),
-            denominator: &(&below * &other_below) * &shared,
-        }))
+        let content = small::product(&numerator.content(), &unit);
+        Fraction::of(content, numerator.primitive(), &(&below * &other_below) * &shared)
     }
 
     /// The product: only a numerator and the denominator of the other can cancel.
@@ -150,11 +141,8 @@ impl Fraction {
         }
         let [_, above, other_below] = self.0.numerator.with_cofactors(&other.0.denominator);
         let [_, other_above, below] = other.0.numerator.with_cofactors(&self.0.denominator);
-        Fraction(Arc::new(Terms {
-            content: small::product(&self.0.content, &other.0.content),
-            numerator: &above * &other_above,
-            denominator: &below * &other_below,
-        }))
+        let content = small::product(&self.0.content, &other.0.content);
+        Fraction::of(content, &above * &other_above, &below * &other_below)
     }
 }
 
