@@ -22,15 +22,5 @@ pub fn pieces_of<'a>(points: usize, groups: impl Iterator<Item = &'a [usize]>) -
     for nodes in groups {
         nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
     }
-    let mut piece_of_root = vec![usize::MAX; points];
-    let mut pieces: Vec<Vec<usize>> = Vec::new();
-    for point in 0..points {
-        let piece = &mut piece_of_root[sets.root(point)];
-        if *piece == usize::MAX {
-            *piece = pieces.len();
-            pieces.push(Vec::new());
-        }
-        pieces[*piece].push(point);
-    }
-    pieces
+    sets.sets()
 }

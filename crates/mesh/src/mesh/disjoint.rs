@@ -26,4 +26,19 @@ impl DisjointSets {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[a] = b;
     }
+
+    /// The members of each set, ascending; the sets are in the order of their first members.
+    pub fn sets(mut self) -> Vec<Vec<usize>> {
+        let mut set_of_root = vec![usize::MAX; self.parent.len()];
+        let mut sets: Vec<Vec<usize>> = Vec::new();
+        for member in 0..self.parent.len() {
+            let set = &mut set_of_root[self.root(member)];
+            if *set == usize::MAX {
+                *set = sets.len();
+                sets.push(Vec::new());
+            }
+            sets[*set].push(member);
+        }
+        sets
+    }
 }

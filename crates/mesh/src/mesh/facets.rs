@@ -76,9 +76,7 @@ impl Mesh {
             sets.join(a, b);
         }
         let mut turned = vec![None; cells.len()];
-        let mut pieces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for first in 0..cells.len() {
-            pieces.entry(sets.root(first)).or_default().push(first);
             if turned[first].is_some() {
                 continue;
             }
@@ -100,7 +98,7 @@ impl Mesh {
             }
         }
         let mut turned: Vec<bool> = turned.into_iter().map(|turned| turned.unwrap_or(false)).collect();
-        for piece in pieces.into_values() {
+        for piece in sets.sets() {
             let is_closed = piece.iter().all(|&facet| {
                 edges(&loops[facet]).all(|(edge, _)| neighbours.get(&edge).is_some_and(|facets| facets.len() == 2))
             });

@@ -20,17 +20,12 @@ pub(super) fn kept(cells: &[Vec<usize>], faces: &[&[usize]]) -> Vec<bool> {
             }
         }
     }
-    let roots: Vec<usize> = (0..cells.len()).map(|cell| parts.root(cell)).collect();
-    let mut sizes: HashMap<usize, usize> = HashMap::new();
-    roots.iter().for_each(|root| *sizes.entry(*root).or_default() += 1);
+    let mut order = parts.sets();
     // One part has no other to hang on.
-    if sizes.len() == 1 {
+    if order.len() == 1 {
         return vec![true; cells.len()];
     }
-    let mut members: HashMap<usize, Vec<usize>> = HashMap::new();
-    roots.iter().enumerate().for_each(|(cell, root)| members.entry(*root).or_default().push(cell));
-    let mut order: Vec<Vec<usize>> = members.into_values().collect();
-    // Larger parts first, and of equal ones that with the first cell: which part stays does not depend on the order of a hash map.
+    // Larger parts first, and of equal ones that with the first cell.
     order.sort_by_key(|cells| (std::cmp::Reverse(cells.len()), cells[0]));
     let corners = cells.iter().flatten().max().map_or(0, |last| last + 1);
     let (mut taken, mut keep) = (vec![false; corners], vec![false; cells.len()]);

@@ -24,17 +24,10 @@ impl Piece {
         by_edge(&passes).for_each(|of_edge| {
             of_edge[1..].iter().for_each(|pass| sets.join(pass.triangle as usize, of_edge[0].triangle as usize));
         });
-        let mut piece_of_root = vec![usize::MAX; triangles.corners.len()];
-        let mut members: Vec<Vec<usize>> = Vec::new();
+        let members = sets.sets();
         let mut piece_of = vec![0; triangles.corners.len()];
-        for triangle in 0..triangles.corners.len() {
-            let piece = &mut piece_of_root[sets.root(triangle)];
-            if *piece == usize::MAX {
-                *piece = members.len();
-                members.push(Vec::new());
-            }
-            members[*piece].push(triangle);
-            piece_of[triangle] = *piece;
+        for (piece, members) in members.iter().enumerate() {
+            members.iter().for_each(|&triangle| piece_of[triangle] = piece);
         }
         let mut borders: Vec<Vec<Pass>> = vec![Vec::new(); members.len()];
         let is_border = |of_edge: &&[Pass]| counts(of_edge)[0] != counts(of_edge)[1];
