@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::springs::distance;
 use children::DIAGONALS;
 use filling::{filling, quadratic};
-use memberships::Memberships;
+use memberships::{Memberships, Part};
 use pattern::Pattern;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -80,14 +80,14 @@ impl Mesh {
                 }
                 memberships.divide_cell(CellIndex { block: index, cell }, &parts, &points);
                 let own = |places: &[usize]| sorted(&places.iter().map(|&p| points[p]).collect::<Vec<_>>());
-                if memberships.has_sides() {
+                if memberships.has(Part::Sides) {
                     for (side, parts) in block.element.sides().iter().zip(&pattern.sides) {
-                        memberships.divide_side(own(&side.nodes), parts.iter().map(|part| own(part)));
+                        memberships.divide(Part::Sides, own(&side.nodes), parts.iter().map(|part| own(part)));
                     }
                 }
-                if memberships.has_edges() {
+                if memberships.has(Part::Edges) {
                     for (edge, parts) in &pattern.edges {
-                        memberships.divide_edge(own(edge), parts.iter().map(|part| own(part)));
+                        memberships.divide(Part::Edges, own(edge), parts.iter().map(|part| own(part)));
                     }
                 }
             }
