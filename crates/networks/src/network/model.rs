@@ -4,7 +4,7 @@ use super::measures::cell_terms;
 use super::record::{MeasureKind, MeasureRecord, NetworkRecord, SpringRecord, TermRecord};
 use crate::element::{Element, SpringKind, Tabulation, coordinate_names};
 use crate::error::{Error, ErrorKind, Result};
-use crate::mesh::{CellBlock, Gate, Mesh, MeshArrays};
+use crate::mesh::{Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use crate::springs::{Law, Measure, Patch, Squares, Turns};
 use crate::symbolic::Scope;
@@ -215,23 +215,20 @@ impl NetworkRecord {
         let block = |block: &super::record::CellBlockRecord| {
             let element = measuring.element(&block.element)?;
             let is_sound = block.points.iter().all(|cell| cell.len() == element.nodes());
-            is_sound.then(|| CellBlock { element, connectivity: block.points.concat() })
+            is_sound.then(|| (element, block.points.concat()))
         };
-        let blocks: Vec<CellBlock> = self.cells.iter().map(block).collect::<Option<_>>()?;
-        if blocks.is_empty() {
-            return None;
-        }
-        let points = self.points.concat();
-        let arrays = MeshArrays {
-            dimension: self.dimension,
-            points: points.clone(),
-            blocks: blocks.into_iter().map(|block| (block.element, block.connectivity)).collect(),
-            groups: BTreeMap::new(),
-            cell_groups: BTreeMap::new(),
-        };
-        // Where building leaves out points or turns cells, springs would name others.
-        arrays.build(Gate::default()).ok().filter(|mesh| mesh.points == points && mesh.reversed == 0)
+        let blocks: Vec<_> = self.cells.iter().map(block).collect::<Option<_>>()?;
+        // Where building turns cells, springs would name other points.
+        let mesh = if blocks.is_empty() { None } else { mesh_of(self.dimension, &self.points.concat(), blocks) };
+        mesh.filter(|mesh| mesh.reversed == 0)
     }
+}
+
+/// A mesh of cells, if it can be built and has all points: of a mesh that leaves some out the numbers are not those of the springs.
+pub(super) fn mesh_of(dimension: usize, points: &[f64], blocks: Vec<(Arc<Element>, Vec<usize>)>) -> Option<Mesh> {
+    let (groups, cell_groups) = Default::default();
+    let arrays = MeshArrays { dimension, points: points.to_vec(), blocks, groups, cell_groups };
+    arrays.build(Gate::default()).ok().filter(|mesh| mesh.points == points)
 }
 
 fn own_law(measuring: &mut Measuring, text: &str, spring: &SpringRecord) -> Result<SpringLaw> {

@@ -4,7 +4,9 @@ use crate::element::Element;
 use crate::engine::Setting;
 use crate::error::{Error, Result};
 use crate::material::Plane;
+use crate::mesh::Mesh;
 use crate::model::Specimen;
+use crate::network::model::mesh_of;
 use nalgebra::DMatrix;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,4 +93,10 @@ pub(super) fn place(key: &str, number: i64, first: i64, count: usize) -> Result<
         let hint = if first == 0 && number == count as i64 { "; are points numbered from 1?" } else { "" };
         Error::expected(key, format!("a point from {first} to {last}"), number).followed_by(hint)
     })
+}
+
+/// The cells of a network of simplices, if a mesh of them has all points. Without one the network is measured all the same.
+pub(super) fn simplex_mesh(points: &[f64], d: usize, nodes: Vec<usize>) -> Result<Option<Mesh>> {
+    let element = Arc::new(Element::linear_simplex(d)?);
+    Ok(mesh_of(d, points, vec![(element, nodes)]))
 }

@@ -1,15 +1,12 @@
 //! Networks as flexes of MuJoCo: the edges of the cells of `<flexcomp type="direct">` and `<flex>`.
 
-use super::file::{SpecimenFile, SpecimenOptions, place};
+use super::file::{SpecimenFile, SpecimenOptions, place, simplex_mesh};
 use super::flex_places::{Places, numbers};
-use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::mesh::{Gate, Mesh, MeshArrays};
 use crate::model::{LengthSpring, Network, Specimen};
 use crate::springs::distance;
 use roxmltree::{Document, Node};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::collections::BTreeSet;
 
 pub fn read(bytes: &[u8], _: &SpecimenOptions) -> Result<SpecimenFile> {
     let text = std::str::from_utf8(bytes).map_err(|_| Error::new("expected a text").of_kind(ErrorKind::Syntax))?;
@@ -87,26 +84,9 @@ fn one(document: &Document, flex: Node) -> Result<SpecimenFile> {
     }
     let specimen = Specimen {
         masses: mass.map(|mass| vec![mass / count as f64; count]),
-        mesh: mesh(&points, d, dim, &nodes)?,
+        // Cells of fewer dimensions do not fill their space.
+        mesh: if dim == d { simplex_mesh(&points, d, nodes)? } else { None },
         ..Specimen::new(network, points)
     };
     Ok(SpecimenFile { notes, ..SpecimenFile::plain(specimen, "MuJoCo, a flex") })
-}
-
-/// The cells, if they fill their space and have all points.
-fn mesh(points: &[f64], d: usize, dim: usize, nodes: &[usize]) -> Result<Option<Mesh>> {
-    if dim != d {
-        return Ok(None);
-    }
-    let element = Arc::new(Element::linear_simplex(d)?);
-    let given = MeshArrays {
-        dimension: d,
-        points: points.to_vec(),
-        blocks: vec![(element, nodes.to_vec())],
-        groups: BTreeMap::new(),
-        cell_groups: BTreeMap::new(),
-    };
-    // A mesh that leaves points out, or that cannot be built, does not fill the network, which is then measured without
-    // a mesh.
-    Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
 }

@@ -1,17 +1,15 @@
 //! Networks as arrays of NumPy: those of springfit, of PhysTwin, and of anyone with the same names.
 
 use super::arrays::{Array, Arrays};
-use super::file::{SpecimenFile, SpecimenOptions, place};
-use crate::element::Element;
+use super::file::{SpecimenFile, SpecimenOptions, place, simplex_mesh};
 use crate::engine::Setting;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::Plane;
-use crate::mesh::{Gate, Mesh, MeshArrays};
+use crate::mesh::Mesh;
 use crate::model::{LengthSpring, MeasureSpring, Network, Specimen, Support};
 use crate::network::parts::{ContentPart, HingePart, LengthPart, Parts};
 use crate::springs::{HINGE_POINTS, distance};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Names of the constants, the first of which springfit writes.
 const CONSTANTS: [&str; 4] = ["k", "constants", "stiffness", "ke"];
@@ -163,16 +161,7 @@ fn mesh(arrays: &Arrays, points: &[f64], d: usize) -> Result<Option<Mesh>> {
     }
     let (nodes, _) = arrays.places("tets", &[d + 1])?.unwrap_or_default();
     let nodes = nodes.iter().map(|&p| place("tets", p, 0, points.len() / d)).collect::<Result<Vec<usize>>>()?;
-    let element = Arc::new(Element::linear_simplex(d)?);
-    let given = MeshArrays {
-        dimension: d,
-        points: points.to_vec(),
-        blocks: vec![(element, nodes)],
-        groups: BTreeMap::new(),
-        cell_groups: BTreeMap::new(),
-    };
-    // A mesh leaves points of no cell out: its numbers are not those of the springs then.
-    Ok(given.build(Gate::default()).ok().filter(|mesh| mesh.points == points))
+    simplex_mesh(points, d, nodes)
 }
 
 fn support(arrays: &Arrays, count: usize, d: usize) -> Result<Option<Support>> {
