@@ -66,6 +66,8 @@ impl Measuring {
     /// The record does not say what it is: it is the content of cells of an element that is neither given nor shipped, or its expression
     /// cannot be read.
     pub fn measure(&mut self, record: &MeasureRecord, kind: SpringKind, points: usize) -> Result<Measure> {
+        let listed = record.cells.iter().map(|cell| (&cell.nodes[..], cell.share));
+        let wrong = |expected: String| Error::expected("cells", expected, "others");
         match record.kind {
             MeasureKind::Length => Ok(Measure::Length),
             MeasureKind::Expression => {
@@ -75,8 +77,16 @@ impl Measuring {
                 Ok(Measure::Function(Arc::new(expression)))
             }
             MeasureKind::Content => self.content(record, kind, points),
-            MeasureKind::Turn => turns(record, points),
-            MeasureKind::Squares => squares(record, points),
+            MeasureKind::Turn => {
+                let expected = format!("turns, each with four different places below {points}");
+                let turns = Turns::new(listed, points).ok_or_else(|| wrong(expected))?;
+                Ok(Measure::Turns(Box::new(turns)))
+            }
+            MeasureKind::Squares => {
+                let expected = format!("pairs of two different places below {points}");
+                let squares = Squares::new(listed, points).ok_or_else(|| wrong(expected))?;
+                Ok(Measure::Squares(Box::new(squares)))
+            }
         }
     }
 
@@ -132,26 +142,6 @@ impl Measuring {
         };
         self.tables.entry(key).or_insert_with(|| Arc::new(table())).clone()
     }
-}
-
-/// A weighted sum of turns of triangles about their edges.
-fn turns(record: &MeasureRecord, points: usize) -> Result<Measure> {
-    let listed = record.cells.iter().map(|cell| (&cell.nodes[..], cell.share));
-    let turns = Turns::new(listed, points).ok_or_else(|| {
-        let expected = format!("turns, each with four different places below {points}");
-        Error::expected("cells", expected, "others")
-    })?;
-    Ok(Measure::Turns(Box::new(turns)))
-}
-
-/// A weighted sum of squared distances.
-fn squares(record: &MeasureRecord, points: usize) -> Result<Measure> {
-    let listed = record.cells.iter().map(|cell| (&cell.nodes[..], cell.share));
-    let squares = Squares::new(listed, points).ok_or_else(|| {
-        let expected = format!("pairs of two different places below {points}");
-        Error::expected("cells", expected, "others")
-    })?;
-    Ok(Measure::Squares(Box::new(squares)))
 }
 
 fn are_same(own: &[TermRecord], given: &[TermRecord]) -> bool {
