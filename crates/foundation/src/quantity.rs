@@ -184,19 +184,25 @@ impl Quantity {
         units.max_by_key(|(length, ..)| *length)
     }
 
-    fn units(self) -> &'static [Unit] {
+    /// The units, and an example of a valid text.
+    fn texts(self) -> (&'static [Unit], &'static str) {
         match self {
-            Quantity::Length | Quantity::MeshUnit => &LENGTHS,
-            Quantity::Area => &AREAS,
-            Quantity::Volume => &VOLUMES,
-            Quantity::Pressure => &PRESSURES,
-            Quantity::Density => &DENSITIES,
-            Quantity::Time => &TIMES,
-            Quantity::Force => &FORCES,
-            Quantity::Moment => &MOMENTS,
-            Quantity::Acceleration => &ACCELERATIONS,
-            Quantity::ForceDensity => &FORCE_DENSITIES,
+            Quantity::Length => (&LENGTHS, "a length such as 0.005, \"5 mm\" or \"0.5cm\""),
+            Quantity::Area => (&AREAS, "an area such as 1e-4, \"100 mm^2\" or \"1cm^2\""),
+            Quantity::Volume => (&VOLUMES, "a volume such as 3e-5, \"30 ml\" or \"30 cm^3\""),
+            Quantity::Pressure => (&PRESSURES, "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\""),
+            Quantity::Density => (&DENSITIES, "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\""),
+            Quantity::Time => (&TIMES, "a time such as 0.005, \"5 ms\" or \"1/60 s\""),
+            Quantity::Force => (&FORCES, "a force such as 0.5, \"0.5 N\" or \"500 mN\""),
+            Quantity::Moment => (&MOMENTS, "a moment such as 0.5, \"0.5 N m\" or \"500 N mm\""),
+            Quantity::ForceDensity => (&FORCE_DENSITIES, "a force for each volume such as -9810 or \"-9.81 kN/m^3\""),
+            Quantity::Acceleration => (&ACCELERATIONS, "an acceleration such as -9.81 or \"-9.81 m/s^2\""),
+            Quantity::MeshUnit => (&LENGTHS, "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\""),
         }
+    }
+
+    fn units(self) -> &'static [Unit] {
+        self.texts().0
     }
 
     /// The power of a length that a quantity at places is.
@@ -217,19 +223,7 @@ impl Quantity {
 
     /// An example of a valid text, for error messages.
     pub fn expected(self) -> &'static str {
-        match self {
-            Quantity::Length => "a length such as 0.005, \"5 mm\" or \"0.5cm\"",
-            Quantity::Area => "an area such as 1e-4, \"100 mm^2\" or \"1cm^2\"",
-            Quantity::Volume => "a volume such as 3e-5, \"30 ml\" or \"30 cm^3\"",
-            Quantity::Pressure => "a pressure such as 10000, \"10 kPa\" or \"0.01MPa\"",
-            Quantity::Density => "a density such as 1060, \"1060 kg/m^3\" or \"1.06 g/cm^3\"",
-            Quantity::Time => "a time such as 0.005, \"5 ms\" or \"1/60 s\"",
-            Quantity::Force => "a force such as 0.5, \"0.5 N\" or \"500 mN\"",
-            Quantity::Moment => "a moment such as 0.5, \"0.5 N m\" or \"500 N mm\"",
-            Quantity::ForceDensity => "a force for each volume such as -9810 or \"-9.81 kN/m^3\"",
-            Quantity::Acceleration => "an acceleration such as -9.81 or \"-9.81 m/s^2\"",
-            Quantity::MeshUnit => "the length of one mesh unit such as 0.001, \"mm\" or \"25.4 mm\"",
-        }
+        self.texts().1
     }
 
     /// The value of the text in the SI unit.
