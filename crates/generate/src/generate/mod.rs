@@ -18,9 +18,8 @@ pub use recipe::Recipe;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::Springs;
-use cell::{Cell, Plan, State};
+use cell::{Cell, LeastSquares, Plan, State};
 use code::{Function, Role, Room, Status, Value};
-use recipe::Constants;
 
 /// The functions for one element and one objective, before they are printed.
 #[derive(Debug)]
@@ -116,16 +115,16 @@ fn constants(cell: Cell, name: String, recipe: Recipe, groups: Option<&[String]>
     body.fail_with(Status::Moduli);
     body.guard(&mu, &zero);
     body.guard(&(&lambda + &mu), &zero);
-    let (constants, rests) = match recipe.constants()? {
-        Constants::Exact(volume) => {
+    let (constants, rests) = match recipe {
+        Recipe::Exact(volume) => {
             let [constants, rests] = cell::exact(&cell, volume, &lambda, &mu);
             (constants, Some(rests))
         }
-        Constants::Published(method) => {
+        Recipe::Published(method) => {
             let offered = Springs::select(cell.element, groups)?;
             (cell::published(&cell, method, &offered, &lambda, &mu)?, None)
         }
-        Constants::LeastSquares(weight) => (cell::least_squares(&cell, weight, &lambda, &mu), None),
+        Recipe::Frobenius(weight) => (cell::least_squares(&cell, LeastSquares::of(weight)?, &lambda, &mu), None),
     };
     let unrolled = matches!(constants, Room::Values(_));
     let mut sum = Room::new(body, "sum", 1, !unrolled);

@@ -1,6 +1,5 @@
 //! The objectives whose constants are computed directly, and why others are not.
 
-use super::cell::LeastSquares;
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::published::{Elasticity, Method, constants_of_cell};
@@ -17,13 +16,6 @@ pub enum Recipe {
     /// A fit to the stiffness by normal equations.
     Frobenius(Weight),
     /// A published formula.
-    Published(Method),
-}
-
-/// How the constants are computed.
-pub(super) enum Constants {
-    Exact(VolumeSprings),
-    LeastSquares(LeastSquares),
     Published(Method),
 }
 
@@ -107,22 +99,6 @@ impl Recipe {
             Recipe::Exact(volume) => format!("exact, volume {}", volume.name()),
             Recipe::Frobenius(weight) => Objective::Frobenius(weight).title(),
             Recipe::Published(method) => method.name().into(),
-        }
-    }
-
-    /// How the constants are computed.
-    ///
-    /// # Errors
-    /// A weight has no normal equations without roots of the stiffness.
-    pub(super) fn constants(self) -> Result<Constants> {
-        match self {
-            Recipe::Exact(volume) => Ok(Constants::Exact(volume)),
-            Recipe::Published(method) => Ok(Constants::Published(method)),
-            Recipe::Frobenius(weight) => LeastSquares::of(weight).map(Constants::LeastSquares).ok_or_else(|| {
-                let found = format!("\"{}\"", weight.name());
-                Error::expected("weight", "one with direct equations: none, offdiag or modal", found)
-                    .of_kind(ErrorKind::Unsupported)
-            }),
         }
     }
 

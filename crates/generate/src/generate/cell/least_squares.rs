@@ -14,6 +14,7 @@
 
 use super::solve::solve;
 use super::{Body, Cell, Index, Room, Status, Value, difference, dot};
+use crate::error::{Error, ErrorKind, Result};
 use crate::fit::Weight;
 use crate::scalar::{Scalar, adjugate};
 use crate::stiffness::Geometry;
@@ -30,13 +31,20 @@ pub enum LeastSquares {
 }
 
 impl LeastSquares {
-    /// The normal equations of a weight; none if it has none without roots of R.
-    pub fn of(weight: Weight) -> Option<LeastSquares> {
+    /// The normal equations of a weight.
+    ///
+    /// # Errors
+    /// The weight has no normal equations without roots of the stiffness.
+    pub fn of(weight: Weight) -> Result<LeastSquares> {
         match weight {
-            Weight::None => Some(LeastSquares::All),
-            Weight::OffDiagonal => Some(LeastSquares::Blocks),
-            Weight::Modal(higher) => Some(LeastSquares::Modal(higher.value())),
-            Weight::Relative => None,
+            Weight::None => Ok(LeastSquares::All),
+            Weight::OffDiagonal => Ok(LeastSquares::Blocks),
+            Weight::Modal(higher) => Ok(LeastSquares::Modal(higher.value())),
+            Weight::Relative => {
+                let found = format!("\"{}\"", weight.name());
+                let error = Error::expected("weight", "one with direct equations: none, offdiag or modal", found);
+                Err(error.of_kind(ErrorKind::Unsupported))
+            }
         }
     }
 }
