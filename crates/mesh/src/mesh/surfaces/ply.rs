@@ -3,7 +3,7 @@
 use super::faces::{Faces, TRIANGULATE};
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::lines::words;
-use crate::mesh::reader::{Encoding, Reader, quoted};
+use crate::mesh::reader::{Encoding, Number, Reader, quoted};
 use crate::mesh::source::MeshSource;
 
 /// Reads the `vertex` and `face` elements of a PLY file; other elements and properties are passed over.
@@ -58,67 +58,44 @@ struct Property {
     scalar: Scalar,
 }
 
-#[derive(Clone, Copy)]
-enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
+/// What reads a number of a type.
+type Scalar = fn(&mut Reader) -> Result<f64>;
+
+fn type_named(name: &[u8]) -> Option<Scalar> {
+    Some(match name {
+        b"char" | b"int8" => real::<i8>,
+        b"uchar" | b"uint8" => real::<u8>,
+        b"short" | b"int16" => real::<i16>,
+        b"ushort" | b"uint16" => real::<u16>,
+        b"int" | b"int32" => real::<i32>,
+        b"uint" | b"uint32" => real::<u32>,
+        b"float" | b"float32" => real::<f32>,
+        b"double" | b"float64" => real::<f64>,
+        _ => return None,
+    })
 }
 
-impl Scalar {
-    fn named(name: &[u8]) -> Option<Scalar> {
-        Some(match name {
-            b"char" | b"int8" => Scalar::I8,
-            b"uchar" | b"uint8" => Scalar::U8,
-            b"short" | b"int16" => Scalar::I16,
-            b"ushort" | b"uint16" => Scalar::U16,
-            b"int" | b"int32" => Scalar::I32,
-            b"uint" | b"uint32" => Scalar::U32,
-            b"float" | b"float32" => Scalar::F32,
-            b"double" | b"float64" => Scalar::F64,
-            _ => return None,
-        })
-    }
+fn real<T: Number + Into<f64>>(reader: &mut Reader) -> Result<f64> {
+    if reader.encoding == Encoding::Text { reader.number() } else { reader.number::<T>().map(T::into) }
+}
 
-    fn real(self, reader: &mut Reader) -> Result<f64> {
-        if reader.encoding == Encoding::Text {
-            return reader.number();
-        }
-        Ok(match self {
-            Scalar::I8 => reader.number::<i8>()?.into(),
-            Scalar::U8 => reader.number::<u8>()?.into(),
-            Scalar::I16 => reader.number::<i16>()?.into(),
-            Scalar::U16 => reader.number::<u16>()?.into(),
-            Scalar::I32 => reader.number::<i32>()?.into(),
-            Scalar::U32 => reader.number::<u32>()?.into(),
-            Scalar::F32 => reader.number::<f32>()?.into(),
-            Scalar::F64 => reader.number()?,
-        })
+/// A number of items, or an index.
+fn whole(scalar: Scalar, reader: &mut Reader) -> Result<u64> {
+    let value = scalar(reader)?;
+    // From there on whole numbers are not exact as numbers with a point.
+    if value >= 0.0 && value.fract() == 0.0 && value < 2f64.powi(53) {
+        return Ok(value as u64);
     }
-
-    /// A number of items, or an index.
-    fn index(self, reader: &mut Reader) -> Result<u64> {
-        let value = self.real(reader)?;
-        // From there on whole numbers are not exact as numbers with a point.
-        if value >= 0.0 && value.fract() == 0.0 && value < 2f64.powi(53) {
-            return Ok(value as u64);
-        }
-        Err(reader.expected("a whole number of at least zero", &value.to_string()))
-    }
+    Err(reader.expected("a whole number of at least zero", &value.to_string()))
 }
 
 impl Property {
     fn skip(&self, reader: &mut Reader) -> Result<()> {
         let items = match self.list {
-            Some(count) => count.index(reader)?,
+            Some(count) => whole(count, reader)?,
             None => 1,
         };
-        (0..items).try_for_each(|_| self.scalar.real(reader).map(drop))
+        (0..items).try_for_each(|_| (self.scalar)(reader).map(drop))
     }
 }
 
@@ -165,9 +142,8 @@ fn header(reader: &mut Reader) -> Result<Vec<Element>> {
                     [b"list", count, scalar] => [Some(*count), Some(*scalar)],
                     _ => [None, None],
                 };
-                let known = |name: &[u8]| {
-                    Scalar::named(name).ok_or_else(|| reader.expected("a type of numbers", &quoted(name)))
-                };
+                let known =
+                    |name: &[u8]| type_named(name).ok_or_else(|| reader.expected("a type of numbers", &quoted(name)));
                 let list = list.map(known).transpose()?;
                 let scalar = known(scalar.unwrap_or_default())?;
                 let Some(element) = elements.last_mut() else {
@@ -199,7 +175,7 @@ fn vertices(reader: &mut Reader, element: &Element, points: &mut Vec<[f64; 3]>) 
         let mut point = [0.0; 3];
         for (index, property) in element.properties.iter().enumerate() {
             match axes.iter().position(|axis| *axis == Some(index)) {
-                Some(k) => point[k] = property.scalar.real(reader)?,
+                Some(k) => point[k] = (property.scalar)(reader)?,
                 None => property.skip(reader)?,
             }
         }
@@ -222,10 +198,10 @@ fn polygons(reader: &mut Reader, element: &Element, points: &[[f64; 3]], faces: 
                 property.skip(reader)?;
                 continue;
             };
-            let count = count.index(reader)?;
+            let count = whole(count, reader)?;
             nodes.clear();
             for _ in 0..count {
-                let node = property.scalar.index(reader)?;
+                let node = whole(property.scalar, reader)?;
                 let known = usize::try_from(node).ok().filter(|&node| node < point_count);
                 let expected = || reader.expected(&format!("an index below {point_count}"), &node.to_string());
                 nodes.push(known.ok_or_else(expected)?);
