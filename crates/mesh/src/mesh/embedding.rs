@@ -1,7 +1,7 @@
 //! Where the points of one mesh lie in the cells of another mesh of the same body.
 
 use super::mesh::{CellIndex, Mesh};
-use super::places::spatial;
+use super::space::{ends, spatial};
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::distance;
 use nalgebra::{DMatrix, DVector};
@@ -236,12 +236,9 @@ impl CellBox {
     fn of(mesh: &Mesh, cell: CellIndex) -> CellBox {
         let element = &mesh.blocks[cell.block].element;
         let points: Vec<[f64; 3]> = mesh.cell_nodes(cell).iter().map(|&p| spatial(mesh.point(p))).collect();
-        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| points.iter().map(|x| x[k]).fold(start, pick);
-        let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
-        let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
         let centre = std::array::from_fn(|k| points.iter().map(|x| x[k]).sum::<f64>() / points.len() as f64);
         let is_straight = element.cell.is_simplex() && element.has_corners_alone();
-        CellBox { cell, ends: [low, high], centre, is_straight }
+        CellBox { cell, ends: ends(points.iter().copied()), centre, is_straight }
     }
 
     /// The node of the cell at x.

@@ -1,5 +1,6 @@
 //! Coordinate systems of decks, and where a point of them is.
 
+use super::space::minus;
 use crate::springs::{cross, dot, norm};
 
 /// What the three numbers of a point are.
@@ -29,16 +30,16 @@ pub(super) const BASIC: Frame =
 impl Frame {
     /// The system with this origin, a point on its axis z, and one in its half-plane of positive x; `None` if they are on one line.
     pub fn of_axis(system: System, origin: [f64; 3], on_z: [f64; 3], in_xz: [f64; 3]) -> Option<Frame> {
-        let z = unit(between(origin, on_z))?;
+        let z = unit(minus(&on_z, &origin))?;
         // The third point need not be on the axis x itself: only the half-plane that it is in counts.
-        let y = unit(cross(z, between(origin, in_xz)))?;
+        let y = unit(cross(z, minus(&in_xz, &origin)))?;
         Some(Frame { system, origin, axes: [cross(y, z), y, z] })
     }
 
     /// The rectangular system with this origin, a point on its axis x, and one in its half-plane of positive y; `None` if they are on one line.
     pub fn of_plane(origin: [f64; 3], on_x: [f64; 3], in_xy: [f64; 3]) -> Option<Frame> {
-        let x = unit(between(origin, on_x))?;
-        let z = unit(cross(x, between(origin, in_xy)))?;
+        let x = unit(minus(&on_x, &origin))?;
+        let z = unit(cross(x, minus(&in_xy, &origin)))?;
         Some(Frame { system: System::Rectangular, origin, axes: [x, cross(z, x), z] })
     }
 
@@ -58,10 +59,6 @@ impl Frame {
         };
         std::array::from_fn(|k| self.origin[k] + (0..3).map(|axis| local[axis] * self.axes[axis][k]).sum::<f64>())
     }
-}
-
-fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| to[k] - from[k])
 }
 
 fn unit(v: [f64; 3]) -> Option<[f64; 3]> {

@@ -1,7 +1,8 @@
 //! Hanging points: points on sides of cells to which they do not belong.
 
 use super::mesh::{CellIndex, Mesh};
-use super::places::{Places, spatial};
+use super::places::Places;
+use super::space::{ends, spatial};
 use crate::element::{Cell, Element};
 use crate::springs::{distance, dot};
 use std::collections::{HashMap, HashSet};
@@ -100,11 +101,7 @@ impl Mesh {
 
     /// A box around a side; a curved side extends beyond its nodes.
     fn surroundings(&self, host: &Host) -> [[f64; 3]; 2] {
-        let end = |k: usize, pick: fn(f64, f64) -> f64, start: f64| {
-            host.points.iter().map(|&p| spatial(self.point(p))[k]).fold(start, pick)
-        };
-        let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min, f64::INFINITY));
-        let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max, f64::NEG_INFINITY));
+        let [low, high] = ends(host.points.iter().map(|&p| spatial(self.point(p))));
         // A curved side leaves the box of its nodes, by less than a quarter of its extent unless it is folded.
         let bulge = if host.points.len() > host.cell.corners().len() { 0.25 * distance(&low, &high) } else { 0.0 };
         [low.map(|x| x - bulge), high.map(|x| x + bulge)]

@@ -55,6 +55,7 @@ mod refinement;
 mod resolution;
 mod selection;
 mod source;
+mod space;
 mod surface;
 mod surfaces;
 mod tetgen;

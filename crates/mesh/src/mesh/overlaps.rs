@@ -2,7 +2,7 @@
 
 use super::embedding::cells_of_two_pieces;
 use super::mesh::{CellIndex, Mesh, SideIndex};
-use super::places::spatial;
+use super::space::spatial;
 use std::collections::HashSet;
 
 /// Directions whose angle has a larger cosine are the same: 4e-5 rad, so that sheets that touch at a sharp edge are two.

@@ -2,6 +2,7 @@
 
 use super::coincident::first_near;
 use super::mesh::Mesh;
+use super::space::spatial;
 use crate::springs::distance;
 
 /// Positions of a mesh that its coordinates can distinguish.
@@ -70,8 +71,4 @@ fn shortest_edge(mesh: &Mesh, points: &[[f64; 3]]) -> f64 {
         }
     }
     shortest.min(least_square.sqrt())
-}
-
-pub(super) fn spatial(x: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
 }

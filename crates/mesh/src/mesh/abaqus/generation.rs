@@ -1,6 +1,7 @@
 //! What keywords such as `*NGEN` make, and where: nodes on arcs, and images of others.
 
 use super::placement::Turn;
+use crate::mesh::space::minus;
 use crate::springs::{cross, dot, norm};
 
 /// How far the distances of the ends of an arc from its middle may differ, relative to them: decks write few digits.
@@ -31,7 +32,7 @@ pub(super) struct Arc {
 impl Arc {
     /// The arc from a to b; `None` if their distances from the middle differ, or the three are on one line.
     pub fn between(a: [f64; 3], b: [f64; 3], center: [f64; 3]) -> Option<Arc> {
-        let (u, v) = (minus(a, center), minus(b, center));
+        let (u, v) = (minus(&a, &center), minus(&b, &center));
         let radii = [norm(&u), norm(&v)];
         let is_round = (radii[0] - radii[1]).abs() <= ROUND * radii[0];
         let (cosine, across) = (dot(&u, &v), norm(&cross(u, v)));
@@ -102,14 +103,14 @@ impl Image {
             (Image::InLine, _) => Err("two points of a line"),
             (Image::InPlane, 9) => {
                 let origin = at(0);
-                let across = cross(minus(at(3), origin), minus(at(6), origin));
+                let across = cross(minus(&at(3), &origin), minus(&at(6), &origin));
                 let length = norm(&across);
                 if !(length > 0.0) {
                     return Err("three points that are not on one line");
                 }
                 let normal = across.map(|x| x / length);
                 Ok(Box::new(move |p| {
-                    let distance = dot(&normal, &minus(p, origin));
+                    let distance = dot(&normal, &minus(&p, &origin));
                     std::array::from_fn(|k| p[k] - 2.0 * distance * normal[k])
                 }))
             }
@@ -121,8 +122,4 @@ impl Image {
             (Image::InPoint, _) => Err("a point"),
         }
     }
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
 }

@@ -1,6 +1,7 @@
 //! Finds points of a mesh by their positions.
 
 use crate::mesh::mesh::Mesh;
+use crate::mesh::space::{hypot, spatial};
 
 /// The largest distance of a position from its point, relative to the largest extent of the mesh. It covers positions
 /// that are written with seven digits.
@@ -39,7 +40,7 @@ impl Locator {
                 for k in low[2]..=high[2] {
                     let start = self.bins.partition_point(|(bin, _)| *bin < [i, j, k]);
                     for &(_, point) in self.bins[start..].iter().take_while(|(bin, _)| *bin == [i, j, k]) {
-                        let away = distance(&self.points[point], &x);
+                        let away = hypot(&self.points[point], &x);
                         // A nearer point replaces all that were equally near before.
                         if away < nearest {
                             found.clear();
@@ -58,13 +59,13 @@ impl Locator {
     /// The nearest of all points, and its distance, m.
     pub fn nearest(&self, position: &[f64]) -> (usize, f64) {
         let x = spatial(position);
-        let distances = self.points.iter().map(|point| distance(point, &x));
+        let distances = self.points.iter().map(|point| hypot(point, &x));
         distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
     }
 
     /// The distance of the point from a position, and whether it is within the tolerance.
     pub fn distance(&self, point: usize, position: &[f64]) -> (f64, bool) {
-        let away = distance(&self.points[point], &spatial(position));
+        let away = hypot(&self.points[point], &spatial(position));
         (away, away <= self.tolerance)
     }
 
@@ -72,13 +73,4 @@ impl Locator {
         // The cast stays in the range of i64, and turns NaN into 0.
         std::array::from_fn(|k| ((x[k] - self.corner[k] + shift) / (4.0 * self.tolerance)).floor() as i64)
     }
-}
-
-fn spatial(x: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|k| x.get(k).copied().unwrap_or(0.0))
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    // No square, which might overflow.
-    a.iter().zip(b).fold(0.0_f64, |sum, (a, b)| sum.hypot(a - b))
 }

@@ -1,5 +1,6 @@
 //! The points that are nearest to a position.
 
+use crate::mesh::space::{ends, hypot};
 use std::collections::HashMap;
 
 /// The number of points in a bin, on average over the box around the points.
@@ -20,9 +21,7 @@ pub(super) struct Neighbours {
 impl Neighbours {
     /// There is at least one point, and all coordinates are finite.
     pub fn new(points: Vec<[f64; 3]>) -> Neighbours {
-        let end = |k: usize, pick: fn(f64, f64) -> f64| points.iter().map(|x| x[k]).fold(points[0][k], pick);
-        let low: [f64; 3] = std::array::from_fn(|k| end(k, f64::min));
-        let high: [f64; 3] = std::array::from_fn(|k| end(k, f64::max));
+        let [low, high] = ends(points.iter().copied());
         let extents: Vec<f64> = (0..3).map(|k| high[k] - low[k]).filter(|extent| *extent > 0.0).collect();
         let volume: f64 = extents.iter().product();
         let side = match extents.len() {
@@ -73,10 +72,10 @@ impl Neighbours {
         let count = count.min(self.points.len());
         // From the nearest place in the box, so that positions outside find bins at once.
         let inside: [f64; 3] = std::array::from_fn(|k| x[k].clamp(self.low[k], self.high[k]));
-        let (middle, away) = (self.bin(&inside), distance(&inside, x));
+        let (middle, away) = (self.bin(&inside), hypot(&inside, x));
         let mut found: Vec<(usize, f64)> = Vec::new();
         for shell in 0.. {
-            self.each_bin(middle, shell, |point| found.push((point, distance(&self.points[point], x))));
+            self.each_bin(middle, shell, |point| found.push((point, hypot(&self.points[point], x))));
             // Points of later shells are at least this far from the position.
             // Bins that were not visited are at least so far from the nearest place in the box, which is `away` from the position.
             let reach = shell as f64 * self.side - away;
@@ -109,8 +108,4 @@ impl Neighbours {
     fn bin(&self, x: &[f64; 3]) -> [i64; 3] {
         std::array::from_fn(|k| ((x[k] - self.low[k]) / self.side).floor() as i64)
     }
-}
-
-fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a.iter().zip(b).fold(0.0_f64, |sum, (a, b)| sum.hypot(a - b))
 }

@@ -7,7 +7,7 @@ use super::{columns, pieces};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{ending, read, read_text};
 use crate::mesh::mesh::Mesh;
-use crate::mesh::places::spatial;
+use crate::mesh::space::spatial;
 use crate::mesh::vtk;
 use crate::range;
 use nalgebra::{DMatrix, DVector};

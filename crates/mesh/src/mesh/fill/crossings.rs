@@ -5,6 +5,7 @@ use super::filled::FaceCrossings;
 use super::surface::Surface;
 use super::triangles::NOT_OF_FILE;
 use crate::mesh::source::MeshSource;
+use crate::mesh::space;
 use robust::{Coord3D, orient3d};
 
 /// The largest number of pairs of boxes that are compared. A surface of a million faces needs some ten million.
@@ -80,11 +81,7 @@ pub(super) fn each_crossing(surface: &Surface, columns: &Columns, mut visit: imp
 
 /// The box of a triangle.
 fn ends(surface: &Surface, index: u32) -> [[f64; 3]; 2] {
-    let corners = surface.triangles[index as usize].map(|p| surface.points[p]);
-    let end = |pick: fn(f64, f64) -> f64| -> [f64; 3] {
-        std::array::from_fn(|k| pick(pick(corners[0][k], corners[1][k]), corners[2][k]))
-    };
-    [end(f64::min), end(f64::max)]
+    space::ends(surface.triangles[index as usize].map(|p| surface.points[p]).into_iter())
 }
 
 /// Where two triangles cross, and whether it is inside one of them rather than on its border.

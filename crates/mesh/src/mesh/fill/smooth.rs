@@ -11,6 +11,7 @@ use super::stencils::{Knot, left};
 use crate::element::Element;
 use crate::error::Result;
 use crate::mesh::mesh::{CellBlock, Mesh};
+use crate::mesh::space::minus;
 use crate::springs::{cross, dot};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -121,20 +122,16 @@ fn sites_inside(grid: &Grid, columns: &Columns, filled: &mut Filled) -> Result<H
 }
 
 fn volume([a, b, c, d]: &[[f64; 3]; 4]) -> f64 {
-    let [u, v, w] = [b, c, d].map(|x| less(x, a));
+    let [u, v, w] = [b, c, d].map(|x| minus(x, a));
     dot(&u, &cross(v, w)) / 6.0
-}
-
-fn less(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
 }
 
 /// The angle at each edge of a tetrahedron between the sides that share it, degrees.
 fn dihedral_angles(x: &[[f64; 3]; 4]) -> [f64; 6] {
     let pairs = [[0, 1, 2, 3], [0, 2, 1, 3], [0, 3, 1, 2], [1, 2, 0, 3], [1, 3, 0, 2], [2, 3, 0, 1]];
     pairs.map(|[a, b, c, d]| {
-        let along = less(&x[b], &x[a]);
-        let [m, n] = [c, d].map(|p| cross(along, less(&x[p], &x[a])));
+        let along = minus(&x[b], &x[a]);
+        let [m, n] = [c, d].map(|p| cross(along, minus(&x[p], &x[a])));
         let sine = cross(m, n);
         // By sine and cosine: an arccosine alone loses half of the digits near 0° and 180°.
         dot(&sine, &sine).sqrt().atan2(dot(&m, &n)).to_degrees()

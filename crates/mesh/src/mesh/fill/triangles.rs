@@ -4,6 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::coincident::Coincident;
 use crate::mesh::resolution::check_size;
 use crate::mesh::source::{Format, MeshSource};
+use crate::mesh::space::ends;
 use crate::springs::{cross, distance, dot, norm};
 
 /// Triangles between points; no triangle has a point twice.
@@ -78,10 +79,7 @@ impl Triangles {
 
     /// The least and the largest coordinates of the corners, m.
     pub fn ends(&self) -> [[f64; 3]; 2] {
-        let end = |pick: fn(f64, f64) -> f64, start: f64| -> [f64; 3] {
-            std::array::from_fn(|k| self.corners.iter().flatten().map(|&p| self.points[p][k]).fold(start, pick))
-        };
-        [end(f64::min, f64::INFINITY), end(f64::max, f64::NEG_INFINITY)]
+        ends(self.corners.iter().flatten().map(|&p| self.points[p]))
     }
 
     /// The length of the diagonal of the box around the triangles, m.
