@@ -4,6 +4,7 @@ use super::equations::Equations;
 use super::factored::Factored;
 use super::gradients::Gradients;
 use crate::error::{Error, Result};
+use crate::scalar::of_dimension;
 
 /// The solver of the linear equations of an implicit step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -58,11 +59,9 @@ impl LinearSolver {
     ) -> Result<Box<dyn Equations>> {
         Ok(match self {
             LinearSolver::Factor => Box::new(Factored::new(places, held, points, dimension)?),
-            LinearSolver::ConjugateGradients { tolerance } => match dimension {
-                1 => Box::new(Gradients::<1>::new(places, held, tolerance)?),
-                2 => Box::new(Gradients::<2>::new(places, held, tolerance)?),
-                _ => Box::new(Gradients::<3>::new(places, held, tolerance)?),
-            },
+            LinearSolver::ConjugateGradients { tolerance } => {
+                of_dimension!(dimension, |D| Box::new(Gradients::<D>::new(places, held, tolerance)?))
+            }
         })
     }
 }

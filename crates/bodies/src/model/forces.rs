@@ -3,6 +3,7 @@
 use super::functions::{function_pulls, function_tensions};
 use super::network::{LengthSpring, MeasureSpring, Network};
 use super::numbering::dofs;
+use crate::scalar::of_dimension;
 use crate::stiffness::gather;
 use crate::symbolic::Jet;
 use std::array::from_fn;
@@ -27,11 +28,7 @@ impl Network {
 
     /// The energy, J; `None` if it is not finite or a spring has no direction.
     pub(super) fn stored(&self, x: &[f64]) -> Option<f64> {
-        let lengths = match self.dimension {
-            1 => stored::<1>(&self.lengths, x),
-            2 => stored::<2>(&self.lengths, x),
-            _ => stored::<3>(&self.lengths, x),
-        };
+        let lengths = of_dimension!(self.dimension, |D| stored::<D>(&self.lengths, x));
         let mut total = lengths?;
         let mut local = Vec::new();
         let mut pulls = None;
@@ -69,11 +66,7 @@ impl Network {
 
     /// Adds to the gradient what the springs between two points give, and tells `visit` the length of each.
     fn visit_lengths(&self, x: &[f64], force: &mut [f64], visit: impl FnMut(&LengthSpring, f64)) {
-        match self.dimension {
-            1 => pull::<1>(&self.lengths, x, force, visit),
-            2 => pull::<2>(&self.lengths, x, force, visit),
-            _ => pull::<3>(&self.lengths, x, force, visit),
-        }
+        of_dimension!(self.dimension, |D| pull::<D>(&self.lengths, x, force, visit))
     }
 
     /// Adds to the gradient what the springs between two points give. The largest of their pulls, and the largest that one would have with its
@@ -137,11 +130,7 @@ impl Network {
         let d = self.dimension;
         // The lower triangle of the 2 d rows of two points has `2 d (2 d + 1)/2` entries.
         let (lengths, others) = tangent.split_at_mut(self.lengths.len() * d * (2 * d + 1));
-        let mut total = match d {
-            1 => pull_and_stiffen::<1>(&self.lengths, x, force, lengths, definite),
-            2 => pull_and_stiffen::<2>(&self.lengths, x, force, lengths, definite),
-            _ => pull_and_stiffen::<3>(&self.lengths, x, force, lengths, definite),
-        }?;
+        let mut total = of_dimension!(d, |D| pull_and_stiffen::<D>(&self.lengths, x, force, lengths, definite))?;
         let mut values = others.iter_mut();
         let mut local = Vec::new();
         let mut pulls = None;

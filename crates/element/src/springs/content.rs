@@ -3,6 +3,7 @@
 
 use super::vector::{cross, dot, norm};
 use crate::element::Tabulation;
+use crate::scalar::of_dimension;
 use crate::symbolic::Jet;
 use std::ops::Range;
 
@@ -126,11 +127,7 @@ impl<'a> Content<'a> {
 
     /// The rows `J_k = Σ_a x_ak ∇N_a` of the Jacobian, extended by those of the identity to three dimensions.
     fn rows(&self, dn: &[f64]) -> [[f64; 3]; 3] {
-        match self.table.dimension {
-            1 => rows::<1>(self.x, dn),
-            2 => rows::<2>(self.x, dn),
-            _ => rows::<3>(self.x, dn),
-        }
+        of_dimension!(self.table.dimension, |D| rows::<D>(self.x, dn))
     }
 
     /// The tangent `∂x/∂ξ_l` in three dimensions.

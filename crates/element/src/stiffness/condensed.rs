@@ -6,7 +6,7 @@
 use super::{Geometry, add_anisotropic, add_isotropic, jacobian};
 use crate::element::Tabulation;
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{Scalar, adjugate, multiple};
+use crate::scalar::{Scalar, adjugate, multiple, of_dimension};
 
 impl<T: Scalar> Geometry<T> {
     /// Whether the element has functions that are condensed.
@@ -16,11 +16,7 @@ impl<T: Scalar> Geometry<T> {
 
     /// `R = ∫ Bᵀ D B dV`, `[nodes·dimension × nodes·dimension]`, in any kind of number; functions beside those of the nodes are condensed.
     pub fn entries(&self, hooke: &Hooke<T>) -> Vec<T> {
-        match self.dimension {
-            1 => self.entries_in::<1>(hooke),
-            2 => self.entries_in::<2>(hooke),
-            _ => self.entries_in::<3>(hooke),
-        }
+        of_dimension!(self.dimension, |D| self.entries_in::<D>(hooke))
     }
 
     fn entries_in<const D: usize>(&self, hooke: &Hooke<T>) -> Vec<T> {

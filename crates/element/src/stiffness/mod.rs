@@ -17,7 +17,7 @@ pub use placement::{Placement, gather};
 
 use crate::element::Tabulation;
 use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};
-use crate::scalar::{Scalar, adjugate, dot, multiple, plus_multiple, zeros};
+use crate::scalar::{Scalar, adjugate, dot, multiple, of_dimension, plus_multiple, zeros};
 use nalgebra::DMatrix;
 
 /// Gradients of the shape functions and volumes at the quadrature points, of one element or of one per SIMD lane.
@@ -60,11 +60,7 @@ impl<T: Scalar> Geometry<T> {
         let n = self.nodes;
         x[0].vectorize(
             #[inline(always)]
-            || match table.dimension {
-                1 => self.update_in::<1>(n, table, x),
-                2 => self.update_in::<2>(n, table, x),
-                _ => self.update_in::<3>(n, table, x),
-            },
+            || of_dimension!(table.dimension, |D| self.update_in::<D>(n, table, x)),
         )
     }
 
@@ -173,21 +169,13 @@ impl Geometry {
         if self.update(table, x) {
             return Ok(());
         }
-        match self.dimension {
-            2 => self.fault::<2>(table, x),
-            3 => self.fault::<3>(table, x),
-            _ => self.fault::<1>(table, x),
-        }
+        of_dimension!(self.dimension, |D| self.fault::<D>(table, x))
     }
 
     /// The least `det J/Π ‖J_l‖` over the quadrature points of the element with nodes at `x`, with J_l the columns of
     /// J: 1 for right angles, 0 for no volume, negative if the element is inverted.
     pub fn quality(table: &Tabulation, x: &[f64]) -> f64 {
-        match table.dimension {
-            2 => quality::<2>(table, x),
-            3 => quality::<3>(table, x),
-            _ => quality::<1>(table, x),
-        }
+        of_dimension!(table.dimension, |D| quality::<D>(table, x))
     }
 
     /// The fault of an element whose Jacobian is not safely positive; none if only the bound has overflowed.

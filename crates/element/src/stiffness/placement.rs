@@ -6,6 +6,7 @@
 
 use super::fault::Fault;
 use crate::element::Tabulation;
+use crate::scalar::of_dimension;
 
 /// Memory to place the nodes of one cell after the other.
 ///
@@ -91,11 +92,7 @@ fn norm(vector: &[f64]) -> f64 {
 
 /// Copies the coordinates of `nodes` into `x`, `[nodes × dimension]`.
 pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) {
-    match dimension {
-        2 => gather_in::<2>(points, nodes, x),
-        3 => gather_in::<3>(points, nodes, x),
-        _ => gather_in::<1>(points, nodes, x),
-    }
+    of_dimension!(dimension, |D| gather_in::<D>(points, nodes, x))
 }
 
 fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {

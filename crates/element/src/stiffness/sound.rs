@@ -2,17 +2,13 @@
 
 use super::{Geometry, jacobian, squared_bound};
 use crate::element::Tabulation;
-use crate::scalar::{Scalar, adjugate};
+use crate::scalar::{Scalar, adjugate, of_dimension};
 
 impl Geometry {
     /// Whether [`Geometry::set`] finds no fault in the element with nodes at `x`, `[nodes × dimension]`, m, at first sight; without what follows from
     /// its Jacobian.
     pub fn is_sound(table: &Tabulation, x: &[f64]) -> bool {
-        match table.dimension {
-            2 => is_sound::<2>(table, x),
-            3 => is_sound::<3>(table, x),
-            _ => is_sound::<1>(table, x),
-        }
+        of_dimension!(table.dimension, |D| is_sound::<D>(table, x))
     }
 }
 

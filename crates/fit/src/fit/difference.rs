@@ -9,7 +9,7 @@ use super::packed_hooke::PackedHooke;
 use super::packing::Packing;
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke, Moduli};
-use crate::scalar::{Packed, difference, dot};
+use crate::scalar::{Packed, difference, dot, of_dimension};
 use crate::springs::{Force, Measure};
 use crate::stiffness::{Fault, Geometry, add_anisotropic, add_isotropic};
 use std::sync::Arc;
@@ -82,11 +82,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         let zero = self.stiffness[0].zero();
         zero.vectorize(
             #[inline(always)]
-            || match self.element.dimension() {
-                1 => self.subtract::<1>(first, count),
-                2 => self.subtract::<2>(first, count),
-                _ => self.subtract::<3>(first, count),
-            },
+            || of_dimension!(self.element.dimension(), |D| self.subtract::<D>(first, count)),
         );
         // Springs without tension at rest have no measures, and those of lengths have been taken off in all lanes.
         if self.measures.len() > self.fits.springs.pairs().len() {

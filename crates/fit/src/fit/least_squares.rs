@@ -20,7 +20,7 @@ use super::weight::{ClosedWeight, Weight};
 use crate::element::Tabulation;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{Scalar, difference, dot, plus_multiple};
+use crate::scalar::{Scalar, difference, dot, of_dimension, plus_multiple};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -72,11 +72,7 @@ pub fn normal_equations<T: Scalar>(
     let n = springs.nodes();
     x[0].vectorize(
         #[inline(always)]
-        || match springs.dimension() {
-            1 => equations::<T, 1>(n, weight, springs, x, geometry, hooke, normal),
-            2 => equations::<T, 2>(n, weight, springs, x, geometry, hooke, normal),
-            _ => equations::<T, 3>(n, weight, springs, x, geometry, hooke, normal),
-        },
+        || of_dimension!(springs.dimension(), |D| equations::<T, D>(n, weight, springs, x, geometry, hooke, normal)),
     );
 }
 

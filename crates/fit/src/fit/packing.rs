@@ -1,7 +1,7 @@
 //! The nodes of several cells side by side, one cell per lane.
 
 use crate::element::Element;
-use crate::scalar::Packed;
+use crate::scalar::{Packed, of_dimension};
 use crate::stiffness::{Fault, Placement};
 
 /// Memory for the nodes of as many cells as there are lanes.
@@ -26,11 +26,7 @@ impl<'a, T: Packed> Packing<'a, T> {
         if self.element.space() > self.element.dimension() {
             return self.lay_out(nodes);
         }
-        match self.element.dimension() {
-            1 => self.gather_in::<1>(nodes),
-            2 => self.gather_in::<2>(nodes),
-            _ => self.gather_in::<3>(nodes),
-        }
+        of_dimension!(self.element.dimension(), |D| self.gather_in::<D>(nodes));
         true
     }
 

@@ -7,7 +7,7 @@ use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trac
 use super::linear_motions::LinearMotions;
 use super::weight::MotionWeight;
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{Real, Scalar, difference, dot, plus_multiple, zeros};
+use crate::scalar::{Real, Scalar, difference, dot, of_dimension, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::{Geometry, add_anisotropic, add_isotropic};
 
@@ -78,11 +78,7 @@ impl<T: Real> Reduced<T> {
     ) {
         x[0].vectorize(
             #[inline(always)]
-            || match springs.dimension() {
-                1 => self.set_in::<1>(weight, springs, x, geometry, hooke, measured),
-                2 => self.set_in::<2>(weight, springs, x, geometry, hooke, measured),
-                _ => self.set_in::<3>(weight, springs, x, geometry, hooke, measured),
-            },
+            || of_dimension!(springs.dimension(), |D| self.set_in::<D>(weight, springs, x, geometry, hooke, measured)),
         );
     }
 

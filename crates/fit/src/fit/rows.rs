@@ -7,7 +7,7 @@ use super::edge_cell::scales;
 use super::linear_motions::{LinearMotions, from_mean};
 use super::normal::Normal;
 use super::weight::{ClosedWeight, Higher};
-use crate::scalar::{Scalar, dot, plus_multiple, zeros};
+use crate::scalar::{Scalar, dot, of_dimension, plus_multiple, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -129,11 +129,7 @@ impl<T: Scalar> Rows<T> {
 
     /// `y_s = h² r_s + (1 − h²) P r_s`, with P the projection on the linear motions.
     fn images(&self, higher: Higher, x: &[T]) -> Vec<T> {
-        match self.dimension {
-            1 => self.images_in::<1>(higher, x),
-            2 => self.images_in::<2>(higher, x),
-            _ => self.images_in::<3>(higher, x),
-        }
+        of_dimension!(self.dimension, |D| self.images_in::<D>(higher, x))
     }
 
     fn images_in<const D: usize>(&self, higher: Higher, x: &[T]) -> Vec<T> {

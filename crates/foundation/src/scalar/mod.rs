@@ -7,6 +7,7 @@
 //! Theory: page *Precision* of the book.
 
 mod coordinates;
+mod dimension;
 mod double_double;
 mod dual;
 mod groups;
@@ -15,6 +16,8 @@ mod norm;
 mod registers;
 mod sum;
 
+#[doc(hidden)]
+pub use crate::of_dimension;
 pub use coordinates::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;

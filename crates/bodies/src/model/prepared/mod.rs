@@ -20,7 +20,7 @@ use super::network::Network;
 use super::numbering::places;
 use super::rows::{RowForces, Rows};
 use super::{BlockStiffness, Elastic, Response};
-use crate::scalar::Coordinate;
+use crate::scalar::{Coordinate, of_dimension};
 use part::{Part, Room, parts};
 use rayon::prelude::*;
 use sources::Sources;
@@ -68,11 +68,7 @@ impl<'a, N: Coordinate> PreparedNetwork<'a, N> {
 
     /// The forces as [`Elastic::forces`].
     fn add_up(&self, x: &[f64], force: &mut [f64]) -> bool {
-        let sound = match self.network.dimension {
-            1 => self.forces_in::<1>(x, force),
-            2 => self.forces_in::<2>(x, force),
-            _ => self.forces_in::<3>(x, force),
-        };
+        let sound = of_dimension!(self.network.dimension, |D| self.forces_in::<D>(x, force));
         let others = &self.network.others;
         // Without a short cut, so that the forces are complete.
         sound & self.network.add_others(self.rest.iter().map(|&s| &others[s]), x, force)

@@ -2,17 +2,13 @@
 
 use super::super::weight::MotionWeight;
 use super::Reduced;
-use crate::scalar::Real;
+use crate::scalar::{Real, of_dimension};
 use crate::springs::Springs;
 
 impl<T: Real> Reduced<T> {
     /// Fills in a matrix `r`, `[nodes·dimension × nodes·dimension]`, in place of that of an element, with springs on lengths alone.
     pub fn set_matrix(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {
-        match springs.dimension() {
-            1 => self.set_matrix_in::<1>(weight, springs, x, r),
-            2 => self.set_matrix_in::<2>(weight, springs, x, r),
-            _ => self.set_matrix_in::<3>(weight, springs, x, r),
-        }
+        of_dimension!(springs.dimension(), |D| self.set_matrix_in::<D>(weight, springs, x, r))
     }
 
     fn set_matrix_in<const D: usize>(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], r: &[T]) {

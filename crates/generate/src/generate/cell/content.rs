@@ -2,16 +2,12 @@
 
 use super::{Cell, Constant, Index, Room, Value};
 use crate::element::Tabulation;
-use crate::scalar::{Scalar, adjugate};
+use crate::scalar::{Scalar, adjugate, of_dimension};
 
 /// The determinant of the Jacobian `J_kl = Σ_a x_ak ∂N_a/∂ξ_l` of one point, and its gradient
 /// `∂|J|/∂x_ak = Σ_l ∂N_a/∂ξ_l adj(J)_lk`, `[nodes × dimension]`.
 pub fn determinant(x: &[Value], table: &Tabulation<Constant>) -> (Value, Vec<Value>) {
-    match table.dimension {
-        1 => determinant_in::<1>(x, table),
-        2 => determinant_in::<2>(x, table),
-        _ => determinant_in::<3>(x, table),
-    }
+    of_dimension!(table.dimension, |D| determinant_in::<D>(x, table))
 }
 
 fn determinant_in<const D: usize>(x: &[Value], table: &Tabulation<Constant>) -> (Value, Vec<Value>) {

@@ -16,7 +16,7 @@ use super::solve::solve;
 use super::{Body, Cell, Index, Room, Status, Value, difference, dot};
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::Weight;
-use crate::scalar::{Scalar, adjugate};
+use crate::scalar::{Scalar, adjugate, of_dimension};
 use crate::stiffness::Geometry;
 
 /// A weight that has normal equations.
@@ -212,11 +212,7 @@ impl Linear {
         let mean = |k: usize| cell.x.iter().skip(k).step_by(d).fold(cell.body.number(0.0), |sum, x| &sum + x) * &share;
         let mean: Vec<Value> = (0..d).map(mean).collect();
         let r: Vec<Value> = cell.x.iter().enumerate().map(|(i, x)| x - &mean[i % d]).collect();
-        let inverse = match d {
-            1 => inverse_spread::<1>(cell, &r),
-            2 => inverse_spread::<2>(cell, &r),
-            _ => inverse_spread::<3>(cell, &r),
-        };
+        let inverse = of_dimension!(d, |D| inverse_spread::<D>(cell, &r));
         Some(Linear { r, inverse, shares: [h * h, 1.0 - h * h] })
     }
 
