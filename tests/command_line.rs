@@ -85,7 +85,7 @@ fn the_help_of_fit_groups_its_options_and_lists_all_published_methods() {
     for heading in ["Material:", "Fit:", "Mesh:", "Exact networks:", "Sampled fits:", "Output:", "Messages:"] {
         assert!(help.lines().any(|line| line == heading), "{heading}");
     }
-    for method in Method::ALL {
+    for method in Method::all() {
         assert!(help.contains(method.name()), "{}", method.name());
     }
 }

@@ -16,7 +16,7 @@ const ITERATIONS: i64 = 300;
 
 /// What a row is called, and its fit.
 fn rows() -> Vec<(String, FitEntry)> {
-    let published = Method::ALL.map(|method| (format!("`{}`", method.name()), FitEntry::new(method.name())));
+    let published = Method::all().map(|method| (format!("`{}`", method.name()), FitEntry::new(method.name())));
     let annealing = FitEntry::new("frobenius")
         .with("solver", Some("simulated-annealing"))
         .with("iterations", Some(ITERATIONS))
@@ -58,7 +58,7 @@ fn column(name: &str, rows: &[(String, FitEntry)]) -> Vec<Option<(String, f64)>>
     let scene = scene.with_output(output);
     let element = scene.build_mesh().unwrap().blocks[0].element.clone();
     let refuses = |entry: &FitEntry| {
-        let Ok(method) = Method::of_name(&entry.objective) else { return false };
+        let Ok(method) = Method::named(&entry.objective) else { return false };
         match method.cover(&element).map(|cover| cover.poisson) {
             Ok(Ratio::AtLeast(least)) => least > POISSON,
             Ok(Ratio::Any | Ratio::Only(_)) => false,

@@ -217,9 +217,10 @@ fn off(place: &Place, parts: &[Complex<f64>], shares: &[f64]) -> f64 {
 }
 
 /// `min Σ (row·x − value)²`, `x ≥ 0`.
-fn least_squares(count: usize, rows: impl Iterator<Item = (Vec<f64>, f64)>) -> Vec<f64> {
+pub(super) fn least_squares(count: usize, rows: impl Iterator<Item = (impl AsRef<[f64]>, f64)>) -> Vec<f64> {
     let (mut gram, mut rhs) = (vec![0.0; count * count], vec![0.0; count]);
     for (row, value) in rows {
+        let row = row.as_ref();
         for (i, a) in row.iter().enumerate() {
             rhs[i] += a * value;
             row.iter().enumerate().for_each(|(j, b)| gram[i * count + j] += a * b);
@@ -270,10 +271,7 @@ impl Curve {
         if let Some(found) = frequencies.iter().find(|f| !range::contains(**f)) {
             return Err(Error::expected("frequency", "numbers of Hz from 1e-30 to 1e30", format!("{found:?}")));
         }
-        if let Some(pair) = frequencies.windows(2).find(|pair| pair[1] <= pair[0]) {
-            let found = format!("{} after {}", pair[1], pair[0]);
-            return Err(Error::expected("frequency", "numbers that rise", found));
-        }
+        check_rising("frequency", frequencies)?;
         if let Some([from, to]) = band
             && !(range::contains(from) && range::contains(to) && from < to)
         {
@@ -340,14 +338,14 @@ impl Curve {
     }
 }
 
-impl DampingKind {
-    /// The key of a scene that has the values.
-    pub fn name(self) -> &'static str {
-        match self {
-            DampingKind::LossFactor => "loss_factor",
-            DampingKind::Ratio => "ratio",
-            DampingKind::Decrement => "decrement",
-        }
+// The keys of a scene that have the values.
+crate::named!(DampingKind { "loss_factor" => LossFactor, "ratio" => Ratio, "decrement" => Decrement });
+
+/// Checks that each number of a list is above the one before.
+pub(super) fn check_rising(key: &str, list: &[f64]) -> Result<()> {
+    match list.windows(2).find(|pair| pair[1] <= pair[0]) {
+        Some(pair) => Err(Error::expected(key, "numbers that rise", format!("{} after {}", pair[1], pair[0]))),
+        None => Ok(()),
     }
 }
 
@@ -371,9 +369,7 @@ pub fn ratio_of_decay(times: &[f64], amplitudes: &[f64], frequency: f64) -> Resu
     if let Some(found) = times.iter().find(|t| !(**t == 0.0 || range::contains(**t))) {
         return Err(Error::expected("time", "numbers of s from 0 to 1e30", format!("{found:?}")));
     }
-    if let Some(pair) = times.windows(2).find(|pair| pair[1] <= pair[0]) {
-        return Err(Error::expected("time", "numbers that rise", format!("{} after {}", pair[1], pair[0])));
-    }
+    check_rising("time", times)?;
     if let Some(found) = amplitudes.iter().find(|a| !range::contains(**a)) {
         let expected = "sizes of peaks above 0, from 1e-30 to 1e30";
         return Err(Error::expected("amplitude", expected, format!("{found:?}")));

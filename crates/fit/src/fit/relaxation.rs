@@ -2,8 +2,7 @@
 //!
 //! Theory: page *Springs that forget* of the book.
 
-use super::constrained::solve_nonnegative;
-use super::normal::Normal;
+use super::damping::{check_rising, least_squares};
 use crate::error::{Error, ErrorKind, Result};
 use crate::range;
 use std::f64::consts::TAU;
@@ -73,15 +72,7 @@ impl ModulusTest<'_> {
         // Times are even in their logarithm, because each term acts within about a decade of its own.
         let times: Vec<f64> = (0..=count as usize).map(|i| first * (last / first).powf(i as f64 / count)).collect();
         let rows = self.rows(places, &times);
-        let n = times.len() + 1;
-        let (mut gram, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
-        for (row, value) in &rows {
-            for (i, a) in row.iter().enumerate() {
-                rhs[i] += a * value;
-                row.iter().enumerate().for_each(|(j, b)| gram[i * n + j] += a * b);
-            }
-        }
-        let (parts, _) = solve_nonnegative(&Normal::new(gram, rhs));
+        let parts = least_squares(times.len() + 1, rows.iter().map(|(row, value)| (row, *value)));
         let largest: f64 = parts.iter().sum();
         if !(largest > 0.0 && largest.is_finite()) {
             let expected = "moduli that a series of terms above zero has";
@@ -158,9 +149,7 @@ impl ModulusTest<'_> {
         if let Some(found) = places.iter().find(|x| !is_sound(x)) {
             return Err(Error::expected(name, "numbers above zero, from 1e-30 to 1e30", format!("{found:?}")));
         }
-        if let Some(pair) = places.windows(2).find(|pair| pair[1] <= pair[0]) {
-            return Err(Error::expected(name, "numbers that rise", format!("{} after {}", pair[1], pair[0])));
-        }
+        check_rising(name, places)?;
         for (key, list) in &lists {
             if list.len() != places.len() {
                 return Err(Error::expected(*key, format!("{} numbers", places.len()), list.len()));

@@ -65,7 +65,7 @@ impl Recipe {
             "sampled" => refused("is fitted to forces at many shapes; \"exact\" has those of the finite element"),
             "whole" => refused("depends on the whole body; springfit fit fits it once"),
             "nonnegative" => refused("needs a search for each cell; springfit fit has it"),
-            other => match Method::ALL.into_iter().find(|method| method.name() == other) {
+            other => match Method::all().find(|method| method.name() == other) {
                 Some(Method::MacielUniform) => {
                     refused("scales its constant with the whole body; \"van-gelder\" has one constant on regular cells")
                 }
@@ -74,7 +74,7 @@ impl Recipe {
                 }
                 Some(method) => Ok(Recipe::Published(method)),
                 None => {
-                    let names = || Recipe::NAMES.into_iter().chain(Method::ALL.map(Method::name));
+                    let names = || Recipe::NAMES.into_iter().chain(Method::NAMES.iter().copied());
                     let listed = names().filter(|name| *name != Method::MacielUniform.name());
                     let expected = format!("one of {}", listed.collect::<Vec<_>>().join(", "));
                     Err(unknown(expected, names(), other).at_key("objective"))

@@ -81,7 +81,7 @@ impl Kind {
             Kind::Stiffness => Objective::NAMES.to_vec(),
             Kind::Sampled => vec!["sampled"],
             Kind::Whole => vec!["whole"],
-            Kind::Published => Method::ALL.map(Method::name).to_vec(),
+            Kind::Published => Method::NAMES.to_vec(),
             Kind::Exact => vec!["exact"],
         }
     }
@@ -202,7 +202,7 @@ impl FitEntry {
         let recipe = match kind {
             Kind::Stiffness => Recipe::Stiffness(self.typed::<StiffnessEntry>()?.fit(&self.objective)?),
             Kind::Sampled => Recipe::Sampled(Box::new(self.typed::<SampledEntry>()?.check(folder, functions)?)),
-            Kind::Published => Recipe::Published(Method::of_name(&self.objective)?),
+            Kind::Published => Recipe::Published(Method::named(&self.objective).map_err(|e| e.at_key("method"))?),
             Kind::Exact => Recipe::Exact(self.typed::<ExactEntry>()?.recipe(self.springs.as_deref())?),
             Kind::Whole => {
                 let (entry, sampled) = self.whole()?;

@@ -4,7 +4,6 @@ use super::corners::Joint;
 use super::shape::Shape;
 use crate::element::{Cell, Element};
 use crate::error::{Error, ErrorKind, Result};
-use crate::named::unknown;
 
 /// A published way to choose spring constants; [`Method::reference`] cites the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,6 +27,18 @@ pub enum Method {
     /// Maciel, Boulic and Thalmann (2003), one constant for all springs.
     MacielUniform,
 }
+
+crate::named!(Method {
+    "van-gelder" => VanGelder,
+    "van-gelder-simple" => VanGelderSimple,
+    "lloyd" => Lloyd,
+    "lloyd-preserving" => LloydPreserving,
+    "baudet" => Baudet,
+    "baudet-corrected" => BaudetCorrected,
+    "delingette-quadratic" => DelingetteQuadratic,
+    "delingette-biquadratic" => DelingetteBiquadratic,
+    "maciel-uniform" => MacielUniform,
+});
 
 /// What a method requires and assumes for one kind of cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,45 +80,6 @@ const fn cover(cell: Cell, joints: &'static [Joint], poisson: Ratio, shape: Opti
 }
 
 impl Method {
-    /// All methods.
-    pub const ALL: [Method; 9] = [
-        Method::VanGelder,
-        Method::VanGelderSimple,
-        Method::Lloyd,
-        Method::LloydPreserving,
-        Method::Baudet,
-        Method::BaudetCorrected,
-        Method::DelingetteQuadratic,
-        Method::DelingetteBiquadratic,
-        Method::MacielUniform,
-    ];
-
-    /// The name in files and options.
-    pub fn name(self) -> &'static str {
-        match self {
-            Method::VanGelder => "van-gelder",
-            Method::VanGelderSimple => "van-gelder-simple",
-            Method::Lloyd => "lloyd",
-            Method::LloydPreserving => "lloyd-preserving",
-            Method::Baudet => "baudet",
-            Method::BaudetCorrected => "baudet-corrected",
-            Method::DelingetteQuadratic => "delingette-quadratic",
-            Method::DelingetteBiquadratic => "delingette-biquadratic",
-            Method::MacielUniform => "maciel-uniform",
-        }
-    }
-
-    /// The method called `name`.
-    ///
-    /// # Errors
-    /// No method has this name.
-    pub fn of_name(name: &str) -> Result<Method> {
-        Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-            let names: Vec<&str> = Method::ALL.iter().map(|method| method.name()).collect();
-            unknown(format!("one of {}", names.join(", ")), names, name).at_key("method")
-        })
-    }
-
     /// The paper in which the method is published.
     pub fn reference(self) -> &'static str {
         match self {

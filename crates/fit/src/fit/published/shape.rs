@@ -11,15 +11,9 @@ pub enum Shape {
     Rectangle,
 }
 
-impl Shape {
-    /// The name in messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Shape::Regular => "regular",
-            Shape::Rectangle => "rectangle",
-        }
-    }
+crate::named!(Shape { "regular" => Regular, "rectangle" => Rectangle });
 
+impl Shape {
     /// The largest relative deviation from their mean of two lengths that are equal in this shape; `length` measures a
     /// pair of corners.
     pub fn deviation(self, corners: &Corners, length: impl Fn([usize; 2]) -> f64) -> f64 {

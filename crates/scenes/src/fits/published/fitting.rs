@@ -55,7 +55,7 @@ impl FitKind for Method {
 
 impl CellMethod for Method {
     fn name(&self) -> String {
-        Method::name(*self).into()
+        Method::name(self).into()
     }
 
     fn solver(&self) -> &'static str {

@@ -23,7 +23,7 @@ pub fn usual_fits(element: &Element, material: Material, iterations: u64) -> Vec
         recipes.push(Recipe::Stiffness(Fit { solver, ..Fit::new(Objective::Spectral(MotionWeight::None)) }));
     }
     let cell: Vec<usize> = (0..element.nodes()).collect();
-    let published = Method::ALL.into_iter().filter(|m| serves(*m, element, &element.positions, &cell, material));
+    let published = Method::all().filter(|m| serves(*m, element, &element.positions, &cell, material));
     recipes.extend(published.map(Recipe::Published));
     recipes.into_iter().map(|recipe| NamedFit::of(recipe, None)).collect()
 }
@@ -97,7 +97,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
         let mut fits: Vec<NamedFit> = at_rest.chain(of_whole).collect();
         if groups.is_none() {
             fits.splice(0..0, exact_fits(law.as_ref(), &mesh, material));
-            let published = Method::ALL.into_iter().filter(serves_all);
+            let published = Method::all().filter(serves_all);
             fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }
         if scene.law().is_some() {
