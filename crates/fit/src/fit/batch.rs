@@ -8,7 +8,7 @@ use super::delicate::DelicateCells;
 use super::method::{Certificate, LEAST_MEASURED_PIVOT, Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;
-use super::packing::Packing;
+use super::packing::{Packing, fill};
 use super::rows::Rows;
 use super::settings::Fit;
 use super::weight::ClosedWeight;
@@ -285,12 +285,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             let x = self.packing.lane(lane);
             rows.fill(0.0);
             regular &= self.springs.function_gradients(&x, &mut rows);
-            // Lanes without a cell have the numbers of the first one: zeros would end all lanes as irregular.
-            let last = if lane == 0 { T::COUNT } else { lane + 1 };
-            self.measured
-                .iter_mut()
-                .zip(&rows)
-                .for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
+            fill(&mut self.measured, lane, &rows);
         }
         regular
     }

@@ -6,7 +6,7 @@
 
 use super::cells::CellFits;
 use super::packed_hooke::PackedHooke;
-use super::packing::Packing;
+use super::packing::{Packing, fill, packed};
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke, Moduli};
 use crate::scalar::{Packed, difference, dot, of_dimension};
@@ -98,16 +98,11 @@ impl<'a, T: Packed> Differences<'a, T> {
         for (lane, cell) in nodes.chunks_exact(table.nodes).enumerate() {
             let placed = self.packing.place(cell, x);
             placed.and_then(|()| geometry.set(table, x)).map_err(|fault| (lane, fault))?;
-            // The lanes without a cell hold the numbers of the first one, so that all are finite.
-            let last = if lane == 0 { T::COUNT } else { lane + 1 };
-            let fill = |lanes: &mut [T], values: &[f64]| {
-                lanes.iter_mut().zip(values).for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
-            };
-            fill(&mut self.packing.x, x);
-            fill(&mut self.geometry.gradients, &geometry.gradients);
-            fill(&mut self.geometry.volumes, &geometry.volumes);
-            fill(&mut self.geometry.volumetric, &geometry.volumetric);
-            fill(&mut self.geometry.modes, &geometry.modes);
+            fill(&mut self.packing.x, lane, x);
+            fill(&mut self.geometry.gradients, lane, &geometry.gradients);
+            fill(&mut self.geometry.volumes, lane, &geometry.volumes);
+            fill(&mut self.geometry.volumetric, lane, &geometry.volumetric);
+            fill(&mut self.geometry.modes, lane, &geometry.modes);
         }
         Ok(())
     }
@@ -128,9 +123,7 @@ impl<'a, T: Packed> Differences<'a, T> {
             for (row, table) in areas.chunks_exact_mut(size).zip(springs.areas()) {
                 row.copy_from_slice(&Measure::Span(table.clone()).gradient(&x, self.element.dimension()));
             }
-            let last = if lane == 0 { T::COUNT } else { lane + 1 };
-            let pairs = self.gradients.iter_mut().zip(&rows);
-            pairs.for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
+            fill(&mut self.gradients, lane, &rows);
         }
     }
 
@@ -138,11 +131,7 @@ impl<'a, T: Packed> Differences<'a, T> {
     #[inline(always)]
     fn constants(&self, first: usize, count: usize, s: usize) -> T {
         let m = self.fits.springs.len();
-        let mut constants = self.stiffness[0].zero();
-        for lane in 0..count {
-            constants.as_mut_slice()[lane] = self.fits.constants[(first + lane) * m + s];
-        }
-        constants
+        packed(&self.stiffness[0].zero(), count, |lane| self.fits.constants[(first + lane) * m + s])
     }
 
     /// The tension of spring s with these constants at rest, where it has these measures.
@@ -158,20 +147,13 @@ impl<'a, T: Packed> Differences<'a, T> {
             return self.tensions_singly(first, count, s, rest);
         }
         let all = self.places[self.fits.springs.len()];
-        let mut slack = rest.zero();
-        for lane in 0..count {
-            slack.as_mut_slice()[lane] = self.fits.parameters[(first + lane) * all + from];
-        }
+        let slack = packed(&rest.zero(), count, |lane| self.fits.parameters[(first + lane) * all + from]);
         constants.clone() * rest - &slack
     }
 
     /// [`Differences::tensions`] for any force.
     fn tensions_singly(&self, first: usize, count: usize, s: usize, rest: &T) -> T {
-        let mut tensions = rest.zero();
-        for lane in 0..count {
-            tensions.as_mut_slice()[lane] = self.tension(first + lane, s, rest.as_slice()[lane]);
-        }
-        tensions
+        packed(&rest.zero(), count, |lane| self.tension(first + lane, s, rest.as_slice()[lane]))
     }
 
     fn tension(&self, cell: usize, s: usize, rest: f64) -> f64 {

@@ -105,25 +105,38 @@ impl<T: Scalar> Nodal<T> {
         // The factor of the nodes is that of A alone: one more substitution, for c, serves as the elimination of the border.
         self.image.clone_from(&self.border);
         let mut image = std::mem::take(&mut self.image);
-        self.gather::<D>(springs, &image);
+        self.solve_lengths::<D>(springs, &mut image);
+        self.image = image;
+        // The pivot of the content, by the rule of all normal equations: a thousand rounding errors count as zero. Lanes whose pivot vanishes
+        // hold numbers that are not finite here; the result is refused as a whole.
+        let pivot = self.solve_content(rhs);
+        pivot.exceeds(&self.border[lengths].clone().scaled(&T::exact(1e3 * T::epsilon())))
+    }
+
+    /// `w ← A⁻¹ w` by the factor of the nodes.
+    #[inline(always)]
+    fn solve_lengths<const D: usize>(&mut self, springs: &Springs, w: &mut [T]) {
+        self.gather::<D>(springs, w);
         let Normal { gram, rhs: small, pivots, .. } = &mut self.small;
         substitute(gram, small.len(), pivots, small);
-        self.scatter::<D>(springs, &mut image);
-        let (mut above, mut below) = (rhs[lengths].clone(), self.border[lengths].clone());
+        self.scatter::<D>(springs, w);
+    }
+
+    /// Goes on from `A⁻¹ w` to `M⁻¹ w`; the pivot of the content, `e − cᵀ A⁻¹ c`.
+    #[inline(always)]
+    fn solve_content(&self, w: &mut [T]) -> T {
+        let lengths = w.len() - 1;
+        let (mut above, mut below) = (w[lengths].clone(), self.border[lengths].clone());
         for s in 0..lengths {
-            above = above.minus_product(&self.border[s], &rhs[s]);
-            below = below.minus_product(&self.border[s], &image[s]);
+            above = above.minus_product(&self.border[s], &w[s]);
+            below = below.minus_product(&self.border[s], &self.image[s]);
         }
-        // The pivot of the content, by the rule of all normal equations: a thousand rounding errors count as zero.
-        let regular = below.exceeds(&self.border[lengths].clone().scaled(&T::exact(1e3 * T::epsilon())));
-        // Lanes whose pivot vanishes hold numbers that are not finite here; the result is refused as a whole.
         let constant = above / &below;
         for s in 0..lengths {
-            rhs[s] = rhs[s].clone().minus_product(&constant, &image[s]);
+            w[s] = w[s].clone().minus_product(&constant, &self.image[s]);
         }
-        rhs[lengths] = constant;
-        self.image = image;
-        regular
+        w[lengths] = constant;
+        below
     }
 
     /// `w ← M⁻¹ w` for another right-hand side, after [`Nodal::solve`].
@@ -137,24 +150,10 @@ impl<T: Scalar> Nodal<T> {
 
     #[inline(always)]
     fn solve_again_in<const D: usize>(&mut self, springs: &Springs, w: &mut [T]) {
-        self.gather::<D>(springs, w);
-        let Normal { gram, rhs: small, pivots, .. } = &mut self.small;
-        substitute(gram, small.len(), pivots, small);
-        self.scatter::<D>(springs, w);
-        if springs.content().is_none() {
-            return;
+        self.solve_lengths::<D>(springs, w);
+        if springs.content().is_some() {
+            self.solve_content(w);
         }
-        let lengths = springs.pairs().len();
-        let (mut above, mut below) = (w[lengths].clone(), self.border[lengths].clone());
-        for s in 0..lengths {
-            above = above.minus_product(&self.border[s], &w[s]);
-            below = below.minus_product(&self.border[s], &self.image[s]);
-        }
-        let constant = above / &below;
-        for s in 0..lengths {
-            w[s] = w[s].clone().minus_product(&constant, &self.image[s]);
-        }
-        w[lengths] = constant;
     }
 
     /// `n_k n_l`, l ≤ k, of every length spring.

@@ -1,5 +1,6 @@
 //! The linear laws of the cells that are computed together, one cell per SIMD lane.
 
+use super::packing::packed;
 use crate::material::{BlockValues, Hooke, Moduli, Stiffness};
 use crate::scalar::Packed;
 
@@ -37,11 +38,7 @@ impl<'a, T: Packed> PackedHooke<'a, T> {
             }
             return;
         }
-        let pack = |value: &dyn Fn(usize) -> f64| {
-            let mut lanes = self.zero.clone();
-            (0..T::COUNT).for_each(|lane| lanes.as_mut_slice()[lane] = value(lane));
-            lanes
-        };
+        let pack = |value: &dyn Fn(usize) -> f64| packed(&self.zero, T::COUNT, value);
         // Lanes compute with one kind of law: a single anisotropic cell makes all of them anisotropic.
         let moduli: Option<Vec<Moduli>> = (0..T::COUNT).map(|lane| of_lane(lane).moduli()).collect();
         self.lanes = match moduli {

@@ -75,3 +75,17 @@ impl<'a, T: Packed> Packing<'a, T> {
         }
     }
 }
+
+/// A number with these values in its first lanes, and with zeros in the others.
+#[inline(always)]
+pub fn packed<T: Packed>(zero: &T, count: usize, value: impl Fn(usize) -> f64) -> T {
+    let mut lanes = zero.clone();
+    lanes.as_mut_slice()[..count].iter_mut().enumerate().for_each(|(lane, number)| *number = value(lane));
+    lanes
+}
+
+/// Writes the numbers of the cell in this lane. Lanes without a cell have those of the first one: zeros would end all lanes as irregular.
+pub fn fill<T: Packed>(all: &mut [T], lane: usize, values: &[f64]) {
+    let last = if lane == 0 { T::COUNT } else { lane + 1 };
+    all.iter_mut().zip(values).for_each(|(lanes, value)| lanes.as_mut_slice()[lane..last].fill(*value));
+}

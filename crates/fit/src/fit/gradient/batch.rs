@@ -8,6 +8,7 @@ use super::inputs::{CellFunction, CellNumbers, GradientFit, Inputs};
 use super::slopes::Slopes;
 use crate::fit::closed::Closed;
 use crate::fit::exact::ExactKernel;
+use crate::fit::packing::packed;
 use crate::fit::sizes::of_size;
 use crate::material::{Hooke, Moduli};
 use crate::scalar::{Dual, Packed, PackedWork, Real, widest};
@@ -152,30 +153,24 @@ impl<'a> Batch<'a, '_> {
         let mut lanes = [const { 0usize }; 64];
         (0..T::COUNT).for_each(|lane| lanes[lane] = cell(lane));
         let lanes = &lanes[..T::COUNT];
-        let packed = |of: &dyn Fn(usize) -> f64| {
-            let mut number = zero.clone();
-            number.as_mut_slice().iter_mut().zip(lanes).for_each(|(value, cell)| *value = of(*cell));
-            number
-        };
         for i in 0..n * d {
             let (a, k) = (i / d, i % d);
+            // Changes are relative to that of the first node, as positions are: constants do not depend on where a cell is.
             let relative = |all: &[f64]| {
-                let mut number = zero.clone();
-                for (value, cell) in number.as_mut_slice().iter_mut().zip(lanes) {
-                    let nodes = &self.nodes[cell * n..];
-                    // Changes are relative to that of the first node, as positions are: constants do not depend on where a cell is.
-                    *value = all[nodes[a] * d + k] - all[nodes[0] * d + k];
-                }
-                number
+                packed(zero, T::COUNT, |lane| {
+                    let nodes = &self.nodes[lanes[lane] * n..];
+                    all[nodes[a] * d + k] - all[nodes[0] * d + k]
+                })
             };
             let along = changes.map(|change| change.map_or(zero.clone(), |change| relative(&change.points)));
             seeds.x[i] = N::seeded(relative(points), along);
         }
         let seed = |i: usize, of: &dyn Fn(&Moduli) -> f64| {
-            let along = changes.map(|change| {
-                change.map_or(zero.clone(), |change| packed(&|cell| change.moduli[(self.start + cell) * 2 + i]))
+            let change = |change: &Inputs, lane: usize| change.moduli[(self.start + lanes[lane]) * 2 + i];
+            let along = changes.map(|inputs| {
+                inputs.map_or(zero.clone(), |inputs| packed(zero, T::COUNT, |lane| change(inputs, lane)))
             });
-            N::seeded(packed(&|cell| of(moduli.at(self.start + cell))), along)
+            N::seeded(packed(zero, T::COUNT, |lane| of(moduli.at(self.start + lanes[lane]))), along)
         };
         seeds.moduli = Moduli { lambda: seed(0, &|m| m.lambda), mu: seed(1, &|m| m.mu) };
     }
@@ -257,11 +252,8 @@ impl<'a> Batch<'a, '_> {
             self.gather(zero, (first, count), &mut seeds);
             for (into, all, width) in [(&mut weights, &given.constants, m), (&mut rests, &given.rests, r)] {
                 for (i, number) in into.iter_mut().enumerate() {
-                    let mut value = zero.clone();
-                    for (lane, value) in value.as_mut_slice().iter_mut().enumerate() {
-                        let cell = self.start + first + if lane < count { lane } else { 0 };
-                        *value = all[cell * width + i];
-                    }
+                    let cell = |lane: usize| self.start + first + if lane < count { lane } else { 0 };
+                    let value = packed(zero, T::COUNT, |lane| all[cell(lane) * width + i]);
                     // Weights do not change along the change of the inputs.
                     *number = N::seeded(value, [zero.clone(), zero.clone()]);
                 }
