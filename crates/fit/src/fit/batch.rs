@@ -2,9 +2,9 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::closed::Closed;
 use super::constrained::{MANY, solve_nonnegative, solve_wide};
 use super::delicate::DelicateCells;
+use super::least_squares::Closed;
 use super::method::{Certificate, LEAST_MEASURED_PIVOT, Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;

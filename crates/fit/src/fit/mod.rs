@@ -11,7 +11,6 @@ mod batch;
 mod bounded;
 mod bounded_divergence;
 mod cells;
-mod closed;
 mod closed_form;
 mod congruence;
 mod constrained;
@@ -77,14 +76,14 @@ pub use exact::{
 };
 pub use given::{GivenFit, GivenStiffness, condense};
 pub use gradient::{CellFunction, CellNumbers, GradientFit, Inputs};
-pub use least_squares::constants_in;
 pub use method::Certificate;
 pub use modulus::Modulus;
 pub use normal::Rank;
 pub use norms::Norm;
 pub use objective::{Balance, Choices, Objective};
 pub use precision::{
-    bounded_constants, condition, constants_of_kind, distance_from_optimum, double_double_constants, single_constants,
+    bounded_constants, condition, constants_in, constants_of_kind, distance_from_optimum, double_double_constants,
+    single_constants,
 };
 pub use relaxation::{FittedSeries, ModulusTest};
 pub use residual::{ElementErrors, Spread, SpreadSum, each_element_errors, element_errors};

@@ -10,10 +10,10 @@ use super::normal::Normal;
 use super::rows::Rows;
 use super::settings::Fit;
 use super::weight::{ClosedWeight, Route, Weight};
-use crate::element::Element;
+use crate::element::{Element, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{DoubleDouble, Real};
+use crate::scalar::{DoubleDouble, Real, Scalar};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use crate::symbolic::Differentiable;
@@ -72,6 +72,41 @@ pub fn single_constants(
     fit: &Fit,
 ) -> Result<Vec<f32>> {
     constants_of_kind(&0f32, element, springs, x, moduli, fit)
+}
+
+/// The constants of one element in any kind of number, such as `f32` or exact rationals; nodes at `x`,
+/// `[nodes × dimension]`.
+///
+/// # Errors
+/// The springs and the table differ in their numbers of nodes or dimensions; `x` has another length; the weight is
+/// `relative` or springs measure functions, both of which require roots; the Jacobian is not positive everywhere; or
+/// the springs are linearly dependent.
+pub fn constants_in<T: Scalar>(
+    weight: Weight,
+    springs: &Springs,
+    table: &Tabulation<T::Constant>,
+    x: &[T],
+    moduli: &Moduli<T::Constant>,
+) -> Result<Vec<T>> {
+    // What requires roots is refused before anything is computed: rational numbers have none.
+    let weight = weight.closed(springs.need_matrix())?;
+    if (table.nodes, table.dimension) != (springs.nodes(), springs.dimension()) {
+        let expected = format!("a table of {} nodes in {} dimensions", springs.nodes(), springs.dimension());
+        return Err(Error::expected("table", expected, format!("{} in {}", table.nodes, table.dimension)));
+    }
+    check_length("x", x.len(), springs.nodes() * springs.dimension())?;
+    let mut geometry = Geometry::like(&x[0], table);
+    if !geometry.update(table, x) {
+        return Err(no_answer("the Jacobian is not positive everywhere"));
+    }
+    let mut normal = Normal::default();
+    normal_equations(weight, springs, x, &geometry, &Hooke::Isotropic(moduli.of_kind(&x[0])), &mut normal);
+    // NaN is not equal to itself plus one.
+    let is_finite = |k: &T| (k.one() + &(k.clone() - k)).exceeds(&k.zero());
+    if !(normal.solve_regular() && normal.rhs.iter().all(is_finite)) {
+        return Err(no_answer("the springs are linearly dependent"));
+    }
+    Ok(normal.rhs)
 }
 
 /// The normal equations of the unknowns of a fit with a closed form.
