@@ -6,6 +6,7 @@ use super::sequence::Sequence;
 use super::setting::{Engine, Setting, Sweep};
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::Support;
+use crate::scalar::of_dimension;
 
 /// A network that is moved by the steps of an engine.
 ///
@@ -13,72 +14,21 @@ use crate::model::Support;
 /// points where they are. Under a small load both rest in the same place.
 #[derive(Debug)]
 pub struct Frames {
-    state: State,
-}
-
-#[derive(Debug)]
-enum State {
-    Line(Body<1>),
-    Plane(Body<2>),
-    Space(Body<3>),
-}
-
-impl Frames {
-    /// The network at rest.
-    ///
-    /// # Errors
-    /// The engine does not hold the springs, or a point has no mass: kind `Unsupported`.
-    pub fn new(model: TruncatedModel, support: &Support, setting: &Setting) -> Result<Frames> {
-        model.check(support)?;
-        let state = match model.network.dimension {
-            1 => State::Line(Body::new(model, support, setting)),
-            2 => State::Plane(Body::new(model, support, setting)),
-            3 => State::Space(Body::new(model, support, setting)),
-            other => {
-                let expected = "a body of 1 to 3 dimensions";
-                return Err(Error::expected("engine", expected, other).of_kind(ErrorKind::Unsupported));
-            }
-        };
-        Ok(Frames { state })
-    }
-
-    /// Puts the points at these displacements, `[points · dimension]`, m, without velocities. Held ones stay at rest.
-    pub fn start(&mut self, displacement: &[f64]) {
-        match &mut self.state {
-            State::Line(body) => body.start(displacement),
-            State::Plane(body) => body.start(displacement),
-            State::Space(body) => body.start(displacement),
-        }
-    }
-
-    /// Makes a step of the engine, which is all of its substeps, under nodal forces, `[points · dimension]`, N.
-    pub fn step(&mut self, forces: &[f64]) {
-        match &mut self.state {
-            State::Line(body) => body.step(forces),
-            State::Plane(body) => body.step(forces),
-            State::Space(body) => body.step(forces),
-        }
-    }
-
-    /// Multiplies the velocities by a factor.
-    pub fn slow(&mut self, factor: f64) {
-        let velocities = match &mut self.state {
-            State::Line(body) => &mut body.velocities,
-            State::Plane(body) => &mut body.velocities,
-            State::Space(body) => &mut body.velocities,
-        };
-        velocities.iter_mut().for_each(|v| *v *= factor);
-    }
-
-    /// The displacements, `[points · dimension]`, m.
-    pub fn displacement(&self) -> Vec<f64> {
-        let (points, rest) = match &self.state {
-            State::Line(body) => (&body.points, &body.rest),
-            State::Plane(body) => (&body.points, &body.rest),
-            State::Space(body) => (&body.points, &body.rest),
-        };
-        points.iter().zip(rest).map(|(x, rest)| x - rest).collect()
-    }
+    dimension: usize,
+    /// In the order of a sweep.
+    rows: Vec<Row>,
+    /// Each free point in the order of a sweep, with its springs and its place in each.
+    sets: Vec<(usize, Vec<(usize, usize)>)>,
+    rest: Vec<f64>,
+    points: Vec<f64>,
+    velocities: Vec<f64>,
+    /// W, `[dofs]`, 1/kg; zero where points are held.
+    inverse: Vec<f64>,
+    /// λ, `[rows]`.
+    multipliers: Vec<f64>,
+    before: Vec<f64>,
+    predicted: Vec<f64>,
+    setting: Setting,
 }
 
 /// Points of a spring at most: those of a tetrahedron.
@@ -98,33 +48,25 @@ struct Row {
     relaxation: f64,
 }
 
-#[derive(Debug)]
-struct Body<const D: usize> {
-    /// In the order of a sweep.
-    rows: Vec<Row>,
-    /// Each free point in the order of a sweep, with its springs and its place in each.
-    sets: Vec<(usize, Vec<(usize, usize)>)>,
-    rest: Vec<f64>,
-    points: Vec<f64>,
-    velocities: Vec<f64>,
-    /// W, `[dofs]`, 1/kg; zero where points are held.
-    inverse: Vec<f64>,
-    /// λ, `[rows]`.
-    multipliers: Vec<f64>,
-    before: Vec<f64>,
-    predicted: Vec<f64>,
-    setting: Setting,
-}
-
-impl<const D: usize> Body<D> {
-    fn new(model: TruncatedModel, support: &Support, setting: &Setting) -> Body<D> {
+impl Frames {
+    /// The network at rest.
+    ///
+    /// # Errors
+    /// The engine does not hold the springs, or a point has no mass: kind `Unsupported`.
+    pub fn new(model: TruncatedModel, support: &Support, setting: &Setting) -> Result<Frames> {
+        model.check(support)?;
+        let d = model.network.dimension;
+        if !(1..=3).contains(&d) {
+            let expected = "a body of 1 to 3 dimensions";
+            return Err(Error::expected("engine", expected, d).of_kind(ErrorKind::Unsupported));
+        }
         let TruncatedModel { network, points, masses } = model;
         let inverse: Vec<f64> =
-            (0..points.len()).map(|dof| if support.is_fixed(dof) { 0.0 } else { 1.0 / masses[dof / D] }).collect();
+            (0..points.len()).map(|dof| if support.is_fixed(dof) { 0.0 } else { 1.0 / masses[dof / d] }).collect();
         let sets: Vec<&[usize]> = network.springs().map(|(points, _)| points).collect();
-        let held: Vec<bool> = inverse.chunks_exact(D).map(|w| w.iter().all(|w| *w == 0.0)).collect();
+        let held: Vec<bool> = inverse.chunks_exact(d).map(|w| w.iter().all(|w| *w == 0.0)).collect();
         let lengths = network.lengths.len();
-        let sequence = Sequence { springs: &sets, lengths, points, dimension: D, held: &held };
+        let sequence = Sequence { springs: &sets, lengths, points, dimension: d, held: &held };
         let constants: Vec<f64> = network.springs().map(|(_, constant)| constant).collect();
         let rests = network.lengths.iter().map(|s| s.rest).chain(network.others.iter().map(|s| s.rest));
         let rests: Vec<f64> = rests.collect();
@@ -147,7 +89,7 @@ impl<const D: usize> Body<D> {
             };
             row.points[..own.len()].copy_from_slice(own);
             // A simplex may be numbered either way round; its content is positive at rest.
-            row.sign = row.measure::<D>(points).0.signum();
+            row.sign = of_dimension!(d, |D| row.measure::<D>(points).0.signum());
             row
         };
         let rows: Vec<Row> = order.into_iter().map(row).collect();
@@ -157,7 +99,8 @@ impl<const D: usize> Body<D> {
         }
         let by_points = if setting.is_by_points() { point_order(setting.order, &sets, held.len()) } else { Vec::new() };
         let free = by_points.into_iter().filter(|p| !held[*p]);
-        Body {
+        Ok(Frames {
+            dimension: d,
             sets: free.map(|p| (p, std::mem::take(&mut of_point[p]))).collect(),
             multipliers: vec![0.0; rows.len()],
             rows,
@@ -168,17 +111,19 @@ impl<const D: usize> Body<D> {
             predicted: points.to_vec(),
             inverse,
             setting: *setting,
-        }
+        })
     }
 
-    fn start(&mut self, displacement: &[f64]) {
+    /// Puts the points at these displacements, `[points · dimension]`, m, without velocities. Held ones stay at rest.
+    pub fn start(&mut self, displacement: &[f64]) {
         for (dof, u) in displacement.iter().enumerate().filter(|(dof, _)| self.inverse[*dof] > 0.0) {
             self.points[dof] = self.rest[dof] + u;
         }
         self.velocities.fill(0.0);
     }
 
-    fn step(&mut self, forces: &[f64]) {
+    /// Makes a step of the engine, which is all of its substeps, under nodal forces, `[points · dimension]`, N.
+    pub fn step(&mut self, forces: &[f64]) {
         let h = self.setting.substep();
         for _ in 0..self.setting.substeps {
             self.before.copy_from_slice(&self.points);
@@ -186,8 +131,8 @@ impl<const D: usize> Body<D> {
                 self.points[dof] += h * (self.velocities[dof] + h * self.inverse[dof] * force);
             }
             match self.setting.is_by_points() {
-                true => self.descend(),
-                false => self.project(),
+                true => of_dimension!(self.dimension, |D| self.descend::<D>()),
+                false => of_dimension!(self.dimension, |D| self.project::<D>()),
             }
             for dof in 0..self.points.len() {
                 // Engines of positions have no other velocity than that of the corrected positions: what a correction
@@ -197,8 +142,18 @@ impl<const D: usize> Body<D> {
         }
     }
 
+    /// Multiplies the velocities by a factor.
+    pub fn slow(&mut self, factor: f64) {
+        self.velocities.iter_mut().for_each(|v| *v *= factor);
+    }
+
+    /// The displacements, `[points · dimension]`, m.
+    pub fn displacement(&self) -> Vec<f64> {
+        self.points.iter().zip(&self.rest).map(|(x, rest)| x - rest).collect()
+    }
+
     /// The sweeps of extended position-based dynamics.
-    fn project(&mut self) {
+    fn project<const D: usize>(&mut self) {
         // XPBD begins each substep without multipliers; the fit is for that.
         self.multipliers.fill(0.0);
         for _ in 0..self.setting.iterations {
@@ -225,7 +180,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// The sweeps of vertex block descent, without the curvature of the measures.
-    fn descend(&mut self) {
+    fn descend<const D: usize>(&mut self) {
         let square = self.setting.substep().powi(2);
         self.predicted.copy_from_slice(&self.points);
         for _ in 0..self.setting.iterations {

@@ -17,7 +17,6 @@ pub struct ExplicitMemory {
     branches: Branches,
     rest: Vec<f64>,
     x: Vec<f64>,
-    times: Vec<f64>,
     decays: Vec<Decay>,
     rules: Vec<BranchRule>,
     /// The forces at the present shape, `[points × dimension]`, N, and those at the end of the step that is computed.
@@ -36,8 +35,7 @@ pub struct ExplicitMemory {
 impl ExplicitMemory {
     /// The branches of a body whose points are at `rest`, `[points × dimension]`, m, for steps of `step`, s. Terms that yield are not served.
     pub fn new(points: &MaterialPoints, rest: &[f64], terms: &[BranchTerm], step: f64) -> ExplicitMemory {
-        let times: Vec<f64> = terms.iter().map(|term| term.time).collect();
-        let decays: Vec<Decay> = times.iter().map(|time| Decay::new(step, *time)).collect();
+        let decays: Vec<Decay> = terms.iter().map(|term| Decay::new(step, term.time)).collect();
         let share = |term: usize, region: usize| terms[term].shares.get(region).copied().unwrap_or(0.0);
         let branches = Branches::new(points, rest, terms.len(), &share);
         let zero = vec![0.0; rest.len()];
@@ -47,7 +45,6 @@ impl ExplicitMemory {
             rest: rest.to_vec(),
             x: rest.to_vec(),
             rules: decays.iter().map(rule).collect(),
-            times,
             decays,
             force: zero.clone(),
             ahead: zero,
@@ -61,10 +58,6 @@ impl ExplicitMemory {
 
     pub(super) fn dofs(&self) -> usize {
         self.rest.len()
-    }
-
-    pub(super) fn times(&self) -> &[f64] {
-        &self.times
     }
 
     /// The number of numbers that are remembered.

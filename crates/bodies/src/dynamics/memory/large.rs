@@ -79,10 +79,6 @@ impl LargeMemory {
         self.rest.len()
     }
 
-    pub(super) fn times(&self) -> &[f64] {
-        &self.times
-    }
-
     /// The number of numbers that are remembered.
     pub fn numbers(&self) -> usize {
         self.states.len() * self.target.len()

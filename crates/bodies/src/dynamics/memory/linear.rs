@@ -98,10 +98,6 @@ impl LinearMemory {
         self.displacement.len() * (1 + self.creep.len())
     }
 
-    pub(super) fn times(&self) -> &[f64] {
-        &self.times
-    }
-
     pub(super) fn places(&self) -> Vec<(usize, usize)> {
         let of = |part: &RelaxingPart| -> Vec<(usize, usize)> {
             let (starts, rows) = (part.matrix.col_ptr(), part.matrix.row_idx());

@@ -73,17 +73,6 @@ impl Memory {
         }
     }
 
-    /// The shortest relaxation time, s.
-    pub fn shortest(&self) -> f64 {
-        let least = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
-        match self {
-            Memory::Linear(memory) => least(memory.times()),
-            Memory::Large(memory) => least(memory.times()),
-            Memory::Flow(memory) => least(&memory.terms().iter().map(|term| term.time).collect::<Vec<_>>()),
-            Memory::Explicit(memory) => least(memory.times()),
-        }
-    }
-
     /// The positions of the entries that it adds to the lower triangle of the tangent; none in explicit steps, which have no tangent.
     pub fn places(&self) -> Vec<(usize, usize)> {
         match self {
