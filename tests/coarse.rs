@@ -166,7 +166,7 @@ fn loads_that_a_fit_has_made_worse_are_listed() {
             support
         };
         // The seed of the fit is 2010.
-        let loads = varied_loads(&fine, &held(&fine), 1.0, Pressure::Varying, (30, 2010 + 1000));
+        let loads = varied_loads(&fine, &held(&fine), &1.0.into(), Pressure::Varying, (30, 2010 + 1000));
         let (down, up) = (Embedding::of(&fine.points, mesh).unwrap(), Embedding::of(&mesh.points, &fine).unwrap());
         let moved = |mesh: &Mesh, entries: &Entries, forces: &[f64]| {
             let system = System::new(entries, &held(mesh)).unwrap();

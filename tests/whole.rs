@@ -252,7 +252,7 @@ fn moduli_of_two_halves_come_back() {
         let u = system.solve(&factor, &load.forces).0;
         Target::new(load.name, body.support.clone(), load.forces, u)
     };
-    let loads = varied_loads(&body.mesh, &body.support, 1.0, Pressure::Uniform, (24, 5));
+    let loads = varied_loads(&body.mesh, &body.support, &1.0.into(), Pressure::Uniform, (24, 5));
     let trained: Vec<Target> = loads.into_iter().map(moved).collect();
     let wanted = Wanted { trained, ..Wanted::default() };
     let settings = WholeSettings {
@@ -307,7 +307,7 @@ fn loads_of_rounding_errors_are_none() {
         let mut support = Support::free(&mesh);
         ["xmin", "xmax"].iter().for_each(|side| support.fix(&mesh.groups[*side].points, &[0, 1, 2], 3));
         let made = made_loads(&mesh, &support, 1.0);
-        let varied = varied_loads(&mesh, &support, 1.0, Pressure::Uniform, (12, 1));
+        let varied = varied_loads(&mesh, &support, &1.0.into(), Pressure::Uniform, (12, 1));
         [made, varied].map(|loads| loads.into_iter().map(|load| load.name).collect())
     };
     let [made, varied] = names(1.0);
@@ -324,7 +324,7 @@ fn varied_loads_of_two_seeds_have_none_in_common() {
     let mesh = block("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
     let mut support = Support::free(&mesh);
     support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
-    let loads = |pressure, seed| varied_loads(&mesh, &support, 1.0, pressure, (16, seed));
+    let loads = |pressure, seed| varied_loads(&mesh, &support, &1.0.into(), pressure, (16, seed));
     let (fitted, own) = (loads(Pressure::Uniform, 1), loads(Pressure::Varying, 1));
     assert_eq!(fitted[1..], own[1..]);
     assert!(fitted[0].name == "pressure" && own[0].name == "varying pressure" && fitted[0].forces != own[0].forces);
@@ -358,7 +358,7 @@ fn intervals_of_moduli_hold_the_truth() {
     let network = object.network(&truth);
     let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
     let factor = system.factorize().unwrap().unwrap();
-    let loads = varied_loads(&body.mesh, &body.support, 1.0, Pressure::Uniform, (6, 5));
+    let loads = varied_loads(&body.mesh, &body.support, &1.0.into(), Pressure::Uniform, (6, 5));
     let exact: Vec<Target> = loads
         .into_iter()
         .map(|load| {

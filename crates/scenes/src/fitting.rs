@@ -91,7 +91,7 @@ pub fn matrix_errors(mesh: &Mesh, material: &MaterialMap, cells: &[CellFits]) ->
     let moduli = material.moduli();
     for (index, (block, fit)) in mesh.blocks.iter().zip(cells).enumerate() {
         let moduli = moduli.block(index);
-        each_element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit, |errors| {
+        each_element_errors(&block.element, &mesh.points, &block.connectivity, moduli, fit, &mut |errors| {
             frobenius.add(&errors.frobenius);
             spectral.add(&errors.spectral);
         })?;

@@ -22,12 +22,7 @@ pub struct Moments {
 
 impl Moments {
     /// Computes the moments of a body; `density` is in kg/m³ and `thickness` in m, of all cells or of each.
-    pub fn of_body(mesh: &Mesh, density: impl Into<CellMap<f64>>, thickness: impl Into<CellMap<f64>>) -> Moments {
-        Self::of_cells(mesh, density.into(), thickness.into())
-    }
-
-    /// [`Self::of_body`], without parameters of type: compiled here, where code is optimised, and not with each caller.
-    fn of_cells(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>) -> Moments {
+    pub fn of_body(mesh: &Mesh, density: CellMap<f64>, thickness: CellMap<f64>) -> Moments {
         let d = mesh.dimension;
         let mut parts: Vec<(f64, Vec<f64>)> = Vec::new();
         each_cell_points(

@@ -101,7 +101,7 @@ pub fn element_errors<'a>(
 ) -> Result<ElementErrors> {
     let cells = connectivity.len() / element.nodes();
     let mut all = ElementErrors { frobenius: Vec::with_capacity(cells), spectral: Vec::with_capacity(cells) };
-    each_element_errors(element, points, connectivity, moduli, fits, |errors| all.extend(errors))?;
+    each_element_errors(element, points, connectivity, moduli.into(), fits, &mut |errors| all.extend(errors))?;
     Ok(all)
 }
 
@@ -109,19 +109,8 @@ pub fn element_errors<'a>(
 ///
 /// # Errors
 /// Those of [`element_errors`].
-pub fn each_element_errors<'a>(
-    element: &Element,
-    points: &[f64],
-    connectivity: &[usize],
-    moduli: impl Into<BlockValues<'a, Hooke>>,
-    fits: &CellFits,
-    mut visit: impl FnMut(ElementErrors),
-) -> Result<()> {
-    visit_errors(element, points, connectivity, moduli.into(), fits, &mut visit)
-}
-
-/// [`each_element_errors`]. A function without parameters of type is compiled in this package, which is optimised, whoever calls it.
-fn visit_errors(
+// A function without parameters of type is compiled in this package, which is optimised, whoever calls it.
+pub fn each_element_errors(
     element: &Element,
     points: &[f64],
     connectivity: &[usize],

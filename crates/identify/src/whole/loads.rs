@@ -162,17 +162,6 @@ pub enum Pressure {
 pub fn varied_loads(
     mesh: &Mesh,
     support: &Support,
-    thickness: impl Into<CellMap<f64>>,
-    pressure: Pressure,
-    (count, seed): (usize, u64),
-) -> Vec<NodalLoad> {
-    varied(mesh, support, &thickness.into(), pressure, (count, seed))
-}
-
-/// [`varied_loads`], without parameters of type: compiled here, where code is optimised, and not with each caller.
-fn varied(
-    mesh: &Mesh,
-    support: &Support,
     thickness: &CellMap<f64>,
     pressure: Pressure,
     (count, seed): (usize, u64),
