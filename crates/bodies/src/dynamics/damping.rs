@@ -5,7 +5,7 @@
 use crate::error::{Error, Result};
 use crate::model::{Entries, Network, Support};
 use crate::springs::Measure;
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 use faer::sparse::Triplet;
 
 /// The damping matrix `C = α M + β K₀ + Σ_s c_s ∇c_s ∇c_sᵀ`, with K₀ the tangent at rest.
@@ -108,11 +108,7 @@ impl Dampers {
             return Err(Error::expected("ratio", "a damping ratio that is not negative", ratio));
         }
         let d = network.dimension;
-        let place = |nodes: &[usize]| {
-            let mut x = vec![0.0; nodes.len() * d];
-            gather(points, d, nodes, &mut x);
-            x
-        };
+        let place = |nodes: &[usize]| gathered(points, d, nodes);
         let of = |nodes: &[usize], measure: &Measure, x: &[f64], slope: f64| {
             let mut inverse = 0.0;
             let dofs = nodes.iter().flat_map(|p| p * d..(p + 1) * d);

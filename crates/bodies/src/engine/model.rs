@@ -3,7 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::model::{LengthSpring, MeasureSpring, Network, Support};
 use crate::springs::{Measure, distance};
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 
 /// A network on its points with masses, as an engine holds it.
 #[derive(Debug, Clone, Copy)]
@@ -61,8 +61,7 @@ impl TruncatedModel<'_> {
         };
         let is_slack = network.lengths.iter().all(|spring| slack(spring.rest, length(spring)))
             && network.others.iter().all(|spring| {
-                let mut own = vec![0.0; spring.points.len() * d];
-                gather(points, d, &spring.points, &mut own);
+                let own = gathered(points, d, &spring.points);
                 slack(spring.rest, spring.measure.value(&own, d))
             });
         if !is_slack {

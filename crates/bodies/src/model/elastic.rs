@@ -9,7 +9,7 @@ use super::system;
 use super::{Entries, Response};
 use crate::material::{Energy, EnergyMap, State};
 use crate::mesh::{CellIndex, Mesh};
-use crate::stiffness::{Geometry, gather};
+use crate::stiffness::{Geometry, gathered};
 use faer::sparse::Triplet;
 
 /// A model that resists deformation.
@@ -113,9 +113,7 @@ impl<'a> Body<'a> {
 }
 
 fn places(mesh: &Mesh, x: &[f64], nodes: &[usize]) -> Vec<f64> {
-    let mut local = vec![0.0; nodes.len() * mesh.dimension];
-    gather(x, mesh.dimension, nodes, &mut local);
-    local
+    gathered(x, mesh.dimension, nodes)
 }
 
 /// The number of cells with a quadrature point at which `det F ≤ 0`, with the points at x, `[points · dimension]`, m. Membranes and rods

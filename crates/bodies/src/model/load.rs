@@ -12,7 +12,7 @@ use crate::material::CellMap;
 use crate::mesh::{Carrier, CellIndex, Mesh, Selection, SideIndex};
 use crate::range;
 use crate::springs::{dot, norm, unit};
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 use std::cell::RefCell;
 
 /// What acts on a selected part of the mesh, with one entry per direction.
@@ -299,12 +299,7 @@ pub type Traction<'a> = dyn Fn(&[f64], &[f64]) -> Vec<f64> + 'a;
 
 /// The nodal forces `f_a = ∫ N_a t(x, n) dA` over the sides on the boundary, `[points · dimension]`, N; on flat sides
 /// exact for tractions of degree 2 in the position.
-pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: impl Into<CellMap<f64>>) -> Vec<f64> {
-    forces_of_traction(mesh, traction, &thickness.into())
-}
-
-/// [`boundary_forces`], without parameters of type: compiled here, where code is optimised, and not with each caller.
-fn forces_of_traction(mesh: &Mesh, traction: &Traction, thickness: &CellMap<f64>) -> Vec<f64> {
+pub fn boundary_forces(mesh: &Mesh, traction: &Traction, thickness: &CellMap<f64>) -> Vec<f64> {
     let sides = Selection::Everything.sides(mesh).expect("everything is no group that may be missing");
     side_forces(mesh, &sides, Integrand::Load(2), traction, thickness)
 }
@@ -352,8 +347,7 @@ fn side_points(mesh: &Mesh, index: &SideIndex) -> (Vec<usize>, Vec<f64>, Vec<f64
     let n = block.element.nodes();
     let cell = &block.connectivity[index.cell.cell * n..(index.cell.cell + 1) * n];
     let nodes: Vec<usize> = side_of(mesh, index).nodes.iter().map(|&a| cell[a]).collect();
-    let mut x = vec![0.0; nodes.len() * d];
-    gather(&mesh.points, d, &nodes, &mut x);
+    let x = gathered(&mesh.points, d, &nodes);
     let centre = (0..d).map(|k| cell.iter().map(|&p| mesh.point(p)[k]).sum::<f64>() / n as f64).collect();
     (nodes, x, centre)
 }

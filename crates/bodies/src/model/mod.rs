@@ -81,7 +81,7 @@ pub use prepared::{Precision, PreparedNetwork};
 pub use pressed::PressedFaces;
 pub use pressure::smoothed_pressure;
 pub use recovery::lacking_energy;
-pub use relaxation::{PatchSpring, relaxed_stiffness};
+pub use relaxation::{PatchSpring, relaxed_stiffness, stiffness_product};
 pub use rows::{RowForces, Rows};
 pub use sensitivity::NetworkNumbers;
 pub use shares::{LengthShare, SharedSpring, is_exact, length_shares};

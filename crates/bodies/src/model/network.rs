@@ -6,7 +6,7 @@ use super::steady::steady_law;
 use crate::element::SpringKind;
 use crate::error::{Error, ErrorKind, Result};
 use crate::springs::{Law, Measure, Turns, distance, linear};
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 use faer::sparse::Triplet;
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -164,8 +164,7 @@ impl MeasureSpring {
 
     /// `k g gᵀ + T H` at the points as they are, `[points · d × points · d]`: the slope, the gradient, the force, the second derivatives.
     pub fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
-        let mut x = vec![0.0; self.points.len() * d];
-        gather(points, d, &self.points, &mut x);
+        let x = gathered(points, d, &self.points);
         let gradient = self.measure.gradient(&x, d);
         let [_, pull, slope] = self.pull(self.measure.value(&x, d));
         // Springs that do not pull at rest need no second derivatives.

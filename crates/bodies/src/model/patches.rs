@@ -15,7 +15,7 @@ use crate::fit::{ExactEnergy, ExactFit};
 use crate::material::{CellMap, Material, MaterialMap, Moduli, State};
 use crate::mesh::Mesh;
 use crate::springs::{Content, Law, Measure, Patch};
-use crate::stiffness::gather;
+use crate::stiffness::{gather, gathered};
 use std::sync::Arc;
 
 /// `T = λ ln J/(J V₀/b)`, from the energy `λ/2 ln² J`.
@@ -75,8 +75,7 @@ fn springs_of_patches(mesh: &Mesh, material: MaterialMap, fit: &ExactFit, held: 
         let place = |node: &usize| points.binary_search(node).expect("the points of the patch are those of its cells");
         let cells = parts.iter().map(|part| (part.nodes.iter().map(place).collect(), part.share)).collect();
         let measure = Measure::Patch(Arc::new(Patch { element: element.clone(), cells }));
-        let mut x = vec![0.0; points.len() * d];
-        gather(&mesh.points, d, &points, &mut x);
+        let x = gathered(&mesh.points, d, &points);
         let rest = measure.value(&x, d);
         let lambda = mean_lambda(mesh, element, moduli, parts);
         MeasureSpring {

@@ -6,7 +6,7 @@ use super::network::{MeasureSpring, Network};
 use crate::material::{Material, MaterialMap, State};
 use crate::mesh::{CellBlock, Mesh};
 use crate::springs::{Content, Measure, Patch};
-use crate::stiffness::gather;
+use crate::stiffness::{gather, gathered};
 use std::collections::{BTreeMap, HashMap};
 
 /// The mean pressure `−(σ₁ + σ₂ + σ₃)/3` under the displacements u, `[points]`, Pa; `None` for networks without
@@ -18,16 +18,11 @@ use std::collections::{BTreeMap, HashMap};
 pub fn smoothed_pressure(
     mesh: &Mesh,
     network: &Network,
-    material: impl Into<MaterialMap>,
+    material: &MaterialMap,
     u: &[f64],
     linear: bool,
 ) -> Option<Vec<f64>> {
-    smoothed(mesh, network, material.into(), u, linear)
-}
-
-/// [`smoothed_pressure`], without parameters of type: compiled here, where code is optimised, and not with each caller.
-fn smoothed(mesh: &Mesh, network: &Network, material: MaterialMap, u: &[f64], linear: bool) -> Option<Vec<f64>> {
-    let bulk = Bulk::of(mesh, &material)?;
+    let bulk = Bulk::of(mesh, material)?;
     // Patches know their cells by their nodes. Sorted, so that sums have the same bits in each run.
     let mut cells: BTreeMap<Vec<usize>, [f64; 2]> = BTreeMap::new();
     for spring in &network.others {
@@ -105,11 +100,7 @@ fn bulk_modulus(material: Material) -> f64 {
 /// `J − 1` of the patch.
 fn dilatation(mesh: &Mesh, spring: &MeasureSpring, u: &[f64], linear: bool) -> f64 {
     let d = mesh.dimension;
-    let local = |values: &[f64]| {
-        let mut local = vec![0.0; spring.points.len() * d];
-        gather(values, d, &spring.points, &mut local);
-        local
-    };
+    let local = |values: &[f64]| gathered(values, d, &spring.points);
     let (x, u) = (local(&mesh.points), local(u));
     if linear {
         let gradient = spring.measure.gradient(&x, d);

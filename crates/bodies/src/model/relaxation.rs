@@ -33,11 +33,11 @@ pub fn relaxed_stiffness(
     frame: &DMatrix<f64>,
 ) -> DMatrix<f64> {
     let (space, cases) = (frame.nrows(), strained.ncols());
-    let mut forces = product(entries, strained);
+    let mut forces = stiffness_product(entries, strained);
     // Most networks have one stiffness: its product is needed once then.
     let mut affine = match std::ptr::eq(entries, own) {
         true => strained.tr_mul(&forces),
-        false => strained.tr_mul(&product(own, strained)),
+        false => strained.tr_mul(&stiffness_product(own, strained)),
     };
     let mut place = vec![usize::MAX; strained.nrows() / space];
     interior.iter().enumerate().for_each(|(i, &point)| place[point] = i);
@@ -107,8 +107,8 @@ fn solve(inner: DMatrix<f64>, force: &DMatrix<f64>) -> DMatrix<f64> {
     &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.tr_mul(force)
 }
 
-/// `K U`.
-fn product(entries: &Entries, u: &DMatrix<f64>) -> DMatrix<f64> {
+/// `K U`, where the entries are those of the lower triangle of K, for the columns of U.
+pub fn stiffness_product(entries: &Entries, u: &DMatrix<f64>) -> DMatrix<f64> {
     let mut y = DMatrix::zeros(u.nrows(), u.ncols());
     for entry in entries {
         for case in 0..u.ncols() {

@@ -7,8 +7,8 @@
 use super::network::{LengthSpring, MeasureSpring, Network, SpringLaw};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
-use crate::springs::{LawJet, Measure};
-use crate::stiffness::gather;
+use crate::springs::{LawJet, Measure, dot};
+use crate::stiffness::{gather, gathered};
 
 /// One number for each number of a network.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,10 +62,6 @@ impl Edge {
             to[i * d + k] -= force;
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// `M v` of a square matrix.
@@ -252,9 +248,7 @@ impl Network {
 
 /// The part of a vector of all points at those of a spring.
 fn here(spring: &MeasureSpring, all: &[f64], d: usize) -> Vec<f64> {
-    let mut own = vec![0.0; spring.points.len() * d];
-    gather(all, d, &spring.points, &mut own);
-    own
+    gathered(all, d, &spring.points)
 }
 
 fn add(spring: &MeasureSpring, force: impl Iterator<Item = f64>, to: &mut [f64], d: usize) {

@@ -13,7 +13,7 @@ mod sound;
 pub use fault::Fault;
 pub use hyperelastic::{EnergyFunction, Hyperelastic, StressFunction};
 pub use large::ElementResponse;
-pub use placement::{Placement, gather};
+pub use placement::{Placement, gather, gathered};
 
 use crate::element::Tabulation;
 use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};

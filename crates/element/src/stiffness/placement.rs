@@ -95,6 +95,13 @@ pub fn gather(points: &[f64], dimension: usize, nodes: &[usize], x: &mut [f64]) 
     of_dimension!(dimension, |D| gather_in::<D>(points, nodes, x))
 }
 
+/// The coordinates of `nodes`, `[nodes × dimension]`.
+pub fn gathered(points: &[f64], dimension: usize, nodes: &[usize]) -> Vec<f64> {
+    let mut x = vec![0.0; nodes.len() * dimension];
+    gather(points, dimension, nodes, &mut x);
+    x
+}
+
 fn gather_in<const D: usize>(points: &[f64], nodes: &[usize], x: &mut [f64]) {
     let points = points.as_chunks::<D>().0;
     x.as_chunks_mut::<D>().0.iter_mut().zip(nodes).for_each(|(x, &node)| *x = points[node]);

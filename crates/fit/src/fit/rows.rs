@@ -3,6 +3,7 @@
 //! The closed forms of [`least_squares`](super::least_squares) take springs on lengths and on the content of the cell. Rows are for what they leave: springs on functions,
 //! as formulas and in numbers of more digits. Theory: page *Least squares* of the book.
 
+use super::dense::inner;
 use super::edge_cell::scales;
 use super::linear_motions::{LinearMotions, from_mean};
 use super::normal::Normal;
@@ -155,8 +156,4 @@ impl<T: Scalar> Rows<T> {
         }
         images
     }
-}
-
-fn inner<T: Scalar>(a: &[T], b: &[T]) -> T {
-    a.iter().zip(b).fold(a[0].zero(), |sum, (a, b)| sum.plus_product(a, b))
 }

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
 use crate::model::{MeasureSpring, Network};
 use crate::springs::Measure;
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 
 /// The largest relative difference between the force of a law at rest and minus its first parameter.
 const ROUNDING: f64 = 1e-12;
@@ -64,8 +64,7 @@ impl Contents {
         let energy = |(place, rest): (&usize, &f64)| {
             let spring = &network.others[*place];
             let jet = spring.measure.jet(&positions(mesh, spring), mesh.dimension);
-            let mut local = vec![0.0; jet.gradient.len()];
-            gather(u, mesh.dimension, &spring.points, &mut local);
+            let local = gathered(u, mesh.dimension, &spring.points);
             let along: f64 = jet.gradient.iter().zip(&local).map(|(g, u)| g * u).sum();
             let rows = jet.hessian.chunks_exact(local.len()).zip(&local);
             let bend: f64 = rows.map(|(row, u)| u * row.iter().zip(&local).map(|(h, u)| h * u).sum::<f64>()).sum();
@@ -96,7 +95,5 @@ pub(super) fn tightened(spring: &MeasureSpring, c: f64, more: f64) -> Option<Mea
 
 /// The positions of the points of the spring, `[points × dimension]`.
 pub(super) fn positions(mesh: &Mesh, spring: &MeasureSpring) -> Vec<f64> {
-    let mut x = vec![0.0; spring.points.len() * mesh.dimension];
-    gather(&mesh.points, mesh.dimension, &spring.points, &mut x);
-    x
+    gathered(&mesh.points, mesh.dimension, &spring.points)
 }

@@ -9,7 +9,7 @@ use crate::material::{CellMap, Material, MaterialMap};
 use crate::mesh::{CellIndex, Mesh};
 use crate::model::{EdgeDomain, MeasureSpring, Network, domain_parts, edge_domains, network_of, patch_springs};
 use crate::springs::Law;
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -185,8 +185,7 @@ impl Carriers {
             Carriers::Domains(domains, parts, law) => {
                 let of_part = |(index, part): (usize, &DomainPart)| {
                     let own = &domains[part.domain];
-                    let mut points = vec![0.0; own.nodes.len() * mesh.dimension];
-                    gather(&mesh.points, mesh.dimension, &own.nodes, &mut points);
+                    let points = gathered(&mesh.points, mesh.dimension, &own.nodes);
                     let alone = EdgeDomain { nodes: (0..own.nodes.len()).collect(), ..own.clone() };
                     let springs = network_of(mesh.dimension, std::iter::once((&alone, &part.springs)), law.as_ref());
                     let tangent = dense(&springs, &points);

@@ -3,7 +3,7 @@
 use super::response::{Response, respond};
 use crate::analysis::tensor::basis;
 use crate::error::Result;
-use crate::model::{Elastic, Entries, Specimen, Support};
+use crate::model::{Elastic, Entries, Specimen, Support, stiffness_product};
 use faer::sparse::Triplet;
 use nalgebra::DMatrix;
 
@@ -16,26 +16,12 @@ fn strained(points: &[f64], d: usize) -> DMatrix<f64> {
     })
 }
 
-/// `K U`.
-fn product(entries: &Entries, u: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut y = DMatrix::zeros(u.nrows(), u.ncols());
-    for e in entries {
-        for case in 0..u.ncols() {
-            y[(e.row, case)] += e.val * u[(e.col, case)];
-            if e.row != e.col {
-                y[(e.col, case)] += e.val * u[(e.row, case)];
-            }
-        }
-    }
-    y
-}
-
 /// C where all points follow the strain: `Uᵀ K U/V`, Kelvin's notation, Pa. It bounds the stiffness from above (Voigt).
 pub fn affine(specimen: &Specimen, volume: f64) -> DMatrix<f64> {
     let d = specimen.network.dimension;
     let u = strained(&specimen.points, d);
     let k = specimen.network.stiffness(&specimen.points);
-    u.tr_mul(&product(&k, &u)) / volume
+    u.tr_mul(&stiffness_product(&k, &u)) / volume
 }
 
 /// C where the points of the boundary follow the strain and the others find their equilibrium, Pa; and whether these are stable.
@@ -73,7 +59,7 @@ pub fn period_tensor(
     volume: f64,
 ) -> Result<(DMatrix<f64>, bool)> {
     let u = strained(points, d);
-    let forces = product(k, &u);
+    let forces = stiffness_product(k, &u);
     let affine = u.tr_mul(&forces);
     let own = |dof: usize| owner(dof / d) * d + dof % d;
     let mut folded = DMatrix::zeros(count * d, u.ncols());
@@ -122,7 +108,7 @@ fn relaxed(
     u: &DMatrix<f64>,
     volume: f64,
 ) -> Result<(DMatrix<f64>, bool)> {
-    let forces = product(k, u);
+    let forces = stiffness_product(k, u);
     let affine = u.tr_mul(&forces);
     let Response { displacements, is_stable } = respond(k, support, at, &forces, forces.norm())?;
     Ok(((affine - forces.tr_mul(&displacements)) / volume, is_stable))

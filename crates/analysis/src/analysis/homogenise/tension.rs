@@ -4,7 +4,7 @@ use super::body::forces;
 use crate::analysis::tensor::basis;
 use crate::model::{Network, Specimen, is_balanced};
 use crate::springs::distance;
-use crate::stiffness::gather;
+use crate::stiffness::gathered;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -83,8 +83,7 @@ fn each_pull(network: &Network, points: &[f64], mut visit: impl FnMut(&[usize], 
         visit(&spring.points, spring.pull(length)[1], spring.constant, length, &gradient);
     }
     for spring in &network.others {
-        let mut x = vec![0.0; spring.points.len() * d];
-        gather(points, d, &spring.points, &mut x);
+        let x = gathered(points, d, &spring.points);
         let c = spring.measure.value(&x, d);
         visit(&spring.points, spring.tension(c), spring.constant, c, &spring.measure.gradient(&x, d));
     }

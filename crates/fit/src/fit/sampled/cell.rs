@@ -11,7 +11,7 @@ use crate::fit::dense::inner;
 use crate::fit::normal::Normal;
 use crate::material::State;
 use crate::springs::{Force, Law, Measure, Springs, distance};
-use crate::stiffness::{Geometry, Hyperelastic};
+use crate::stiffness::{Geometry, Hyperelastic, gathered};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
@@ -393,8 +393,4 @@ fn coordinates(rest: &[f64], d: usize) -> Vec<f64> {
     let x = DMatrix::from_fn(nodes, d, |a, k| rest[a * d + k]);
     let centred = DMatrix::from_fn(nodes, d, |a, k| x[(a, k)] - x.column(k).mean());
     centred.qr().q().as_slice().to_vec()
-}
-
-fn gathered(x: &[f64], d: usize, nodes: &[usize]) -> Vec<f64> {
-    nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).copied().collect()
 }

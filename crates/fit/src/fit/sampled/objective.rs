@@ -5,6 +5,7 @@
 use super::quasi_newton::{Found, Quadratic, minimize};
 use crate::error::{Error, ErrorKind, Result};
 use crate::random::unit_at;
+use crate::springs::dot;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -127,8 +128,4 @@ impl ResidualObjective {
         }
         Ok(())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

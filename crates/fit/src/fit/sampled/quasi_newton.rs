@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::fit::constrained::solve_nonnegative;
 use crate::fit::normal::{Normal, Rank};
 use crate::random::unit_at;
+use crate::springs::dot;
 use springfit_numerics::newton::falls_enough;
 
 /// The largest number of steps. A search that is not there then is reported as one that has not ended.
@@ -169,8 +170,4 @@ fn update(curvature: &mut [f64], moved: &[f64], change: &mut [f64]) {
 
 fn product(matrix: &[f64], x: &[f64]) -> Vec<f64> {
     matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
