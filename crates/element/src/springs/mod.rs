@@ -16,6 +16,7 @@ mod rational;
 mod squares;
 mod turns;
 mod vector;
+mod weighted;
 
 pub use content::Content;
 pub use law::AskedResponse;
@@ -25,6 +26,7 @@ pub use patch::Patch;
 pub use squares::Squares;
 pub use turns::{BEND_POINTS, HINGE_POINTS, Turns, turn_points};
 pub use vector::{cross, distance, dot, norm, unit};
+pub use weighted::Weighted;
 
 use self::areas::area_tables;
 use crate::element::{Element, SpringKind, Tabulation};

@@ -2,9 +2,9 @@
 //!
 //! Theory: page *Sheets that bend* of the book.
 
+use super::weighted::Weighted;
 use crate::scalar::{Dual, Real};
 use crate::symbolic::Jet;
-use smallvec::SmallVec;
 
 /// A vector in space.
 type Vector<T> = [T; 3];
@@ -22,48 +22,19 @@ pub fn turn_points(corner: usize) -> [usize; 4] {
 
 /// `c = Σ_i w_i a_i`: a weighted sum of turns of triangles about their edges, in m or rad. The turn a_i is the angle from the conormal of the triangle, which
 /// points out of it at the edge, to the direction from this edge to a point. It is positive towards the normal.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Turns(SmallVec<[Turn; 3]>);
-
-/// One of the turns, and its weight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Turn {
-    /// The corner of the triangle opposite to the edge, the ends of this edge as the triangle runs through it, and the point, as places in the points of
-    /// the spring.
-    places: [u8; 4],
-    weight: f64,
-}
+///
+/// The places of a turn are the corner of the triangle opposite to the edge, the ends of this edge as the triangle runs through it, and the point.
+pub type Turns = Weighted<4>;
 
 impl Turns {
     /// The turns of a triangle from the directors of its edges, with these weights, in the order of [`turn_points`].
     pub fn of_triangle(weights: [f64; 3]) -> Turns {
-        let turn = |(corner, weight)| Turn { places: turn_points(corner).map(|place| place as u8), weight };
-        Turns(weights.into_iter().enumerate().map(turn).collect())
+        Weighted::of(weights.into_iter().enumerate().map(|(corner, weight)| (turn_points(corner), weight)))
     }
 
     /// The one turn of [`HINGE_POINTS`] points: from the plane of the triangle to the last point, rad.
     pub fn of_hinge() -> Turns {
-        Turns(SmallVec::from_slice(&[Turn { places: [0, 1, 2, 3], weight: 1.0 }]))
-    }
-
-    /// Turns of these places and weights on `points` points; none if a place is not below their number, two places of a turn are equal, or there are no
-    /// turns.
-    pub fn new<'a>(turns: impl IntoIterator<Item = (&'a [usize], f64)>, points: usize) -> Option<Turns> {
-        let turn = |(places, weight): (&[usize], f64)| {
-            let places = <[usize; 4]>::try_from(places).ok()?;
-            // Two equal points leave an edge or a height of length zero, by which the gradient divides.
-            let is_apart = (0..4).all(|i| !places[..i].contains(&places[i]));
-            // A place is stored in a byte.
-            let is_in = places.iter().all(|&place| place < points.min(256));
-            (is_in && is_apart && weight.is_finite()).then(|| Turn { places: places.map(|place| place as u8), weight })
-        };
-        let turns: Option<SmallVec<[Turn; 3]>> = turns.into_iter().map(turn).collect();
-        turns.filter(|turns| !turns.is_empty()).map(Turns)
-    }
-
-    /// The places and the weight of each turn.
-    pub fn iter(&self) -> impl Iterator<Item = ([usize; 4], f64)> + '_ {
-        self.0.iter().map(|turn| (turn.places.map(usize::from), turn.weight))
+        Weighted::of([([0, 1, 2, 3], 1.0)])
     }
 
     pub(super) fn value(&self, x: &[f64]) -> f64 {
