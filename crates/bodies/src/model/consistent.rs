@@ -185,11 +185,6 @@ impl ConsistentMasses {
         self.point_count
     }
 
-    /// The number of rows of G.
-    pub fn row_count(&self) -> usize {
-        self.starts.len() - 1
-    }
-
     /// The points of each row of G and its numbers, kg^½.
     pub fn rows(&self) -> impl Iterator<Item = (&[usize], &[f64])> {
         self.starts.windows(2).map(|ends| (&self.points[ends[0]..ends[1]], &self.values[ends[0]..ends[1]]))

@@ -273,25 +273,6 @@ impl Material {
         };
         Moduli { lambda: t * lambda, mu: t * e / (2.0 * (1.0 + nu)) }
     }
-
-    /// `∂/∂E` of the moduli.
-    pub fn moduli_by_young(&self) -> Moduli {
-        // Both moduli are proportional to E.
-        let Moduli { lambda, mu } = self.moduli();
-        Moduli { lambda: lambda / self.young, mu: mu / self.young }
-    }
-
-    /// `∂/∂ν` of the moduli.
-    pub fn moduli_by_poisson(&self) -> Moduli {
-        let (nu, stretch) = (self.poisson, self.young * self.thickness());
-        let lambda = match self.state {
-            // The stiffness E A of a rod has no Poisson's ratio.
-            State::Rod { .. } => return Moduli { lambda: 0.0, mu: 0.0 },
-            State::PlaneStress { .. } => (1.0 + nu * nu) / ((1.0 + nu) * (1.0 - nu)).powi(2),
-            State::Solid | State::PlaneStrain { .. } => (1.0 + 2.0 * nu * nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)).powi(2),
-        };
-        Moduli { lambda: stretch * lambda, mu: -stretch / (2.0 * (1.0 + nu).powi(2)) }
-    }
 }
 
 fn body(dimension: usize) -> &'static str {

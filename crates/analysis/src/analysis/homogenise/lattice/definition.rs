@@ -230,12 +230,6 @@ impl NamedLattice {
             None => Ok(()),
         }
     }
-
-    /// The volume of the cell in m³, in the plane its area in m².
-    pub fn volume(&self, spacing: f64) -> f64 {
-        let d = self.dimension();
-        DMatrix::from_fn(d, d, |row, k| self.metres(self.cell[row][k], k, spacing)).determinant().abs()
-    }
 }
 
 /// Points of a piece at most.
