@@ -4,7 +4,7 @@
 
 use super::energy::Coefficients;
 use super::volume::Shares;
-use crate::element::Element;
+use crate::element::{Element, Tabulation};
 use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
 use crate::fit::sizes::of_size;
@@ -21,20 +21,26 @@ const ROUNDING: f64 = 1e-13;
 /// The cells of one block, and the memory for their numbers.
 pub struct ExactBatch<'a> {
     pub element: &'a Element,
-    pub springs: &'a Springs,
+    pub kernel: ExactKernel<'a>,
     /// The positions of all points, `[points × space]`, m.
     pub points: &'a [f64],
     /// The nodes of the cells, `[cells × nodes]`.
     pub connectivity: &'a [usize],
     /// Those of each cell.
     pub coefficients: BlockValues<'a, Coefficients>,
-    /// Whether the springs on content have a law.
-    pub has_law: bool,
-    pub shares: Shares,
     /// The constants, `[cells × springs]`.
     pub constants: &'a mut [f64],
     /// The parameters, `[cells × parameters]`: for each spring on content `k L₀`, or `a` and `b` of its law.
     pub parameters: &'a mut [f64],
+}
+
+/// The springs of a cell, and what those on content receive.
+#[derive(Clone, Copy)]
+pub struct ExactKernel<'a> {
+    pub springs: &'a Springs,
+    /// Whether the springs on content have a law.
+    pub has_law: bool,
+    pub shares: Shares,
 }
 
 impl ExactBatch<'_> {
@@ -51,7 +57,7 @@ impl PackedWork for ExactBatch<'_> {
     type Output = Result<(), (usize, Fault)>;
 
     fn run<T: Packed>(mut self, zero: T) -> Self::Output {
-        let (n, m) = (self.element.nodes(), self.springs.len());
+        let (n, m) = (self.element.nodes(), self.kernel.springs.len());
         let cells = self.connectivity.len() / n;
         // An empty block has no cells to divide by.
         let p = self.parameters.len() / cells.max(1);
@@ -77,7 +83,7 @@ impl PackedWork for ExactBatch<'_> {
                 (0..T::COUNT).for_each(|lane| coefficients.set_lane(lane, of_lane(lane)));
             }
             if packing.gather(nodes)
-                && self.solve(&coefficients, &packing.x, &mut geometry, constants, parameters, &mut own)
+                && self.kernel.solve(table, &coefficients, &packing.x, &mut geometry, constants, parameters, &mut own)
             {
                 for lane in 0..count {
                     let at = cell + lane;
@@ -85,7 +91,7 @@ impl PackedWork for ExactBatch<'_> {
                     stored.for_each(|(k, lanes)| *k = lanes.as_slice()[lane]);
                     let stored = self.parameters[at * p..][..p].iter_mut().zip(&*parameters);
                     stored.for_each(|(k, lanes)| *k = lanes.as_slice()[lane]);
-                    if !self.springs.areas().is_empty() {
+                    if !self.kernel.springs.areas().is_empty() {
                         self.areas(at, &packing.lane(lane), |q| geometry.volumes[q].as_slice()[lane]);
                     }
                 }
@@ -103,7 +109,7 @@ impl PackedWork for ExactBatch<'_> {
                     }
                     let (constants, parameters) = plain_numbers.split_at_mut(m);
                     let own = *self.coefficients.at(at);
-                    self.constants_of(&own, &plain, constants, parameters, &mut plain_own);
+                    self.kernel.constants_of(&own, &plain, constants, parameters, &mut plain_own);
                     self.constants[at * m..][..m].copy_from_slice(constants);
                     self.parameters[at * p..][..p].copy_from_slice(parameters);
                     self.areas(at, &x, |q| plain.volumes[q]);
@@ -143,11 +149,14 @@ impl ExactBatch<'_> {
             mode_count: geometry.mode_count,
         })
     }
+}
 
+impl ExactKernel<'_> {
     /// Fills in the geometry of the cells with nodes at `x`, and their constants and parameters without the springs on
     /// areas. `own` is memory for one number per node. False if a Jacobian is not safely positive.
-    pub fn solve<T: Real>(
+    pub(super) fn solve<T: Real>(
         &self,
+        table: &Tabulation,
         coefficients: &Coefficients<T>,
         x: &[T],
         geometry: &mut Geometry<T>,
@@ -155,14 +164,13 @@ impl ExactBatch<'_> {
         parameters: &mut [T],
         own: &mut [T],
     ) -> bool {
-        let table = &self.element.tabulation;
         of_size!(T, x[0], (table.dimension, table.nodes), |D, n| geometry.update_in::<D>(n, table, x) && {
             self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
             true
         })
     }
 
-    /// The constants and parameters of a cell with this geometry, as [`ExactBatch::solve`] computes them.
+    /// The constants and parameters of a cell with this geometry, as [`ExactKernel::solve`] computes them.
     fn constants_of<T: Real>(
         &self,
         coefficients: &Coefficients<T>,
@@ -254,10 +262,10 @@ impl ExactBatch<'_> {
     /// With `N = [n₁ n₂ n₃]` the cofactor matrix of the Jacobian J, `cof F = N J₀ᵀ/det J₀`, so that
     /// `|cof F|² = Σ_kl M_kl n_k·n_l` with `M = J₀ᵀ J₀/det² J₀`. This is a sum of squares of `|n_k|` and `|n_k + n_l|`.
     fn areas(&mut self, cell: usize, x: &[f64], volume: impl Fn(usize) -> f64) {
-        let (m, table) = (self.springs.len(), &self.element.tabulation);
+        let (m, table) = (self.kernel.springs.len(), &self.element.tabulation);
         let size = table.nodes * table.dimension;
-        let first = cell * m + self.springs.pairs().len();
-        let all = self.constants[first..first + self.springs.areas().len()].chunks_exact_mut(AREAS);
+        let first = cell * m + self.kernel.springs.pairs().len();
+        let all = self.constants[first..first + self.kernel.springs.areas().len()].chunks_exact_mut(AREAS);
         for (q, constants) in all.enumerate() {
             let j = Matrix3::from_fn(|k, l| {
                 let nodes = x.chunks_exact(3).zip(table.gradients[q * size..(q + 1) * size].chunks_exact(3));

@@ -37,8 +37,8 @@ use crate::springs::{Force, Springs};
 use crate::stiffness::Placement;
 use energy::{Coefficients, Form};
 use kernel::ExactBatch;
+pub(super) use kernel::ExactKernel;
 use rayon::prelude::*;
-pub(super) use small::ExactKernel;
 
 /// The choices of an exact network.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -144,19 +144,9 @@ fn fit_block<'a>(
         let found: Vec<Result<()>> = chunks
             .map(|(i, ((connectivity, constants), parameters))| {
                 let first = round * ROUND + i * CHUNK;
-                let (springs, coefficients) = (&springs, coefficients.part(first, connectivity.len() / n));
-                let has_law = form.law.is_some();
-                let batch = ExactBatch {
-                    element,
-                    springs,
-                    points,
-                    connectivity,
-                    coefficients,
-                    has_law,
-                    shares,
-                    constants,
-                    parameters,
-                };
+                let coefficients = coefficients.part(first, connectivity.len() / n);
+                let kernel = ExactKernel { springs: &springs, has_law: form.law.is_some(), shares };
+                let batch = ExactBatch { element, kernel, points, connectivity, coefficients, constants, parameters };
                 batch.run().map_err(|(cell, fault)| cell_fault(element, first + cell, fault))
             })
             .collect();

@@ -215,14 +215,8 @@ impl<'a> Batch<'a, '_> {
                 (GradientFit::Closed(_), None) => false,
                 (GradientFit::Exact(fit), _) => {
                     let kernel = ExactKernel::of(fit, springs);
-                    kernel.solve(
-                        element,
-                        springs,
-                        &seeds.x,
-                        &seeds.moduli,
-                        &mut geometry,
-                        [&mut constants, &mut rests, &mut own],
-                    )
+                    let room = [&mut constants[..], &mut rests, &mut own];
+                    kernel.solve_plain(table, &seeds.x, &seeds.moduli, &mut geometry, room)
                 }
             };
             let is_sound = is_found

@@ -47,7 +47,7 @@ pub fn add_exact<T: Real, const D: usize>(
     let volumes = &geometry.volumes;
     let volumetric = if geometry.volumetric.is_empty() { volumes } else { &geometry.volumetric };
     let mut springs = weights[pairs..].iter().zip(rests);
-    for &q in kernel.points {
+    for &q in kernel.springs.points() {
         let Some((k, rest)) = springs.next() else { return };
         // The content of a point without a volume is that in the term λ (div u)².
         let is_zero = volumes[q].magnitude().choose(&volumes[q].zero(), &volumes[q].one());
