@@ -19,20 +19,18 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(super) struct Analysis(Arc<SymbolicCholesky<usize>>);
 
-/// The factor `L` of `L Lᵀ`.
+/// The factor of a symmetric matrix A: L of `A = L Lᵀ`, or, of a matrix that is not positive definite, L and B of `P A Pᵀ = L B Lᵀ`.
 #[derive(Debug, Clone)]
-pub struct Cholesky {
+pub struct SymmetricFactor {
     analysis: Analysis,
     values: Vec<f64>,
+    pivots: Option<Pivots>,
 }
 
-/// The factors `L` and `B` of `P A Pᵀ = L B Lᵀ` with blocks of one and two rows in B (Bunch & Kaufman, Math. Comp. 31, 1977), of a matrix that is not
-/// positive definite. Pivots are sought among columns that are eliminated together, so that the factor has the entries of a Cholesky factor; where
-/// none of them will do, it has few digits.
+/// Blocks of one and two rows in B (Bunch & Kaufman, Math. Comp. 31, 1977). Pivots are sought among columns that are eliminated together, so that the factor has the entries of a
+/// Cholesky factor; where none of them will do, it has few digits.
 #[derive(Debug, Clone)]
-pub struct Pivoted {
-    analysis: Analysis,
-    values: Vec<f64>,
+struct Pivots {
     subdiagonal: Vec<f64>,
     /// The order of the pivots, and its inverse.
     order: [Vec<usize>; 2],
@@ -104,7 +102,7 @@ impl Analysis {
     ///
     /// # Errors
     /// It does not fit into memory.
-    pub fn factorize(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Option<Cholesky>> {
+    pub fn factorize(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Option<SymmetricFactor>> {
         let what = "the factor of the stiffness";
         // Asked before the allocation, which may succeed on a system that promises more memory than it has.
         memory::require(what, self.bytes(), ADVICE)?;
@@ -119,18 +117,16 @@ impl Analysis {
         let (stack, none) = (MemStack::new(&mut room), Default::default());
         let done = self.0.factorize_numeric_llt(&mut values, matrix, Side::Lower, none, par, stack, Default::default());
         match done {
-            Ok(_) => Ok(Some(Cholesky { analysis: self.clone(), values })),
+            Ok(_) => Ok(Some(SymmetricFactor { analysis: self.clone(), values, pivots: None })),
             Err(LltError::NonPositivePivot { .. }) => Ok(None),
         }
     }
-}
 
-impl Analysis {
     /// The factors with pivots, whatever digits they have.
     ///
     /// # Errors
     /// They do not fit into memory.
-    pub fn pivoted(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<Pivoted> {
+    pub fn pivoted(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Result<SymmetricFactor> {
         let what = "the factor of the stiffness";
         let par = get_global_parallelism();
         let scratch = self.0.factorize_numeric_intranode_lblt_scratch::<f64>(par, Default::default());
@@ -160,11 +156,9 @@ impl Analysis {
             MemStack::new(&mut room),
             Default::default(),
         );
-        Ok(Pivoted { analysis: self.clone(), values, subdiagonal, order })
+        Ok(SymmetricFactor { analysis: self.clone(), values, pivots: Some(Pivots { subdiagonal, order }) })
     }
-}
 
-impl Analysis {
     /// How a factor solves for so many columns at once, and the memory that it needs besides.
     fn room(&self, columns: usize) -> (Par, MemBuffer) {
         let par = get_global_parallelism();
@@ -172,31 +166,25 @@ impl Analysis {
     }
 }
 
-impl Pivoted {
+impl SymmetricFactor {
     pub(super) fn rows(&self) -> usize {
         self.analysis.0.nrows()
+    }
+
+    pub(super) fn is_definite(&self) -> bool {
+        self.pivots.is_none()
     }
 
     pub(super) fn solve(&self, x: MatMut<'_, f64>) {
         let Analysis(symbolic) = &self.analysis;
         let (par, mut room) = self.analysis.room(x.ncols());
-        let [forward, inverse] = &self.order;
+        let room = MemStack::new(&mut room);
+        let Some(Pivots { subdiagonal, order: [forward, inverse] }) = &self.pivots else {
+            return LltRef::new(symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, par, room);
+        };
         let order = PermRef::new_checked(forward, inverse, forward.len());
-        let factor = IntranodeLbltRef::new(symbolic, &self.values, &self.subdiagonal, order);
-        factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
-    }
-}
-
-impl Cholesky {
-    pub(super) fn rows(&self) -> usize {
-        self.analysis.0.nrows()
-    }
-
-    pub(super) fn solve(&self, x: MatMut<'_, f64>) {
-        let Analysis(symbolic) = &self.analysis;
-        let (par, mut room) = self.analysis.room(x.ncols());
-        let factor = LltRef::new(symbolic, &self.values);
-        factor.solve_in_place_with_conj(Conj::No, x, par, MemStack::new(&mut room));
+        let factor = IntranodeLbltRef::new(symbolic, &self.values, subdiagonal, order);
+        factor.solve_in_place_with_conj(Conj::No, x, par, room);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Precision* of the book.
 
-use super::cholesky::{Analysis, Cholesky, Pivoted, out_of_memory};
+use super::cholesky::{Analysis, SymmetricFactor, out_of_memory};
 use super::ordering::Places;
 use super::positions::positions;
 use crate::error::{Error, Result};
@@ -64,10 +64,8 @@ struct Pattern {
 /// A factorisation of the matrix of a [`System`].
 #[derive(Debug, Clone)]
 pub enum Factor {
-    /// `L Lᵀ`: the matrix is positive definite.
-    Cholesky(Cholesky),
-    /// `L B Lᵀ` with pivoting in blocks of columns: the matrix is not positive definite.
-    Pivoted(Pivoted),
+    /// `L Lᵀ`: the matrix is positive definite; or `L B Lᵀ` with pivoting in blocks of columns: it is not.
+    Symmetric(SymmetricFactor),
     /// `L U` with pivoting: the matrix is not positive definite, and no pivots of the symmetric factor will do.
     General(Box<Lu<usize, f64>>),
 }
@@ -168,7 +166,7 @@ impl System {
     /// # Errors
     /// The factor does not fit into memory: kind `Limit`.
     pub fn general(&self) -> Result<Option<Factor>> {
-        let pivoted = Factor::Pivoted(self.analysis()?.pivoted(self.matrix.as_ref())?);
+        let pivoted = Factor::Symmetric(self.analysis()?.pivoted(self.matrix.as_ref())?);
         if self.is_accurate(&pivoted) {
             return Ok(Some(pivoted));
         }
@@ -199,7 +197,7 @@ impl System {
     /// # Errors
     /// The factor does not fit into memory.
     pub fn cholesky(&self) -> Result<Option<Factor>> {
-        Ok(self.analysis()?.factorize(self.matrix.as_ref())?.map(Factor::Cholesky))
+        Ok(self.analysis()?.factorize(self.matrix.as_ref())?.map(Factor::Symmetric))
     }
 
     fn analysis(&self) -> Result<&Analysis> {
@@ -337,16 +335,14 @@ impl Factor {
     /// `x ← K⁻¹ x` on the free degrees of freedom, for all vectors that are stored in x one after the other.
     pub fn solve(&self, x: &mut [f64]) {
         let rows = match self {
-            Factor::Cholesky(cholesky) => cholesky.rows(),
-            Factor::Pivoted(pivoted) => pivoted.rows(),
+            Factor::Symmetric(factor) => factor.rows(),
             Factor::General(lu) => lu.nrows(),
         };
         // A matrix without rows solves for nothing.
         let columns = x.len().checked_div(rows).unwrap_or(0);
         let x = MatMut::from_column_major_slice_mut(x, rows, columns);
         match self {
-            Factor::Cholesky(cholesky) => cholesky.solve(x),
-            Factor::Pivoted(pivoted) => pivoted.solve(x),
+            Factor::Symmetric(factor) => factor.solve(x),
             Factor::General(lu) => lu.solve_in_place(x),
         }
     }
@@ -354,15 +350,15 @@ impl Factor {
     /// Its name in reports.
     pub fn method(&self) -> &'static str {
         match self {
-            Factor::Cholesky(_) => "cholesky",
-            Factor::Pivoted(_) => "ldl",
+            Factor::Symmetric(factor) if factor.is_definite() => "cholesky",
+            Factor::Symmetric(_) => "ldl",
             Factor::General(_) => "lu",
         }
     }
 
     /// Whether the matrix is positive definite.
     pub fn is_positive_definite(&self) -> bool {
-        matches!(self, Factor::Cholesky(_))
+        matches!(self, Factor::Symmetric(factor) if factor.is_definite())
     }
 }
 
