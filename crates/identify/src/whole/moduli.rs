@@ -7,7 +7,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use super::carriers::{Carriers, Modulus, Part};
+use super::carriers::{Carriers, DomainPart, Modulus, Part};
 use super::regions::BodyRegions;
 use super::unknowns::Unknowns;
 use crate::error::{Error, ErrorKind, Result};
@@ -116,24 +116,25 @@ impl<'a> ModuliParts<'a> {
 
     fn shared(&self, sharing: ModuliSharing) -> (Unknowns, Vec<String>) {
         let groups = |cell: CellIndex| self.regions.names(cell);
-        let label = |part: &Part| match (sharing, self.cell(*part)) {
-            (ModuliSharing::Element, _) => (self.modulus(*part), &[][..], self.place(*part)),
+        let label = |owner: Option<(Modulus, CellIndex)>, place| match (sharing, owner) {
+            (ModuliSharing::Element, _) => (owner.map(|(modulus, _)| modulus), &[][..], place),
             (_, None) => (None, &[][..], [0; 2]),
-            (ModuliSharing::Body, Some(_)) => (self.modulus(*part), &[][..], [0; 2]),
+            (ModuliSharing::Body, Some((modulus, _))) => (Some(modulus), &[][..], [0; 2]),
             // One label for μ and λ, so that both have one factor and Poisson's ratio stays.
-            (ModuliSharing::RegionYoung, Some(cell)) => (Some(Modulus::Shear), groups(cell), [0; 2]),
-            (ModuliSharing::Region, Some(cell)) => (self.modulus(*part), groups(cell), [0; 2]),
+            (ModuliSharing::RegionYoung, Some((_, cell))) => (Some(Modulus::Shear), groups(cell), [0; 2]),
+            (ModuliSharing::Region, Some((modulus, cell))) => (Some(modulus), groups(cell), [0; 2]),
         };
         let (mut known, mut names) = (BTreeMap::new(), Vec::new());
         let own = self.parts.iter().map(|part| {
-            let (count, label) = (known.len(), label(part));
-            let modulus = match (sharing, self.modulus(*part)) {
+            let (owner, place) = self.owner(*part);
+            let (count, label) = (known.len(), label(owner, place));
+            let modulus = match (sharing, owner) {
                 (_, None) => "lambda",
                 (ModuliSharing::RegionYoung, Some(_)) => "E",
-                (_, Some(Modulus::Shear)) => "mu",
-                (_, Some(Modulus::Volume)) => "lambda",
+                (_, Some((Modulus::Shear, _))) => "mu",
+                (_, Some((Modulus::Volume, _))) => "lambda",
             };
-            let name = match (sharing, self.cell(*part)) {
+            let name = match (sharing, owner) {
                 (ModuliSharing::Element, _) => format!("{modulus} of {}", self.place_name(*part)),
                 (_, None) => "lambda of patches".into(),
                 (_, Some(_)) => in_region(modulus, label.1),
@@ -147,32 +148,16 @@ impl<'a> ModuliParts<'a> {
         (unknowns, names)
     }
 
-    /// The modulus of a part of cells; `None` for the patches, which carry λ.
-    fn modulus(&self, part: Part) -> Option<Modulus> {
+    /// The modulus of a part of cells, with a cell whose region is that of all of them; `None` for the patches, which carry λ and which all regions share. And what
+    /// tells a cell, a domain or a patch from the others.
+    fn owner(&self, part: Part) -> (Option<(Modulus, CellIndex)>, [usize; 2]) {
         match (part, &self.carriers) {
-            (Part::Cell(modulus, _), _) => Some(modulus),
-            (Part::Domain(index), Carriers::Domains(_, parts, _)) => Some(parts[index].modulus),
-            (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
-        }
-    }
-
-    /// A cell whose region is that of all cells of a part; `None` for the patches, which all regions share.
-    fn cell(&self, part: Part) -> Option<CellIndex> {
-        match (part, &self.carriers) {
-            (Part::Cell(_, cell), _) => Some(cell),
+            (Part::Cell(modulus, cell), _) => (Some((modulus, cell)), [cell.block, cell.cell]),
             (Part::Domain(index), Carriers::Domains(_, parts, _)) => {
-                Some(CellIndex { block: 0, cell: parts[index].cell })
+                let DomainPart { modulus, cell, domain, .. } = &parts[index];
+                (Some((*modulus, CellIndex { block: 0, cell: *cell })), [0, *domain])
             }
-            (Part::Domain(_), Carriers::Cells(_)) | (Part::Patch(_), _) => None,
-        }
-    }
-
-    /// What tells a cell, a domain or a patch from the others.
-    fn place(&self, part: Part) -> [usize; 2] {
-        match (part, &self.carriers) {
-            (Part::Cell(_, CellIndex { block, cell }), _) => [block, cell],
-            (Part::Domain(index), Carriers::Domains(_, parts, _)) => [0, parts[index].domain],
-            (Part::Domain(index), Carriers::Cells(_)) | (Part::Patch(index), _) => [0, index],
+            (Part::Domain(index), Carriers::Cells(_)) | (Part::Patch(index), _) => (None, [0, index]),
         }
     }
 
@@ -184,7 +169,7 @@ impl<'a> ModuliParts<'a> {
                 format!("edge {}-{}", a, b)
             }
             (Part::Patch(index), _) => format!("patch {}", index + 1),
-            (Part::Cell(..) | Part::Domain(_), _) => format!("cell {}", self.place(part)[1] + 1),
+            (Part::Cell(..) | Part::Domain(_), _) => format!("cell {}", self.owner(part).1[1] + 1),
         }
     }
 
@@ -192,7 +177,7 @@ impl<'a> ModuliParts<'a> {
     pub(super) fn region_factors(&self, factors: &[f64]) -> BTreeMap<Vec<String>, [f64; 2]> {
         let mut found = BTreeMap::new();
         for ((part, own), factor) in self.parts.iter().zip(&self.factors).zip(factors) {
-            let (Some(cell), Some(modulus)) = (self.cell(*part), self.modulus(*part)) else { continue };
+            let (Some((modulus, cell)), _) = self.owner(*part) else { continue };
             let region = self.regions.names(cell).to_vec();
             let place = match modulus {
                 Modulus::Shear => 0,
