@@ -103,24 +103,33 @@ pub enum Symmetry {
 impl SpringKind {
     /// The properties of the kind.
     pub fn properties(self) -> Kind {
+        // What a kind has unless its row says otherwise.
+        let other = Kind {
+            nodes: 1..=MOST_NODES,
+            least_dimension: 1,
+            content: None,
+            symmetry: Symmetry::Ordered,
+            in_element_files: false,
+            unit: "J per square of the unit of the measure",
+            formula: None,
+        };
         match self {
             SpringKind::Length => Kind {
                 nodes: 2..=2,
-                least_dimension: 1,
-                content: None,
                 symmetry: Symmetry::Any,
                 in_element_files: true,
                 unit: "N/m",
                 formula: Some(|formula| formula.distance(0, 1)),
+                ..other
             },
             SpringKind::Angle => Kind {
                 nodes: 3..=3,
                 least_dimension: 2,
-                content: None,
                 symmetry: Symmetry::Ends,
                 in_element_files: true,
                 unit: "N*m",
                 formula: Some(Formula::angle),
+                ..other
             },
             SpringKind::Area => Kind {
                 nodes: 3..=MOST_NODES,
@@ -142,58 +151,17 @@ impl SpringKind {
             },
             SpringKind::Coupling => Kind {
                 nodes: 4..=4,
-                least_dimension: 1,
-                content: None,
                 symmetry: Symmetry::Pairs,
                 in_element_files: true,
                 unit: "N/m",
                 formula: Some(|formula| format!("{} + {}", formula.distance(0, 1), formula.distance(2, 3))),
+                ..other
             },
-            SpringKind::Measure => Kind {
-                nodes: 1..=MOST_NODES,
-                least_dimension: 1,
-                content: None,
-                symmetry: Symmetry::Ordered,
-                in_element_files: true,
-                unit: "J per square of the unit of the measure",
-                formula: None,
-            },
-            SpringKind::Bend => Kind {
-                nodes: 6..=6,
-                least_dimension: 3,
-                content: None,
-                symmetry: Symmetry::Ordered,
-                in_element_files: false,
-                unit: "N/m",
-                formula: None,
-            },
-            SpringKind::Hinge => Kind {
-                nodes: 4..=4,
-                least_dimension: 3,
-                content: None,
-                symmetry: Symmetry::Ordered,
-                in_element_files: false,
-                unit: "N*m",
-                formula: None,
-            },
-            SpringKind::Strain => Kind {
-                nodes: 3..=4,
-                least_dimension: 2,
-                content: None,
-                symmetry: Symmetry::Ordered,
-                in_element_files: false,
-                unit: "N*m",
-                formula: None,
-            },
-            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => Kind {
-                nodes: 1..=MOST_NODES,
-                least_dimension: 1,
-                content: None,
-                symmetry: Symmetry::Ordered,
-                in_element_files: false,
-                unit: "J per square of the unit of the measure",
-                formula: None,
-            },
+            SpringKind::Measure => Kind { in_element_files: true, ..other },
+            SpringKind::Bend => Kind { nodes: 6..=6, least_dimension: 3, unit: "N/m", ..other },
+            SpringKind::Hinge => Kind { nodes: 4..=4, least_dimension: 3, unit: "N*m", ..other },
+            SpringKind::Strain => Kind { nodes: 3..=4, least_dimension: 2, unit: "N*m", ..other },
+            SpringKind::PointContent | SpringKind::PointArea | SpringKind::Patch | SpringKind::Fibre => other,
         }
     }
 }
