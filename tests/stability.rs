@@ -59,7 +59,7 @@ fn no_case_of_an_element_with_springs_on_angles_is_lost() {
 fn no_case_of_a_large_element_with_springs_on_angles_is_lost() {
     let others = elements().into_iter().filter(|element| element.dimension() > 1 && element.nodes() <= 15);
     let others: Vec<String> = others.map(|e| e.name).filter(|name| !WITH_ANGLES.contains(&&**name)).collect();
-    assert_eq!(others.len(), 8);
+    assert_eq!(others.len(), 10);
     others.iter().for_each(|name| expect_none_lost(name));
 }
 
@@ -73,7 +73,7 @@ fn no_case_of_the_largest_elements_with_springs_on_angles_is_lost() {
 }
 
 /// Elements whose sweep takes some seconds.
-const WITH_ANGLES: [&str; 7] = ["tri3", "quad4", "pentagon5", "tri6", "tet4", "pyramid5", "wedge6"];
+const WITH_ANGLES: [&str; 5] = ["tri3", "quad4", "pentagon5", "tri6", "tet4"];
 
 fn expect_none_lost(name: &str) {
     let rows = stability(Some(with_angles(name)), &mut |_| {}).unwrap().rows;

@@ -34,8 +34,9 @@ fn every_command_that_prints_tables_typesets_them() {
         (&["paper", "--only", "figure 9"], 1),
     ];
     for (arguments, tables) in commands {
-        // A comparison of a scene measures times for seconds; all tables have one writer of each language.
-        let languages = if arguments.ends_with(&["compare", &scene]) { &["latex"][..] } else { &["markdown", "latex"] };
+        // Studies take seconds; all tables have one writer of each language.
+        let is_long = ["compare", "stability", "paper"].contains(&arguments[0]);
+        let languages = if is_long { &["latex"][..] } else { &["markdown", "latex"] };
         for language in languages.iter().copied() {
             let out = format!("{}-{language}", arguments[0]);
             let more: &[&str] = match arguments[0] {

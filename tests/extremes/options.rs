@@ -1,5 +1,6 @@
 //! The numbers of the command line.
 
+use super::verdict::not_finite;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -133,12 +134,15 @@ fn every_number_of_every_run_may_be_extreme() {
 /// Gives every extreme to each option in the first run that takes it. Each further run gives it every `share`-th extreme, from another start.
 fn try_numbers(share: usize) {
     let (mut numeric, mut taken, mut wrong, mut cases) = (BTreeSet::new(), BTreeSet::new(), Vec::new(), 0);
-    let (mut commands, mut runs) = (BTreeSet::new(), BTreeMap::<String, usize>::new());
+    let mut runs = BTreeMap::<String, usize>::new();
+    // Whether an option takes a number is asked of one run of each command: they have the same parser.
+    let mut commands = BTreeMap::<&str, Vec<String>>::new();
     for run in RUNS {
-        commands.insert(run[0]);
+        let ask = || options(run[0]).into_iter().filter(|option| is_numeric(run, option)).collect();
+        let of_command = commands.entry(run[0]).or_insert_with(ask).clone();
         let arguments: Vec<String> = run.iter().map(|argument| argument.to_string()).collect();
         assert_eq!(springfit(&arguments).0.status.code(), Some(0), "{run:?}");
-        for option in options(run[0]).into_iter().filter(|option| is_numeric(run, option)) {
+        for option in of_command {
             let name = format!("{} {option}", run[0]);
             numeric.insert(name.clone());
             if !["0.5", "2", "1e-9", "90"].iter().any(|value| springfit(&with(run, &option, value)).0.status.success())
@@ -170,7 +174,7 @@ fn try_numbers(share: usize) {
             said.contains("invalid value") && !said.contains("possible values")
         };
         // The referee needs a simulator: the range of its Poisson's ratio is tested with it.
-        let is_run = commands.contains(command) || command == "referee";
+        let is_run = commands.contains_key(command) || command == "referee";
         let unseen = !is_run && options(command).iter().any(is_number);
         assert!(!unseen, "{command} has numeric options and no run");
     }
@@ -187,9 +191,10 @@ fn verdict(output: &Output, folder: &Path, option: &str) -> Result<(), String> {
         Some(0) => {
             let mut texts = vec![String::from_utf8_lossy(&output.stdout).into_owned()];
             texts.extend(written(folder));
-            let is_word = |c: char| !(c.is_alphanumeric() || "+-.".contains(c));
-            let odd = |text: &&String| text.split(is_word).any(|w| ["inf", "NaN", "nan", "-inf"].contains(&w));
-            texts.iter().find(odd).map_or(Ok(()), |text| Err(format!("not finite: {text}")))
+            match texts.iter().find_map(|text| not_finite(text)) {
+                Some(word) => Err(format!("not finite: {word} in {texts:?}")),
+                None => Ok(()),
+            }
         }
         Some(2) => {
             let first = said.lines().next().unwrap_or_default();

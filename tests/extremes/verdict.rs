@@ -51,6 +51,17 @@ pub fn of_scene(text: &str, path: &Path) -> Result<Verdict, String> {
     })?
 }
 
+/// The first word of a text that is an infinity or not a number.
+pub fn not_finite(text: &str) -> Option<&str> {
+    const WORDS: [&str; 3] = ["inf", "NaN", "nan"];
+    // Most texts have none of these letters, and are not read word by word.
+    if !WORDS.iter().any(|word| text.contains(word)) {
+        return None;
+    }
+    let words = text.split(|c: char| !(c.is_alphanumeric() || "+-.".contains(c)));
+    words.map(|word| word.trim_start_matches(['-', '+'])).find(|word| WORDS.contains(word))
+}
+
 /// # Errors
 /// A figure is not finite or wrong.
 pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
@@ -63,9 +74,7 @@ pub fn of_outcome(outcome: &Outcome) -> Result<Verdict, String> {
     let models = || outcome.motion.iter().flat_map(|motion| &motion.models);
     texts.extend(models().map(report::motion_csv));
     for text in &texts {
-        let words = text.split(|c: char| !(c.is_alphanumeric() || "+-.".contains(c)));
-        if let Some(word) = words.map(|w| w.trim_start_matches(['-', '+'])).find(|w| ["inf", "NaN", "nan"].contains(w))
-        {
+        if let Some(word) = not_finite(text) {
             return Err(format!("{word} is printed:\n{text}"));
         }
     }
