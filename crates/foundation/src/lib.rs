@@ -9,6 +9,7 @@
 //! | [`clock`] | processor time |
 //! | [`range`], [`bound`], [`memory`] | the limits of quantities, of counts, and of memory |
 //! | [`number`] | numbers in JSON |
+//! | [`order`] | lists in the order in which their entries first appear |
 //! | [`random`] | random numbers, and points that fill a cube evenly |
 //! | [`quantity`], [`named`], [`text`] | units, closed lists of names, texts made safe to print, and to write in each grammar |
 //! | [`scalar`] | the numbers that kernels compute with: `f64`, SIMD lanes, `f32`, double-double, rationals |
@@ -23,6 +24,7 @@ pub mod file;
 pub mod memory;
 pub mod named;
 pub mod number;
+pub mod order;
 pub mod quantity;
 pub mod random;
 pub mod range;

@@ -10,7 +10,7 @@ pub mod report;
 use springfit_bodies::{dynamics, model, solve};
 use springfit_element::{element, material, springs};
 use springfit_fit::fit;
-use springfit_foundation::{error, file, number, scalar, symbolic, text};
+use springfit_foundation::{error, file, number, order, scalar, symbolic, text};
 use springfit_identify::positive;
 use springfit_mesh::mesh;
 use springfit_networks::network;

@@ -11,6 +11,6 @@ use springfit_analysis::analysis;
 use springfit_bodies::{dynamics, engine, model, solve};
 use springfit_element::{element, material, springs, stiffness};
 use springfit_fit::fit;
-use springfit_foundation::{bound, clock, error, file, named, number, quantity, random, range, scalar, text};
+use springfit_foundation::{bound, clock, error, file, named, number, order, quantity, random, range, scalar, text};
 use springfit_identify::{calibration, whole};
 use springfit_mesh::mesh;

@@ -1,6 +1,7 @@
 //! Whether whole-object fits from several starts come to the same.
 
 use crate::number::or_nan;
+use crate::order::grouped;
 use crate::study::{FitOutcome, Outcome, Start, ValidationRecipe, WholeRecipe};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,16 +31,12 @@ const SAME: f64 = 0.2;
 
 /// The fits of a scene from several starts.
 pub fn agreements(outcome: &Outcome) -> Vec<Agreement> {
-    let mut families: Vec<(WholeRecipe, Vec<&FitOutcome>)> = Vec::new();
-    for fit in &outcome.fits {
-        let Some(recipe) = fit.fit.recipe.whole() else { continue };
-        let recipe = WholeRecipe { start: Start::Equal, ..recipe.clone() };
-        match families.iter_mut().find(|(known, fits)| *known == recipe && fits[0].fit.springs == fit.fit.springs) {
-            Some((_, fits)) => fits.push(fit),
-            None => families.push((recipe, vec![fit])),
-        }
-    }
-    families.iter().filter(|(_, fits)| fits.len() > 1).filter_map(|(recipe, fits)| agreement(recipe, fits)).collect()
+    let families = grouped(outcome.fits.iter().filter_map(|fit| {
+        let recipe = WholeRecipe { start: Start::Equal, ..fit.fit.recipe.whole()?.clone() };
+        Some(((recipe, &fit.fit.springs), fit))
+    }));
+    let several = families.iter().filter(|(_, fits)| fits.len() > 1);
+    several.filter_map(|((recipe, _), fits)| agreement(recipe, fits)).collect()
 }
 
 fn agreement(recipe: &WholeRecipe, fits: &[&FitOutcome]) -> Option<Agreement> {

@@ -4,21 +4,14 @@ use super::json::Report;
 use super::table::Digits::Fixed;
 use super::table::Priority::Always;
 use super::table::{Cell, Column, Table};
+use crate::order::distinct;
 
 /// One row for each model: the finite elements of the mesh, its exact networks, the network at the start and the fitted one; and a group of columns
 /// for each support. What is the same for several fits, as the finite elements are, has one row.
 pub(super) fn held_out(report: &Report) -> Table {
-    let mut places: Vec<String> = Vec::new();
-    let mut loads: Vec<usize> = Vec::new();
-    for held_out in report.fits.iter().filter_map(|fit| fit.whole.as_ref()).flat_map(|whole| &whole.held_out) {
-        let place = held_out.column();
-        if !places.contains(&place) {
-            places.push(place);
-        }
-        if !loads.contains(&held_out.loads) {
-            loads.push(held_out.loads);
-        }
-    }
+    let all = || report.fits.iter().filter_map(|fit| fit.whole.as_ref()).flat_map(|whole| &whole.held_out);
+    let places = distinct(all().map(|held_out| held_out.column()));
+    let loads = distinct(all().map(|held_out| held_out.loads));
     let mut columns = vec![Column::words("model").priority(Always), Column::words("fit").priority(Always)];
     for place in &places {
         let group = format!("held at {place}");
@@ -30,13 +23,8 @@ pub(super) fn held_out(report: &Report) -> Table {
     let mut shared: Vec<(String, Vec<Option<f64>>)> = Vec::new();
     for fit in &report.fits {
         let Some(whole) = &fit.whole else { continue };
-        let mut models: Vec<&str> = Vec::new();
-        for model in whole.held_out.iter().flat_map(|held_out| &held_out.models) {
-            if !models.contains(&&*model.model) {
-                models.push(&model.model);
-            }
-        }
-        for model in models {
+        let models = whole.held_out.iter().flat_map(|held_out| &held_out.models);
+        for model in distinct(models.map(|model| model.model.as_str())) {
             let errors = places.iter().flat_map(|place| {
                 let own = whole.held_out.iter().find(|held_out| held_out.column() == *place);
                 let found = own.and_then(|held_out| held_out.models.iter().find(|own| own.model == model));

@@ -7,6 +7,7 @@ use super::table::{Cell, Column, Table, csv, markdown_body};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
+use crate::order::{distinct, grouped};
 use crate::study::{self, Paper, PaperRow, PaperTable, file_stem, heading};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -136,16 +137,9 @@ fn remarks(table: &PaperTable) -> Vec<String> {
         });
         lines.push(format!("{object}: the best of ours is {} with {}{theirs}", found.fit, errors(&found.found)));
     }
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
-    for row in &table.rows {
-        let Some(why) = &row.why else { continue };
-        match reasons.iter_mut().find(|(known, _)| known == why) {
-            Some((_, fits)) if fits.contains(&row.fit.as_str()) => {}
-            Some((_, fits)) => fits.push(&row.fit),
-            None => reasons.push((why, vec![&row.fit])),
-        }
-    }
-    lines.extend(reasons.iter().map(|(why, fits)| format!("Differs from print, {}: {why}", fits.join(", "))));
+    let reasons = grouped(table.rows.iter().filter_map(|row| Some((row.why.as_deref()?, row.fit.as_str()))));
+    let told = reasons.into_iter().map(|(why, fits)| (why, distinct(fits).join(", ")));
+    lines.extend(told.map(|(why, fits)| format!("Differs from print, {fits}: {why}")));
     if table.rows.iter().any(|row| !row.stands) {
         lines.push(format!("{FALLS} the network does not stand (indefinite, or near a mechanism)"));
     }

@@ -4,6 +4,7 @@ use super::table::{Column, Table, csv};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
+use crate::order::distinct;
 use crate::study::{Family, StabilityOutcome, StabilityRow, Verdict};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -158,15 +159,8 @@ fn table(outcome: &StabilityOutcome) -> String {
 
 /// One map for each subject with a case per column and a method per row, in the order of the sweep; an SVG file's text.
 fn map(subject: &str, rows: &[&StabilityRow]) -> String {
-    let (mut methods, mut cases): (Vec<&str>, Vec<(Family, &str)>) = Default::default();
-    for row in rows {
-        if !methods.contains(&row.method.as_str()) {
-            methods.push(&row.method);
-        }
-        if !cases.contains(&(row.family, row.case.as_str())) {
-            cases.push((row.family, &row.case));
-        }
-    }
+    let methods = distinct(rows.iter().map(|row| row.method.as_str()));
+    let cases = distinct(rows.iter().map(|row| (row.family, row.case.as_str())));
     let place = |row: &StabilityRow| {
         let column = cases.iter().position(|case| *case == (row.family, row.case.as_str())).unwrap_or(0);
         let line = methods.iter().position(|method| *method == row.method).unwrap_or(0);
@@ -248,12 +242,7 @@ pub const STABILITY_FILES: [&str; 1] = ["stability.csv"];
 /// # Errors
 /// A file cannot be written; the folder is as it was.
 pub fn write_stability(outcome: &StabilityOutcome, edition: Edition) -> Result<Vec<PathBuf>> {
-    let mut subjects: Vec<&str> = Vec::new();
-    for row in &outcome.rows {
-        if !subjects.contains(&row.subject.as_str()) {
-            subjects.push(&row.subject);
-        }
-    }
+    let subjects = distinct(outcome.rows.iter().map(|row| row.subject.as_str()));
     let mut files = vec![(STABILITY_FILES[0].to_string(), table(outcome))];
     for (subject, stem) in subjects.iter().zip(super::names::file_stems(subjects.iter().copied())) {
         let rows: Vec<&StabilityRow> = outcome.rows.iter().filter(|row| row.subject == *subject).collect();

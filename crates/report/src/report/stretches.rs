@@ -5,6 +5,7 @@ use super::table::{Column, Table};
 use super::write_files;
 use crate::error::{Error, Result};
 use crate::file::Edition;
+use crate::order::grouped;
 use crate::study::{STRETCHES, StretchedFit, Stretches};
 use plotters::prelude::*;
 use std::path::PathBuf;
@@ -38,14 +39,8 @@ pub fn write_stretches(study: &Stretches, edition: Edition) -> Result<Vec<PathBu
         };
         study.fits.iter().map(line).collect()
     };
-    let mut timed: Lines = Vec::new();
-    for run in &study.runs {
-        let point = (1e3 * run.seconds, 100.0 * run.held_out);
-        match timed.iter_mut().find(|(name, _)| *name == run.name) {
-            Some((_, points)) => points.push(point),
-            None => timed.push((run.name.clone(), vec![point])),
-        }
-    }
+    let runs = study.runs.iter();
+    let timed: Lines = grouped(runs.map(|run| (run.name.clone(), (1e3 * run.seconds, 100.0 * run.held_out))));
     let files = [
         (STRETCHES_FILES[0], errors.csv()),
         (STRETCHES_FILES[1], samples.csv()),

@@ -6,6 +6,7 @@ use super::table::{Cell, Column, Digits, Table, csv};
 use super::tables_page;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{check_apart, check_file, check_folder};
+use crate::order::distinct;
 use crate::solve::Standing;
 use crate::study::{Study, standing_word};
 use crate::text::printable_lines;
@@ -214,12 +215,7 @@ pub fn studies_table<'a>(
     let fits = |record: &'a StudyRecord| -> &'a [Value] {
         record.report.as_ref().and_then(|report| report["fits"].as_array()).map_or(&[], Vec::as_slice)
     };
-    let mut names: Vec<&str> = Vec::new();
-    for name in studies.iter().filter_map(found).flat_map(fits).filter_map(|fit| fit["name"].as_str()) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
+    let names = distinct(studies.iter().filter_map(found).flat_map(fits).filter_map(|fit| fit["name"].as_str()));
     let mut columns = vec![Column::words("study")];
     columns.extend(keys.iter().map(Column::numbers));
     // What fits cost is told where it was measured as comparisons measure it: in repeated passes of one thread.

@@ -2,6 +2,7 @@
 
 use super::pairs::{fits, method};
 use crate::error::{Error, Result};
+use crate::order::{distinct, grouped};
 use crate::report::figure::{Axis, Chart, Cost, Series, Shape};
 use crate::study::statistics::{Quantiles, median};
 use crate::study::{CaseRecord, MethodRecord};
@@ -48,15 +49,10 @@ const ROUNDING: f64 = 1e-9;
 /// # Errors
 /// No case is left, or no method has such figures.
 pub fn comparison_chart(title: &str, records: &[CaseRecord], drawn: Drawn, of: Option<&str>) -> Result<Chart> {
-    let mut names: Vec<&str> = Vec::new();
-    for record in records {
-        if !names.contains(&record.object()) {
-            names.push(record.object());
-        }
-    }
     let is_named = |record: &&CaseRecord| of.is_none_or(|of| record.object() == of);
-    let records: Vec<&CaseRecord> = records.iter().filter(is_named).filter(|record| record.error.is_none()).collect();
-    if let (Some(of), true) = (of, records.is_empty()) {
+    let own: Vec<&CaseRecord> = records.iter().filter(is_named).filter(|record| record.error.is_none()).collect();
+    if let (Some(of), true) = (of, own.is_empty()) {
+        let names = distinct(records.iter().map(CaseRecord::object));
         return Err(Error::expected(
             "--of",
             format!("an element or a scene of the comparison: {}", names.join(", ")),
@@ -64,11 +60,11 @@ pub fn comparison_chart(title: &str, records: &[CaseRecord], drawn: Drawn, of: O
         ));
     }
     if let Drawn::Over(key) = drawn
-        && !records.iter().any(|record| record.settings.get(key) != records[0].settings.get(key))
+        && !own.iter().any(|record| record.settings.get(key) != own[0].settings.get(key))
     {
         return Err(Error::new(format!("expected cases with several values of {key}, found one")));
     }
-    let data = Data { quantity: quantity(&records), records };
+    let data = Data { quantity: quantity(&own), records: own };
     let chart = match drawn {
         Drawn::Precision(cost) => data.precision(cost),
         Drawn::Ecdf => data.ecdf(),
@@ -189,16 +185,12 @@ impl Data<'_> {
     fn over(&self, key: &str, value: impl Fn(&MethodRecord, &CaseRecord) -> Option<f64>) -> Chart {
         let least = ROUNDING * self.largest();
         let curve = |(place, fit): (usize, String)| {
-            let mut known: Vec<(f64, Vec<f64>)> = Vec::new();
-            for record in &self.records {
-                let Some(method) = method(record, &fit) else { continue };
-                let Some(at) = value(method, record) else { continue };
-                let errors = method.values.get(self.quantity).into_iter().flatten().copied().flatten();
-                match known.iter_mut().find(|(other, _)| *other == at) {
-                    Some((_, list)) => list.extend(errors),
-                    None => known.push((at, errors.collect())),
-                }
-            }
+            let errors = self.records.iter().filter_map(|record| {
+                let method = method(record, &fit)?;
+                let at = value(method, record)?;
+                Some(method.values.get(self.quantity)?.iter().copied().flatten().map(move |error| (at, error)))
+            });
+            let mut known = grouped(errors.flatten());
             known.sort_by(|a, b| a.0.total_cmp(&b.0));
             let points = known.iter().map(|(at, errors)| (*at, median(errors))).filter(|point| point.1 > least);
             Series::new(fit, points.collect(), Shape::Curve).styled(place)
@@ -216,19 +208,19 @@ impl Data<'_> {
 
     /// The error over the number of sampled shapes: a curve for each family of fits that differ in it alone.
     fn samples(&self) -> Chart {
-        let mut series: Vec<Series> = Vec::new();
-        for method in self.records.iter().flat_map(|record| &record.methods) {
-            let count = number(method.settings.get("shapes.count"));
-            let held_out = method.figures.get("held_out").copied().flatten();
-            let (Some(count), Some(held_out)) = (count, held_out) else { continue };
+        let point = |method: &MethodRecord| {
+            let count = number(method.settings.get("shapes.count"))?;
+            let held_out = method.figures.get("held_out").copied().flatten()?;
             let own = format!("count {count}");
             let name = method.fit.split(", ").filter(|part| *part != own).collect::<Vec<_>>().join(", ");
-            match series.iter_mut().find(|known| known.name == name) {
-                Some(known) => known.points.push((count, 100.0 * held_out)),
-                None => series.push(Series::new(name, vec![(count, 100.0 * held_out)], Shape::Curve)),
-            }
-        }
-        series.iter_mut().for_each(|series| series.points.sort_by(|a, b| a.0.total_cmp(&b.0)));
+            Some((name, (count, 100.0 * held_out)))
+        };
+        let curve = |(name, mut points): (String, Vec<(f64, f64)>)| {
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            Series::new(name, points, Shape::Curve)
+        };
+        let points = self.records.iter().flat_map(|record| &record.methods).filter_map(point);
+        let series = grouped(points).into_iter().map(curve).collect();
         Chart {
             title: "error of the forces at shapes held out over the number of shapes".into(),
             x: Axis::log("shapes"),

@@ -1,9 +1,9 @@
 //! Methods in pairs, and their ranks.
 
+use crate::order::{distinct, grouped};
 use crate::study::statistics::{Interval, Paired, Verdict, adjust, mean_ranks, median, ratio_interval};
 use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Two times tie if they differ by less than this factor: other work on the machine changes them by as much.
@@ -52,13 +52,7 @@ pub struct Rank {
 
 /// The names of the fits, in the order in which they appear.
 pub fn fits<'a>(records: impl IntoIterator<Item = &'a CaseRecord>) -> Vec<&'a str> {
-    let mut names: Vec<&str> = Vec::new();
-    for method in records.into_iter().flat_map(|record| &record.methods) {
-        if !names.contains(&method.fit.as_str()) {
-            names.push(&method.fit);
-        }
-    }
-    names
+    distinct(records.into_iter().flat_map(|record| &record.methods).map(|method| method.fit.as_str()))
 }
 
 /// The method of this name on a case, if it has figures there.
@@ -121,16 +115,12 @@ fn of_values(records: &[CaseRecord], quantity: &str, (first, second): (&str, &st
 /// The cases in groups that have the same shapes, loads or stretches: those that differ in Poisson's ratio alone. What is found on the same shape at
 /// several ratios is nearly the same, and no independent figure.
 pub fn of_same_shapes<'a>(records: impl IntoIterator<Item = &'a CaseRecord>) -> Vec<Vec<&'a CaseRecord>> {
-    let mut groups: Vec<(BTreeMap<String, Value>, Vec<&CaseRecord>)> = Vec::new();
-    for record in records {
+    let of_settings = |record: &'a CaseRecord| {
         let mut settings = record.settings.clone();
         settings.remove("poisson");
-        match groups.iter_mut().find(|(known, _)| *known == settings) {
-            Some((_, group)) => group.push(record),
-            None => groups.push((settings, vec![record])),
-        }
-    }
-    groups.into_iter().map(|(_, group)| group).collect()
+        (settings, record)
+    };
+    grouped(records.into_iter().map(of_settings)).into_iter().map(|(_, group)| group).collect()
 }
 
 /// The geometric mean of the figures of each shape over all cases; none where a case has no figure.

@@ -1,6 +1,7 @@
 //! The summary of a comparison: quantiles of every figure, and intervals of their medians.
 
 use super::pairs::{MERITS, Pair, Rank, fits, means, method as method_of, of_same_shapes, pairs, ranks};
+use crate::order::distinct;
 use crate::study::statistics::{Interval, Quantiles, median, median_interval};
 use crate::study::{CaseRecord, MethodRecord};
 use serde::Serialize;
@@ -123,15 +124,8 @@ fn object_of(record: &CaseRecord) -> String {
 }
 
 fn objects(records: &[CaseRecord]) -> Vec<Object> {
-    let mut names: Vec<String> = Vec::new();
-    for record in records {
-        let name = object_of(record);
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
     let mut all = Vec::new();
-    for name in names {
+    for name in distinct(records.iter().map(object_of)) {
         let own: Vec<&CaseRecord> = records.iter().filter(|record| object_of(record) == name).collect();
         let has = |quantity: &&str| own.iter().flat_map(|r| &r.methods).any(|m| m.values.contains_key(*quantity));
         for fit in fits(records) {

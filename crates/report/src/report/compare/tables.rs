@@ -2,6 +2,7 @@
 
 use super::pairs::{MERITS, Pair};
 use super::summary::{CaseSummary, MethodSummary, Object, Summary, Told};
+use crate::order::distinct;
 use crate::report::table::Digits::{self, Fixed, Significant};
 use crate::report::table::Priority::Always;
 use crate::report::table::{Cell, Column, Table};
@@ -97,16 +98,8 @@ fn objects(summary: &Summary, quantity: &str, is_first: bool) -> Table {
     let told = TOLD.iter().find(|told| told.quantity == quantity);
     let (heading, unit, places) = told.map_or(("error", "", 4), |told| (told.short, told.unit, told.places));
     let own: Vec<&Object> = summary.objects.iter().filter(|object| object.quantity == quantity).collect();
-    let mut names: Vec<&str> = Vec::new();
-    let mut fits: Vec<&str> = Vec::new();
-    for object in &own {
-        if !names.contains(&object.name.as_str()) {
-            names.push(&object.name);
-        }
-        if !fits.contains(&object.fit.as_str()) {
-            fits.push(&object.fit);
-        }
-    }
+    let names = distinct(own.iter().map(|object| object.name.as_str()));
+    let fits = distinct(own.iter().map(|object| object.fit.as_str()));
     let has_interval = own.iter().any(|object| object.error.is_some_and(|told| told.interval.is_some()));
     let is_timed = is_first && own.iter().any(|object| object.seconds.is_some());
     let mut columns = vec![Column::words("fit")];

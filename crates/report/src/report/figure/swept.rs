@@ -6,12 +6,11 @@ use super::precision::BELOW;
 use super::run_folder::RunFolder;
 use crate::error::{Error, Result};
 use crate::file::{files_in, read_text};
+use crate::order::grouped;
 use crate::report::StudyRecord;
 use crate::study::statistics::median;
 use serde_json::Value;
 
-/// The errors at each value of a key.
-type Errors = Vec<(f64, Vec<f64>)>;
 /// A fit with its median error at each value of the key.
 type Medians = (String, Vec<(f64, f64)>);
 
@@ -50,30 +49,21 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
             "none of them",
         ));
     };
-    let mut curves: Vec<(String, Errors)> = Vec::new();
-    for record in &records {
-        let Some(at) = record.settings.get(*key).and_then(Value::as_f64) else { continue };
-        let fits = record.report.as_ref().and_then(|report| report["fits"].as_array());
-        for fit in fits.into_iter().flatten() {
-            let name = fit["name"].as_str().unwrap_or_default();
+    let medians = |(name, fits): (&str, Vec<(f64, &Value)>)| -> Medians {
+        let errors = |(at, fit): (f64, &Value)| {
             let errors = fit["loads"].as_array().into_iter().flatten().filter_map(|load| load["e_rms"].as_f64());
-            let place = curves.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
-                curves.push((name.into(), Vec::new()));
-                curves.len() - 1
-            });
-            let points = &mut curves[place].1;
-            match points.iter_mut().find(|(other, _)| *other == at) {
-                Some((_, list)) => list.extend(errors),
-                None => points.push((at, errors.collect())),
-            }
-        }
-    }
-    let medians = |(name, mut points): (String, Errors)| -> Medians {
+            errors.map(|error| (at, error)).collect::<Vec<_>>()
+        };
+        let mut points = grouped(fits.into_iter().flat_map(errors));
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let points = points.iter().filter(|(_, errors)| !errors.is_empty()).map(|(at, errors)| (*at, median(errors)));
-        (name, points.collect())
+        (name.into(), points.iter().map(|(at, errors)| (*at, median(errors))).collect())
     };
-    let curves: Vec<Medians> = curves.into_iter().map(medians).collect();
+    let fits = records.iter().filter_map(|record| {
+        let at = record.settings.get(*key).and_then(Value::as_f64)?;
+        let fits = record.report.as_ref()?["fits"].as_array()?;
+        Some(fits.iter().map(move |fit| (fit["name"].as_str().unwrap_or_default(), (at, fit))))
+    });
+    let curves: Vec<Medians> = grouped(fits.flatten()).into_iter().map(medians).collect();
     let errors = || curves.iter().flat_map(|(_, points)| points).map(|(_, error)| *error);
     // Errors that are rounding, in percent, have no place on a logarithmic axis.
     let is_shown = |error: &f64| *error > 1e-9;

@@ -1,18 +1,13 @@
 //! The rows of a referee as tables: a column for each load.
 
 use super::record::{Factor, FoundRow, RefereeRecord, RefereeRow};
+use crate::order::{distinct, grouped};
 use crate::report::table::Digits::{Fixed, Signed};
 use crate::report::table::{Cell, Column, Table};
 
 /// The loads, in the order in which rows have them.
 pub(super) fn loads(record: &RefereeRecord) -> Vec<&str> {
-    let mut found = Vec::new();
-    for row in &record.rows {
-        if !found.contains(&row.load.as_str()) {
-            found.push(&row.load);
-        }
-    }
-    found
+    distinct(record.rows.iter().map(|row| row.load.as_str()))
 }
 
 /// The rows of one model in one engine, by load.
@@ -25,16 +20,13 @@ pub(super) struct Bodies<'a> {
 pub(super) fn bodies<'a>(record: &'a RefereeRecord, chosen: impl Fn(&RefereeRow) -> bool) -> Vec<Bodies<'a>> {
     let loads = loads(record);
     let key = |row: &RefereeRow| (row.engine.clone(), row.solver.clone(), row.title(), row.poisson.to_bits());
-    let mut found: Vec<Bodies> = Vec::new();
-    for row in record.rows.iter().filter(|row| chosen(row)) {
-        let place = found.iter().position(|bodies| key(bodies.first) == key(row)).unwrap_or_else(|| {
-            found.push(Bodies { first: row, by_load: vec![None; loads.len()] });
-            found.len() - 1
-        });
-        let column = loads.iter().position(|load| *load == row.load).expect("of a row");
-        found[place].by_load[column] = Some(row);
-    }
-    found
+    let bodies = |(_, rows): (_, Vec<&'a RefereeRow>)| {
+        // Of several rows under a load the last counts.
+        let under = |load: &&str| rows.iter().rev().copied().find(|row| row.load == **load);
+        Bodies { first: rows[0], by_load: loads.iter().map(under).collect() }
+    };
+    let rows = record.rows.iter().filter(|row| chosen(row)).map(|row| (key(row), row));
+    grouped(rows).into_iter().map(bodies).collect()
 }
 
 /// All tables as text, and what was not run.
@@ -133,15 +125,13 @@ fn mesh_errors(record: &RefereeRecord) -> Table {
         Column::numbers("energy\nof the truth").unit("%"),
         Column::numbers("truth uncertain\nby").unit("%"),
     ];
-    let mut rows: Vec<Vec<Cell>> = Vec::new();
-    for row in &record.rows {
+    let row = |row: &RefereeRow| {
         let error = 100.0 * (row.energy_of_finite_elements / row.truth - 1.0);
         let figures = [(error, Signed(1)), (row.truth_uncertainty_percent, Fixed(1))];
         let mut cells = vec![Cell::from(&*row.load), row.poisson.to_string().into()];
         cells.extend(figures.map(|(value, digits)| Cell::number(Some(value), digits)));
-        if !rows.contains(&cells) {
-            rows.push(cells);
-        }
-    }
+        cells
+    };
+    let rows = distinct(record.rows.iter().map(row));
     Table::new("mesh", "Finite elements of the mesh beside refined meshes", columns, rows)
 }

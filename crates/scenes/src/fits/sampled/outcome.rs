@@ -1,8 +1,9 @@
 //! The errors of a sampled fit.
 
 use super::recipe::SampledRecipe;
-use crate::fit::{CellStart, SampledFits, ShapeError, Spread};
+use crate::fit::{CellStart, FamilyErrors, SampledFits, ShapeError, Spread};
 use crate::number::or_nan;
+use crate::order::grouped;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -124,23 +125,16 @@ const STARTS: usize = 16;
 const WORST: usize = 8;
 
 fn families(found: &[SampledFits]) -> Vec<FamilyOutcome> {
-    let mut all: Vec<(&str, usize, Vec<f64>)> = Vec::new();
-    for family in found.iter().flat_map(|found| &found.families) {
-        let errors = family.errors.iter().copied().filter(|error| error.is_finite());
-        match all.iter_mut().find(|(name, ..)| *name == family.family) {
-            Some((_, shapes, known)) => {
-                *shapes = family.shapes.max(*shapes);
-                known.extend(errors);
-            }
-            None => all.push((family.family, family.shapes, errors.collect())),
+    let outcome = |(name, own): (&str, Vec<&FamilyErrors>)| {
+        let errors = own.iter().flat_map(|family| &family.errors).copied().filter(|error| error.is_finite());
+        FamilyOutcome {
+            family: name.into(),
+            shapes: own.iter().map(|family| family.shapes).max().unwrap_or(0),
+            held_out: Spread::of(&errors.collect::<Vec<f64>>()),
         }
-    }
-    let outcome = |(family, shapes, errors): (&str, usize, Vec<f64>)| FamilyOutcome {
-        family: family.into(),
-        shapes,
-        held_out: Spread::of(&errors),
     };
-    all.into_iter().map(outcome).collect()
+    let all = found.iter().flat_map(|found| &found.families).map(|family| (family.family, family));
+    grouped(all).into_iter().map(outcome).collect()
 }
 
 /// The starts of the cell in which the fewest agree.

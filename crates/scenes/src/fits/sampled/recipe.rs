@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights};
 use crate::fits::facts::SceneFacts;
 use crate::mesh::Mesh;
+use crate::order::distinct;
 use crate::springs::Springs;
 use crate::stiffness::EnergyFunction;
 use std::path::PathBuf;
@@ -59,13 +60,7 @@ impl SampledRecipe {
     /// The loads of the scene under which shapes of the fit are those of the finite elements.
     pub fn loads(&self) -> Vec<String> {
         let own = self.origins.iter().filter(|origin| origin.is_of_scene());
-        let mut loads: Vec<String> = Vec::new();
-        for load in own.flat_map(|origin| &origin.loads) {
-            if !loads.contains(load) {
-                loads.push(load.clone());
-            }
-        }
-        loads
+        distinct(own.flat_map(|origin| &origin.loads).cloned())
     }
 
     /// Whether shapes are states of the whole body.

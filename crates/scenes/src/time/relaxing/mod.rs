@@ -13,6 +13,7 @@ use crate::fits::{ExactRecipe, NamedFit, Recipe};
 use crate::material::{EnergyMap, Material, MaterialMap, Relaxation, RelaxationTerm, relaxed_material, with_moduli};
 use crate::mesh::Mesh;
 use crate::model::{MaterialPoints, Network, check_body, exact_network, finite_elements};
+use crate::order::distinct;
 use nalgebra::Complex;
 use parts::RelaxingBody;
 
@@ -166,13 +167,8 @@ impl Relaxing {
 
     /// What a linear model remembers: one state of the body for each relaxation time, whatever the regions that have it.
     fn remembered(&self, mesh: &Mesh, parts: Vec<RelaxingStiffness>) -> Result<Memory> {
-        let mut times: Vec<f64> = Vec::new();
-        for term in self.body.series.iter().flatten().flat_map(Relaxation::terms) {
-            // Terms of equal times share one history. Equal times of a scene have the same digits, and the same bits.
-            if !times.contains(&term.time) {
-                times.push(term.time);
-            }
-        }
+        // Terms of equal times share one history. Equal times of a scene have the same digits, and the same bits.
+        let times = distinct(self.body.series.iter().flatten().flat_map(Relaxation::terms).map(|term| term.time));
         let relaxing = |RelaxingStiffness { entries, share }| {
             let (region, place) = share.place()?;
             let terms = self.body.series[region].as_ref()?.terms();

@@ -1,6 +1,7 @@
 //! The results of a paper's experiments.
 
 use super::index::{Column, RowEntry};
+use crate::order::distinct;
 use serde::Serialize;
 use springfit_scenes::Outcome;
 
@@ -98,13 +99,7 @@ impl PaperRow {
 impl PaperTable {
     /// The objects in their order.
     pub fn objects(&self) -> Vec<&str> {
-        let mut objects: Vec<&str> = Vec::new();
-        for row in &self.rows {
-            if !objects.contains(&row.object.as_str()) {
-                objects.push(&row.object);
-            }
-        }
-        objects
+        distinct(self.rows.iter().map(|row| row.object.as_str()))
     }
 
     /// For an object, the fit with the least printed e_rms, and the fit with the least computed one among stable

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::file::{self, Sum};
+use crate::order::distinct;
 use crate::text::printable;
 use serde_json::Value;
 use springfit_scenes::{InMemory, Scene, Setting, SweepEntry};
@@ -73,12 +74,7 @@ impl Sweep {
 
     /// A sweep of these studies, whatever `[sweep]` says; nothing is checked before they run.
     pub fn of_studies(text: &str, path: &Path, settings: &[Setting], studies: Vec<Study>) -> Sweep {
-        let mut keys: Vec<String> = Vec::new();
-        for setting in studies.iter().flat_map(|study| &study.settings) {
-            if !keys.iter().any(|key| key == setting.key()) {
-                keys.push(setting.key().into());
-            }
-        }
+        let keys = distinct(studies.iter().flat_map(|study| &study.settings).map(Setting::key));
         let others = settings.iter().filter(|setting| setting.first() != "sweep");
         Sweep {
             text: text.into(),
@@ -86,7 +82,7 @@ impl Sweep {
             memory: InMemory::default(),
             title: String::new(),
             settings: others.cloned().collect(),
-            keys,
+            keys: keys.into_iter().map(String::from).collect(),
             studies,
             sums: Mutex::default(),
         }
