@@ -43,12 +43,12 @@ pub(super) fn largest_residual(solver: &StaticSolver) -> f64 {
 
 /// # Errors
 /// More of the forces is left than an answer may leave: kind `Limit`.
-pub(super) fn check_residual(residual: f64, largest: f64, case: &Case) -> Result<()> {
+pub(super) fn check_residual(residual: f64, largest: f64, load: &str) -> Result<()> {
     if residual <= largest {
         return Ok(());
     }
     let expected = format!("equations that can be solved to {largest:.0e} of the forces");
-    let found = format!("{residual:.1e} left under load \"{}\"", case.name);
+    let found = format!("{residual:.1e} left under load \"{load}\"");
     let error = Error::expected("mesh", expected, found).of_kind(ErrorKind::Limit);
     // A limit above that of factors comes from the tolerance, which the user can change.
     Err(if largest > SOLVED { error.followed_by("; a smaller solver.tolerance leaves less") } else { error })

@@ -54,7 +54,7 @@ impl Factored {
             let (system, factor) = &factored.systems[index];
             let start = Clock::start();
             let (u, residual) = system.solve(factor, &case.forces);
-            check_residual(residual, SOLVED, case)?;
+            check_residual(residual, SOLVED, &case.name)?;
             let seconds = assembly + setup[index] + start.seconds();
             let work = case.work(&u, || Some(square(&entries, &u)));
             answers.push(BodyAnswer { displacement: u, work, seconds, solved: by_factor(factor, system, residual) });

@@ -89,32 +89,19 @@ impl FineBody {
         if let Some(answers) = known().get(&name) {
             return Ok(answers.clone());
         }
-        let case = |load: NodalLoad| Case {
-            name: load.name,
-            support: support.clone(),
-            forces: load.forces,
-            pressed: None,
-            cavity: None,
-            is_prescribed: false,
-            measured: None,
-            is_measured: false,
-            finer: None,
-            noise: None,
-        };
-        let cases: Vec<Case> = loads().into_iter().map(case).collect();
-        progress(Event::stage("finer body", 0, cases.len()));
-        let forces: Vec<Vec<f64>> = cases.iter().map(|case| case.forces.clone()).collect();
+        let loads = loads();
+        progress(Event::stage("finer body", 0, loads.len()));
+        let forces: Vec<Vec<f64>> = loads.iter().map(|load| load.forces.clone()).collect();
         let solved = self.equations(support, ASKED)?.solve_each(&forces, REFINED)?;
         let largest = largest_residual(&self.solver);
-        let checked = |(case, (u, residual))| check_residual(residual, largest, case).map(|()| u);
-        let found: Vec<Vec<f64>> = cases.iter().zip(solved).map(checked).collect::<Result<_>>()?;
-        let answer = |(case, u): (Case, Vec<f64>)| {
-            (
-                NodalLoad { name: case.name, forces: self.embedding.restrict(&case.forces) },
-                self.sampling.interpolate(&u),
-            )
+        let checked =
+            |(load, (u, residual)): (&NodalLoad, (_, _))| check_residual(residual, largest, &load.name).map(|()| u);
+        let found: Vec<Vec<f64>> = loads.iter().zip(solved).map(checked).collect::<Result<_>>()?;
+        let answer = |(load, u): (NodalLoad, Vec<f64>)| {
+            let forces = self.embedding.restrict(&load.forces);
+            (NodalLoad { forces, ..load }, self.sampling.interpolate(&u))
         };
-        let answers: Answers = Arc::new(cases.into_iter().zip(found).map(answer).collect());
+        let answers: Answers = Arc::new(loads.into_iter().zip(found).map(answer).collect());
         // The lock is not held while loads are solved, which takes long.
         known().insert(name, answers.clone());
         Ok(answers)
@@ -201,7 +188,7 @@ impl FineBody {
             let equations = known
                 .under(&case.support, || equations(&self.mesh, &moduli, &case.support, (self.solver, loads.len())))?;
             let (u, residual) = equations.solve(&case.forces)?;
-            check_residual(residual, largest_residual(&self.solver), case)?;
+            check_residual(residual, largest_residual(&self.solver), &case.name)?;
             found.push(self.sampling.interpolate(&u));
         }
         Ok(found)

@@ -184,7 +184,7 @@ fn solutions(
     // Loads side by side have no times of their own.
     let seconds = start.seconds() / group.len() as f64;
     let checked = |(&i, (displacement, solved)): (&usize, (Vec<f64>, Solved))| {
-        check_residual(solved.residual, largest_residual(solver), &cases[i])?;
+        check_residual(solved.residual, largest_residual(solver), &cases[i].name)?;
         Ok(Solution { displacement, solved, seconds })
     };
     group.iter().zip(found).map(checked).collect()
