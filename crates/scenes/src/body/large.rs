@@ -120,11 +120,8 @@ impl LargeBody {
                 displacement: displacement.map(Arc::new),
                 seconds_fem: self.seconds[i],
                 seconds_lem,
-                solved_fem: None,
-                solved_lem: None,
-                unsolved: None,
                 followed: Some(followed),
-                gauge: None,
+                ..LoadOutcome::default()
             });
         }
         Ok(loads)

@@ -208,8 +208,7 @@ fn outcome(mesh: &Mesh, (body, network): (&BodyAnswer, NetworkAnswer), case: &Ca
         solved_fem: Some(body.solved.clone()),
         solved_lem: solved,
         unsolved,
-        followed: None,
-        gauge: None,
+        ..LoadOutcome::default()
     }
 }
 

@@ -112,7 +112,7 @@ impl Standard {
 }
 
 /// The answer of a network to a load.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "LoadRecord")]
 #[non_exhaustive]
 pub struct LoadOutcome {

@@ -50,7 +50,7 @@ pub struct TimedPull {
 }
 
 /// The motion of one model.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[non_exhaustive]
 pub struct ModelMotion {
     /// The name of the fit, or "finite elements".
@@ -84,9 +84,10 @@ pub struct ModelMotion {
 }
 
 /// How a motion ended.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub enum MotionEnding {
     /// All steps were made, and their equations solved.
+    #[default]
     Complete,
     /// All steps were made; the equations of some were not solved to the tolerance, see [`ModelMotion::unsolved`].
     Unsolved,
@@ -125,11 +126,6 @@ impl ModelMotion {
     /// The number of steps per second of computing time.
     pub fn steps_per_second(&self) -> f64 {
         self.steps as f64 / self.seconds
-    }
-
-    /// Whether a state after the start is known.
-    pub fn has_moved(&self) -> bool {
-        self.records.len() > 1
     }
 
     /// The mean and the largest error over the records.

@@ -212,21 +212,7 @@ impl Run<'_> {
         progress: &mut Progress,
     ) -> Result<(ModelMotion, Vec<Vec<f64>>)> {
         let planned = self.planned;
-        let mut made = ModelMotion {
-            name: name.into(),
-            fit: None,
-            steps: 0,
-            seconds: 0.0,
-            ending: MotionEnding::Complete,
-            unsolved: 0,
-            growth,
-            deformation: None,
-            linear_error: None,
-            largest: 0.0,
-            inverted: 0,
-            records: Vec::new(),
-            states: Vec::new(),
-        };
+        let mut made = ModelMotion { name: name.into(), growth, ..ModelMotion::default() };
         let (support, drive) = (planned.support.clone(), planned.drive.clone());
         let motion = Motion { support, drive, damping, memory, ..Motion::free(model, &self.mesh.points, masses) };
         let mut simulation = match Simulation::new(motion, options) {

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The loads of a whole-object fit, and its result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[non_exhaustive]
 pub struct WholeOutcome {
     /// These loads were fitted.
@@ -325,13 +325,7 @@ impl WholeOutcome {
             cancelled: found.cancelled,
             is_exact: matches!(recipe.start, Start::Exact(..)),
             is_for_engine: recipe.engine.is_some(),
-            is_measured: false,
-            guessed: Vec::new(),
-            unmeasured: Vec::new(),
-            moduli: FoundModuli::default(),
-            held_out: Vec::new(),
-            stretched: None,
-            masses: None,
+            ..WholeOutcome::default()
         }
     }
 

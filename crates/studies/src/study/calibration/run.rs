@@ -240,31 +240,13 @@ fn empty(limit: &Limit, residuals: &[f64], noise: bool) -> CalibrationOutcome {
         changes: Vec::new(),
     });
     CalibrationOutcome {
-        scene: String::new(),
-        unknowns: String::new(),
-        regions: Vec::new(),
-        names: Vec::new(),
-        correlations: Vec::new(),
-        hardly_seen: Vec::new(),
         loads: loads(limit, residuals, noise),
         measurements: residuals.len(),
-        chi_square: None,
-        degrees_of_freedom: None,
-        misfit: None,
-        probability: None,
         explained: explained(limit, residuals),
-        is_unexplained: false,
         is_trusted: true,
         by_noise_alone: true,
-        ratio: None,
         meshes: meshes.collect(),
-        young_by_cell: Vec::new(),
-        deviation_by_cell: Vec::new(),
-        prior_weight: None,
-        steps: 0,
-        is_unfinished: false,
-        seconds: 0.0,
-        notes: Vec::new(),
+        ..CalibrationOutcome::default()
     }
 }
 
