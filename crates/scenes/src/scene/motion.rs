@@ -16,6 +16,7 @@ use crate::range;
 use crate::symbolic::{Expr, Scope, parse_rational};
 use schemars::JsonSchema;
 use serde::Deserialize;
+use std::mem::take;
 
 /// The keys of `[motion]`.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -152,7 +153,7 @@ impl MotionEntry {
     ///
     /// # Errors
     /// A value is unknown or out of range, or keys contradict each other.
-    pub fn check(self) -> Result<MotionRecipe> {
+    pub fn check(mut self) -> Result<MotionRecipe> {
         let positive = |key: &str, value: f64| range::positive(key, value, "s");
         let (duration, step) = (positive("duration", self.duration)?, positive("step", self.step)?);
         // A duration that is meant to be one step may be a rounding below it.
@@ -176,14 +177,15 @@ impl MotionEntry {
                 (format!("at most {} states in all", bound::STATES), format!("{:.0}", duration / every));
             return Err(Error::expected("every", expected, found).of_kind(ErrorKind::Limit));
         }
-        let gravity = self.gravity.unwrap_or_default();
+        let gravity = self.gravity.take().unwrap_or_default();
         range::largest("gravity", gravity.iter().copied(), "m/s²")?;
         let finite_elements = self.finite_elements.unwrap_or(true);
-        let damping = self.damping.map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
+        let damping =
+            self.damping.take().map(|d| d.check(finite_elements).map_err(|e| e.under("damping"))).transpose()?;
         let part = |group, condition, key: String| Part::required(group, condition).map_err(|e| e.under(key));
-        let watch = self.watch.map(|w| part(w.group, w.condition, "watch".into())).transpose()?;
+        let watch = self.watch.take().map(|w| part(w.group, w.condition, "watch".into())).transpose()?;
         let mut pulls = Vec::new();
-        for (i, pull) in self.pull.into_iter().enumerate() {
+        for (i, pull) in take(&mut self.pull).into_iter().enumerate() {
             let part = part(pull.group, pull.condition, format!("pull[{i}]"))?;
             let component = |(k, value)| {
                 let free = matches!(&value, Varying::Text(text) if text == "free");
@@ -202,7 +204,7 @@ impl MotionEntry {
             pulls.push(PrescribedMotion { part, displacement });
         }
         let mut forces = Vec::new();
-        for (i, force) in self.force.into_iter().enumerate() {
+        for (i, force) in take(&mut self.force).into_iter().enumerate() {
             let part = part(force.group, force.condition, format!("force[{i}]"))?;
             let component = |(k, value)| {
                 expression(value, &["t"], Some(Quantity::Force)).map_err(|e| e.under(format!("force[{k}]")))
@@ -224,18 +226,10 @@ impl MotionEntry {
             }
             Some(_) | None => {}
         }
-        let method = StepEntry {
-            integrator: self.integrator.as_deref(),
-            iterations: self.iterations,
-            tolerance: self.tolerance,
-            linear: self.linear,
-            solver: self.solver.as_deref(),
-            remainder: self.remainder,
-        };
         let precision =
             choice("precision", self.precision.as_deref(), ForcePrecision::default(), ForcePrecision::named)?;
         let account = self.account.unwrap_or(precision == ForcePrecision::Double);
-        let options = Options { step, account, quasi_static: self.quasi_static, error: self.error, ..method.check()? };
+        let options = Options { step, account, quasi_static: self.quasi_static, error: self.error, ..self.method()? };
         let foreign = match (options.integrator, options.linear) {
             (Integrator::SymplecticEuler, false) => None,
             (Integrator::SymplecticEuler, true) => Some("linear = true".to_string()),
@@ -263,21 +257,10 @@ impl MotionEntry {
             forces,
         })
     }
-}
 
-/// The keys of the time integration.
-struct StepEntry<'a> {
-    integrator: Option<&'a str>,
-    iterations: Option<usize>,
-    tolerance: Option<f64>,
-    linear: bool,
-    solver: Option<&'a str>,
-    remainder: Option<f64>,
-}
-
-impl StepEntry<'_> {
-    fn check(&self) -> Result<Options> {
-        let integrator = choice("integrator", self.integrator, Integrator::default(), Integrator::named)?;
+    /// The time integration.
+    fn method(&self) -> Result<Options> {
+        let integrator = choice("integrator", self.integrator.as_deref(), Integrator::default(), Integrator::named)?;
         let foreign = match (integrator, self.linear) {
             (Integrator::SymplecticEuler, _) => Some("integrator = \"symplectic-euler\""),
             (_, true) => Some("linear = true"),
@@ -287,11 +270,11 @@ impl StepEntry<'_> {
         if let (Some(foreign), Some((key, _))) = (foreign, given.iter().find(|(_, given)| *given)) {
             return Err(Error::at(*key, format!("belongs to Newton's method, found with {foreign}")));
         }
-        if let (Integrator::SymplecticEuler, Some(_)) = (integrator, self.solver) {
+        if let (Integrator::SymplecticEuler, Some(_)) = (integrator, &self.solver) {
             let problem = "belongs to implicit steps, found with integrator = \"symplectic-euler\"";
             return Err(Error::at("solver", problem));
         }
-        let mut solver = choice("solver", self.solver, LinearSolver::default(), LinearSolver::named)?;
+        let mut solver = choice("solver", self.solver.as_deref(), LinearSolver::default(), LinearSolver::named)?;
         match (&mut solver, self.remainder) {
             (LinearSolver::Factor, Some(_)) => {
                 return Err(Error::at("remainder", "belongs to solver = \"conjugate-gradients\""));
