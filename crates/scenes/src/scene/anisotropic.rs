@@ -1,17 +1,15 @@
 //! The anisotropic materials of a scene, and the axes of the material in each cell.
 
 use super::distribution::{self, DataEntry, Distribution};
-use super::value::Varying;
+use super::value::{Forms, Varying};
 use crate::error::{Error, Result};
 use crate::material::Anisotropy;
 use crate::symbolic::{Expr, Scope};
 use nalgebra::Matrix6;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::Deserializer;
 use std::borrow::Cow;
-use std::fmt;
 use std::path::PathBuf;
 
 /// A pressure that may differ from place to place, Pa.
@@ -119,23 +117,12 @@ pub enum AxisEntry {
 
 impl<'de> Deserialize<'de> for AxisEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<AxisEntry, D::Error> {
-        struct VectorOrData;
-        impl<'de> Visitor<'de> for VectorOrData {
-            type Value = AxisEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a vector such as [1, 0, 0], or { file = … }")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<AxisEntry, A::Error> {
-                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(AxisEntry::Vector)
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<AxisEntry, A::Error> {
-                DataEntry::deserialize(MapAccessDeserializer::new(map)).map(AxisEntry::Data)
-            }
-        }
-        deserializer.deserialize_any(VectorOrData)
+        deserializer.deserialize_any(Forms {
+            expected: "a vector such as [1, 0, 0], or { file = … }",
+            list: Some(|components| Ok(AxisEntry::Vector(components))),
+            table: Some(AxisEntry::Data),
+            ..Forms::default()
+        })
     }
 }
 

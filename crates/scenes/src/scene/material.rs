@@ -9,16 +9,14 @@ use super::constants::{Constant, young_and_poisson};
 use super::distribution::{self, Distribution};
 use super::part::Part;
 use super::relaxation::RelaxationEntry;
-use super::value;
+use super::value::{self, Forms};
 use crate::error::{Error, Result};
 use crate::material::{Material, Plane};
 use crate::range;
 use schemars::JsonSchema;
 use serde::Deserialize;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::Deserializer;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::PathBuf;
 
 /// The material of a body, or of one of its regions.
@@ -132,25 +130,12 @@ pub struct MaterialEntries {
 
 impl<'de> Deserialize<'de> for MaterialEntries {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<MaterialEntries, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = MaterialEntries;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a table [material] or tables [[material]]")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<MaterialEntries, A::Error> {
-                let one = MaterialEntry::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(MaterialEntries { all: vec![one], is_list: false })
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<MaterialEntries, A::Error> {
-                let all = Deserialize::deserialize(SeqAccessDeserializer::new(list))?;
-                Ok(MaterialEntries { all, is_list: true })
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
+        deserializer.deserialize_any(Forms {
+            expected: "a table [material] or tables [[material]]",
+            list: Some(|all| Ok(MaterialEntries { all, is_list: true })),
+            table: Some(|one| MaterialEntries { all: vec![one], is_list: false }),
+            ..Forms::default()
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::quantity::Quantity;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{self, Deserializer, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::borrow::Cow;
 use std::fmt;
 
@@ -67,27 +67,12 @@ pub struct Numbers(pub Vec<f64>);
 
 impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Numbers, D::Error> {
-        struct NumberOrList;
-        impl<'de> Visitor<'de> for NumberOrList {
-            type Value = Numbers;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number or a list of numbers")
-            }
-
-            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Numbers, E> {
-                self.visit_f64(v as f64)
-            }
-
-            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Numbers, E> {
-                Ok(Numbers(vec![v]))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Numbers, A::Error> {
-                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(Numbers)
-            }
-        }
-        deserializer.deserialize_any(NumberOrList)
+        deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
+            expected: "a number or a list of numbers",
+            number: Some(|v| Some(Numbers(vec![v]))),
+            list: Some(|all| Ok(Numbers(all))),
+            ..Forms::default()
+        })
     }
 }
 
@@ -112,15 +97,31 @@ pub const PRESCRIBED: &str = "a finite number of metres, an expression of x, y, 
 /// What a pressure is.
 pub const PRESSURE: &str = "a pressure such as 1000 or \"1 kPa\", or an expression of x, y, z in Pa such as \"1e4*z\"";
 
-/// A visitor of values that are numbers or texts.
-struct NumberOrText<T> {
-    expected: &'static str,
-    number: fn(f64) -> Option<T>,
-    /// The error contains an explanation, if there is a more specific one than what was expected.
-    text: fn(&str) -> Result<T, Option<String>>,
+/// What a text stands for. The error contains an explanation, if there is a more specific one than what was expected.
+type OfText<'a, T> = &'a dyn Fn(&str) -> Result<T, Option<String>>;
+/// What a list stands for, or why it stands for nothing.
+type OfList<T, L> = fn(L) -> Result<T, &'static str>;
+
+/// A visitor of values that can be written in several forms: those for which there is a function. A list is read as an `L`, and a table
+/// as an `M`.
+pub struct Forms<'a, T, L, M> {
+    pub expected: &'static str,
+    pub number: Option<fn(f64) -> Option<T>>,
+    pub text: Option<OfText<'a, T>>,
+    pub list: Option<OfList<T, L>>,
+    pub table: Option<fn(M) -> T>,
 }
 
-impl<T> Visitor<'_> for NumberOrText<T> {
+/// The forms of a value that is neither a list nor a table.
+type Plain<'a, T> = Forms<'a, T, IgnoredAny, IgnoredAny>;
+
+impl<T, L, M> Default for Forms<'_, T, L, M> {
+    fn default() -> Self {
+        Forms { expected: "", number: None, text: None, list: None, table: None }
+    }
+}
+
+impl<'de, T, L: Deserialize<'de>, M: Deserialize<'de>> Visitor<'de> for Forms<'_, T, L, M> {
     type Value = T;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -128,58 +129,77 @@ impl<T> Visitor<'_> for NumberOrText<T> {
     }
 
     fn visit_i64<E: de::Error>(self, v: i64) -> Result<T, E> {
-        self.visit_f64(v as f64)
+        match self.number {
+            Some(_) => self.visit_f64(v as f64),
+            None => Err(E::invalid_type(Unexpected::Signed(v), &self)),
+        }
     }
 
     fn visit_f64<E: de::Error>(self, v: f64) -> Result<T, E> {
-        (self.number)(v).ok_or_else(|| E::invalid_value(de::Unexpected::Float(v), &self))
+        let number = self.number.ok_or_else(|| E::invalid_type(Unexpected::Float(v), &self))?;
+        number(v).ok_or_else(|| E::invalid_value(Unexpected::Float(v), &self))
     }
 
     fn visit_str<E: de::Error>(self, v: &str) -> Result<T, E> {
-        let plain = || E::invalid_value(de::Unexpected::Str(v), &self);
-        (self.text)(v).map_err(|problem| problem.map_or_else(plain, E::custom))
+        let text = self.text.ok_or_else(|| E::invalid_type(Unexpected::Str(v), &self))?;
+        let plain = || E::invalid_value(Unexpected::Str(v), &self);
+        text(v).map_err(|problem| problem.map_or_else(plain, E::custom))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<T, A::Error> {
+        let Some(of_list) = self.list else { return Err(de::Error::invalid_type(Unexpected::Seq, &self)) };
+        of_list(L::deserialize(SeqAccessDeserializer::new(list))?).map_err(de::Error::custom)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+        let Some(of_table) = self.table else { return Err(de::Error::invalid_type(Unexpected::Map, &self)) };
+        M::deserialize(MapAccessDeserializer::new(map)).map(of_table)
     }
 }
 
 impl<'de> Deserialize<'de> for PrescribedComponent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PrescribedComponent, D::Error> {
-        deserializer.deserialize_any(NumberOrText {
+        deserializer.deserialize_any(Plain {
             expected: PRESCRIBED,
-            number: |v| v.is_finite().then_some(PrescribedComponent(Some(Varying::Number(v)))),
-            text: |v| Ok(PrescribedComponent((v != "free").then(|| Varying::Text(v.into())))),
+            number: Some(|v| v.is_finite().then_some(PrescribedComponent(Some(Varying::Number(v))))),
+            text: Some(&|v| Ok(PrescribedComponent((v != "free").then(|| Varying::Text(v.into()))))),
+            ..Plain::default()
         })
     }
 }
 
 impl<'de> Deserialize<'de> for VaryingPressure {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<VaryingPressure, D::Error> {
-        deserializer.deserialize_any(NumberOrText {
+        deserializer.deserialize_any(Plain {
             expected: PRESSURE,
-            number: |v| Some(VaryingPressure(Varying::Number(v))),
-            text: |v| {
+            number: Some(|v| Some(VaryingPressure(Varying::Number(v)))),
+            text: Some(&|v| {
                 let is_quantity = Quantity::Pressure.parse(v);
                 Ok(VaryingPressure(is_quantity.map_or_else(|_| Varying::Text(v.into()), Varying::Number)))
-            },
+            }),
+            ..Plain::default()
         })
     }
 }
 
 impl<'de> Deserialize<'de> for MeshLength {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MeshLength, D::Error> {
-        deserializer.deserialize_any(NumberOrText {
+        deserializer.deserialize_any(Plain {
             expected: "a number of mesh units, or a length with a unit such as \"4 mm\"",
-            number: |v| Some(MeshLength::Units(v)),
-            text: |v| MeshLength::parse(v).map_err(|e| Some(e.problem().into())),
+            number: Some(|v| Some(MeshLength::Units(v))),
+            text: Some(&|v| MeshLength::parse(v).map_err(|e| Some(e.problem().into()))),
+            ..Plain::default()
         })
     }
 }
 
 impl<'de> Deserialize<'de> for Varying {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Varying, D::Error> {
-        deserializer.deserialize_any(NumberOrText {
+        deserializer.deserialize_any(Plain {
             expected: "a number or an expression of x, y, z such as \"1e5*x\"",
-            number: |v| Some(Varying::Number(v)),
-            text: |v| Ok(Varying::Text(v.into())),
+            number: Some(|v| Some(Varying::Number(v))),
+            text: Some(&|v| Ok(Varying::Text(v.into()))),
+            ..Plain::default()
         })
     }
 }
@@ -230,29 +250,12 @@ schemas! {
 
 /// A number in the SI unit, or a text with a unit.
 fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
-    deserializer.deserialize_any(QuantityVisitor(quantity))
-}
-
-struct QuantityVisitor(Quantity);
-
-impl Visitor<'_> for QuantityVisitor {
-    type Value = f64;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(self.0.expected())
-    }
-
-    fn visit_i64<E: de::Error>(self, v: i64) -> Result<f64, E> {
-        Ok(v as f64)
-    }
-
-    fn visit_f64<E: de::Error>(self, v: f64) -> Result<f64, E> {
-        Ok(v)
-    }
-
-    fn visit_str<E: de::Error>(self, v: &str) -> Result<f64, E> {
-        self.0.parse(v).map_err(|e| E::custom(e.problem()))
-    }
+    deserializer.deserialize_any(Plain {
+        expected: quantity.expected(),
+        number: Some(Some),
+        text: Some(&|v| quantity.parse(v).map_err(|e| Some(e.problem().into()))),
+        ..Plain::default()
+    })
 }
 
 /// Functions for `deserialize_with` and `schema_with` of keys that hold a quantity, in the SI unit.

@@ -3,12 +3,10 @@
 use crate::choice::choice;
 use crate::engine::{Engine, Order, Precision, Setting, Sweep};
 use crate::error::{Error, Result};
-use crate::scene::value;
+use crate::scene::value::{self, Forms};
 use schemars::JsonSchema;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{self, MapAccess, Visitor};
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, Serialize};
-use std::fmt;
 
 /// The settings of an engine. A key that is absent has the default of the engine.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, Serialize, JsonSchema)]
@@ -46,27 +44,14 @@ pub struct EngineEntry {
 #[derive(Debug, Clone)]
 pub(in crate::fits) struct EngineOrName(pub EngineEntry);
 
-struct EngineVisitor;
-
-impl<'de> Visitor<'de> for EngineVisitor {
-    type Value = EngineOrName;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a name such as \"jolt\", or a table such as { method = \"xpbd\", substeps = 10 }")
-    }
-
-    fn visit_str<E: de::Error>(self, name: &str) -> std::result::Result<EngineOrName, E> {
-        Ok(EngineOrName(EngineEntry { method: Some(name.into()), ..EngineEntry::default() }))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<EngineOrName, A::Error> {
-        EngineEntry::deserialize(MapAccessDeserializer::new(map)).map(EngineOrName)
-    }
-}
-
 impl<'de> Deserialize<'de> for EngineOrName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<EngineOrName, D::Error> {
-        deserializer.deserialize_any(EngineVisitor)
+        deserializer.deserialize_any(Forms::<_, IgnoredAny, _> {
+            expected: "a name such as \"jolt\", or a table such as { method = \"xpbd\", substeps = 10 }",
+            text: Some(&|name| Ok(EngineOrName(EngineEntry { method: Some(name.into()), ..EngineEntry::default() }))),
+            table: Some(EngineOrName),
+            ..Forms::default()
+        })
     }
 }
 

@@ -2,11 +2,11 @@
 
 use crate::fit::{DeformationFamily, Design};
 use crate::fits::sampled::recipe::SampledRecipe;
-use crate::scene::value;
+use crate::scene::value::{self, Forms};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::json;
 use std::fmt;
 use std::path::PathBuf;
@@ -83,23 +83,12 @@ pub struct PathsEntry(pub Vec<PathBuf>);
 
 impl<'de> Deserialize<'de> for PathsEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PathsEntry, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = PathsEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("the path of a file, or a list of paths")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, path: &str) -> Result<PathsEntry, E> {
-                Ok(PathsEntry(vec![path.into()]))
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<PathsEntry, A::Error> {
-                Deserialize::deserialize(SeqAccessDeserializer::new(list)).map(PathsEntry)
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
+        deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
+            expected: "the path of a file, or a list of paths",
+            text: Some(&|path| Ok(PathsEntry(vec![path.into()]))),
+            list: Some(|all| Ok(PathsEntry(all))),
+            ..Forms::default()
+        })
     }
 }
 
@@ -148,28 +137,15 @@ pub struct ShapeSetsEntry {
 
 impl<'de> Deserialize<'de> for ShapeSetsEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ShapeSetsEntry, D::Error> {
-        struct OneOrMany;
-        impl<'de> Visitor<'de> for OneOrMany {
-            type Value = ShapeSetsEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a table of shapes, or a list of tables")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<ShapeSetsEntry, A::Error> {
-                let one = ShapesEntry::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(ShapeSetsEntry { all: vec![one], is_list: false })
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<ShapeSetsEntry, A::Error> {
-                let all: Vec<ShapesEntry> = Deserialize::deserialize(SeqAccessDeserializer::new(list))?;
-                if all.is_empty() {
-                    return Err(A::Error::custom("expected at least one table of shapes, found none"));
-                }
-                Ok(ShapeSetsEntry { all, is_list: true })
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
+        deserializer.deserialize_any(Forms {
+            expected: "a table of shapes, or a list of tables",
+            list: Some(|all: Vec<ShapesEntry>| match all.is_empty() {
+                true => Err("expected at least one table of shapes, found none"),
+                false => Ok(ShapeSetsEntry { all, is_list: true }),
+            }),
+            table: Some(|one| ShapeSetsEntry { all: vec![one], is_list: false }),
+            ..Forms::default()
+        })
     }
 }
 

@@ -7,12 +7,11 @@ use crate::error::{Error, Result};
 use crate::fit::{Choices, Fit, Objective, ShearSprings, VolumeSprings};
 use crate::fits::sampled::SampledRecipe;
 use crate::named::unknown;
+use crate::scene::value::Forms;
 use crate::whole::{DescentMethod, GaussNewton, ModuliSharing, WholeSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{self, Deserializer, SeqAccess, Visitor};
-use std::fmt;
+use serde::de::{Deserializer, IgnoredAny};
 
 /// The default seed of the random loads. Any number would do; it is the year of the paper.
 const SEED: u64 = 2010;
@@ -328,24 +327,12 @@ fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<V
 
 /// A text, or a list of texts.
 fn one_or_more<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Vec<String>>, D::Error> {
-    struct Texts;
-
-    impl<'de> Visitor<'de> for Texts {
-        type Value = Vec<String>;
-
-        fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-            f.write_str("a text or a list of texts")
-        }
-
-        fn visit_str<E: de::Error>(self, v: &str) -> std::result::Result<Vec<String>, E> {
-            Ok(vec![v.into()])
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> std::result::Result<Vec<String>, A::Error> {
-            Vec::deserialize(SeqAccessDeserializer::new(list))
-        }
-    }
-    deserializer.deserialize_any(Texts).map(Some)
+    deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
+        expected: "a text or a list of texts",
+        text: Some(&|one| Ok(Some(vec![one.into()]))),
+        list: Some(|all| Ok(Some(all))),
+        ..Forms::default()
+    })
 }
 
 /// The names of the starts: a name, or a list of different names.
