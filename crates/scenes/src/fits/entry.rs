@@ -276,23 +276,10 @@ impl<'de> Deserialize<'de> for FitEntry {
 
 /// The names of groups, or one word for several groups.
 #[derive(Deserialize)]
-#[serde(from = "OneOrMany")]
-struct Groups(Vec<String>);
-
-#[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a list of groups of the element, or \"default\", \"all\" or \"all + volume\"")]
-enum OneOrMany {
+enum Groups {
     One(String),
     Many(Vec<String>),
-}
-
-impl From<OneOrMany> for Groups {
-    fn from(given: OneOrMany) -> Groups {
-        Groups(match given {
-            OneOrMany::One(name) => vec![name],
-            OneOrMany::Many(names) => names,
-        })
-    }
 }
 
 struct EntryVisitor;
@@ -311,7 +298,12 @@ impl<'de> Visitor<'de> for EntryVisitor {
             match key.as_str() {
                 "name" => entry.name = Some(map.next_value()?),
                 "objective" => objective = Some(map.next_value()?),
-                "springs" => entry.springs = Some(map.next_value::<Groups>()?.0),
+                "springs" => {
+                    entry.springs = Some(match map.next_value()? {
+                        Groups::One(name) => vec![name],
+                        Groups::Many(names) => names,
+                    });
+                }
                 "engine" => entry.engine = Some(map.next_value::<EngineOrName>()?.0),
                 "bending" => {
                     let name: String = map.next_value()?;
