@@ -8,7 +8,6 @@ use springfit_foundation::error::Result;
 use springfit_report::report;
 use springfit_studies::study::{self, Event};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Find the moduli of a body from measured displacements and forces, with intervals
 #[derive(Args)]
@@ -31,7 +30,7 @@ Examples:
   springfit calibrate scene.toml --set calibrate.unknowns=moduli  # Young's moduli and Poisson's ratios";
 
 impl Calibrate {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let scene = self.settings.scene(&self.scene)?;
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("calibrate-{stem}")));
@@ -41,7 +40,6 @@ impl Calibrate {
         let paths = report::write_calibration(&outcome, edition)?;
         let tables = || report::calibration_tables(&outcome);
         self.output.print(terminal, || &outcome, tables, || report::calibration_text(&outcome))?;
-        terminal.written(&paths)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&paths)
     }
 }

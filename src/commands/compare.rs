@@ -13,7 +13,6 @@ use springfit_foundation::file::Edition;
 use springfit_report::report::{self, CASES, COMPARE_FILES, Comparison, StudyLines, Table};
 use springfit_studies::study::{self, CaseRecord, Comparing, Event, Forecast, MethodRecord, is_comparison, stages};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 use toml::{Table as Keys, Value};
 
@@ -91,7 +90,7 @@ Examples:
 const MOST_JOBS: usize = 1024;
 
 impl Compare {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if !(1..=MOST_JOBS).contains(&self.jobs) {
             return Err(Error::expected("--jobs", format!("a number from 1 to {MOST_JOBS}"), self.jobs));
         }
@@ -170,13 +169,7 @@ impl Compare {
     }
 
     /// Runs the cases that are left, and writes what was found. A comparison in a file keeps each case when it is done.
-    fn compare(
-        &self,
-        terminal: &mut Terminal,
-        comparing: &Comparing,
-        folder: &Path,
-        is_file: bool,
-    ) -> Result<ExitCode> {
+    fn compare(&self, terminal: &mut Terminal, comparing: &Comparing, folder: &Path, is_file: bool) -> Result<()> {
         let cases = comparing.cases();
         let title = comparing.title().map_or_else(|| self.what.join(", "), String::from);
         if self.explain {
@@ -186,8 +179,7 @@ impl Compare {
                 let fits = if fits.is_empty() { "all objectives".into() } else { fits.join("\n  ") };
                 format!("{title}: {}\n  {}\nfits\n  {fits}\n", cases_in_words(words.len()), words.join("\n  "))
             };
-            self.output.print_plan(terminal, &words, text)?;
-            return Ok(ExitCode::SUCCESS);
+            return self.output.print_plan(terminal, &words, text);
         }
         let mut inputs = comparing.inputs();
         inputs.extend(is_file.then(|| PathBuf::from(&self.what[0])));
@@ -267,18 +259,17 @@ impl Compare {
         let first: Vec<PathBuf> = paths.iter().filter(is_first).cloned().collect();
         terminal.written(&first)?;
         terminal.note(&format!("{} more files are in {}", paths.len() - first.len(), folder.display()));
-        Ok(ExitCode::SUCCESS)
+        Ok(())
     }
 
     /// The fits of a scene beside each other.
-    fn scene(&self, terminal: &mut Terminal, path: &Path, folder: &Path) -> Result<ExitCode> {
+    fn scene(&self, terminal: &mut Terminal, path: &Path, folder: &Path) -> Result<()> {
         let scene = self.settings.scene(path)?;
         if self.explain {
             let scene = study::compared(&scene)?;
             let forecast = Forecast::of(&scene)?;
             let text = || report::forecast_text(scene.title(), &forecast, &stages(&scene));
-            self.output.print_plan(terminal, &forecast, text)?;
-            return Ok(ExitCode::SUCCESS);
+            return self.output.print_plan(terminal, &forecast, text);
         }
         let mut progress = |event: Event| terminal.show(event);
         let edition = report::open_outputs(folder, &report::COMPARISON_FILES, &scene.inputs())?;
@@ -288,7 +279,7 @@ impl Compare {
     }
 
     /// An element at large deformation, by more and more stretch and by more and more sampled shapes.
-    fn stretches(&self, terminal: &mut Terminal, element: &str, law: &str, folder: &Path) -> Result<ExitCode> {
+    fn stretches(&self, terminal: &mut Terminal, element: &str, law: &str, folder: &Path) -> Result<()> {
         let inputs = [PathBuf::from(element), PathBuf::from(law)];
         let edition = report::open_outputs(folder, &report::STRETCHES_FILES, &inputs)?;
         let element = Arc::new(Element::load(element)?);
@@ -304,8 +295,7 @@ impl Compare {
         let tables = report::stretches_tables(&study);
         let text = tables.each_ref().map(Table::titled_text).join("\n");
         self.output.print(terminal, || &study, || tables.to_vec(), || text)?;
-        terminal.written(&paths?)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&paths?)
     }
 
     /// The options of elements that are given, and whether each is.
@@ -366,11 +356,10 @@ impl Compare {
         comparison: &Comparison,
         record: impl FnOnce() -> R,
         edition: Edition,
-    ) -> Result<ExitCode> {
+    ) -> Result<()> {
         let paths = comparison.write(edition);
         self.output.print(terminal, record, || vec![comparison.table.clone()], || comparison.text())?;
-        terminal.written(&paths?)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&paths?)
     }
 }
 

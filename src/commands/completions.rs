@@ -4,7 +4,6 @@ use crate::terminal::Terminal;
 use clap::Args;
 use clap_complete::{Shell, generate};
 use springfit_foundation::error::Result;
-use std::process::ExitCode;
 
 /// Write a shell's completion script to standard output
 #[derive(Args)]
@@ -22,11 +21,10 @@ Examples:
   springfit completions fish > ~/.config/fish/completions/springfit.fish";
 
 impl Completions {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let mut command = (terminal.grammar)();
         let mut script = Vec::new();
         generate(self.shell, &mut command, "springfit", &mut script);
-        terminal.print_bytes(&script)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.print_bytes(&script)
     }
 }

@@ -10,7 +10,6 @@ use springfit_report::report;
 use springfit_studies::study::{self, Convergence, Event, Forecast, Scene, stages};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Refine the mesh of a scene, and report how finite elements and networks converge
@@ -44,7 +43,7 @@ Examples:
   springfit converge linear.toml --truth quadratic.toml  # both have the same body, supports and loads";
 
 impl Converge {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let scene = self.settings.scene(&self.scene)?;
         if self.explain {
             let levels = study::refinements(&scene, self.levels).map_err(|e| e.placed(Error::of_option))?;
@@ -54,8 +53,7 @@ impl Converge {
                 let stages = if level == 0 { stages(&levels[0]) } else { Vec::new() };
                 report::forecast_text(&title(level), forecast, &stages)
             });
-            self.output.print_plan(terminal, &forecasts, || text.collect::<Vec<_>>().join("\n"))?;
-            return Ok(ExitCode::SUCCESS);
+            return self.output.print_plan(terminal, &forecasts, || text.collect::<Vec<_>>().join("\n"));
         }
         let stem = self.scene.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("converge-{stem}")));
@@ -84,8 +82,7 @@ impl Converge {
         let convergence = study::converge_with(&scene, truth.as_ref(), self.levels, &mut each, &mut show);
         let convergence = convergence.map_err(|e| e.placed(Error::of_option))?;
         self.output.print_text(terminal, &self.text(&convergence))?;
-        terminal.written(&paths)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&paths)
     }
 
     /// What is printed of the levels.

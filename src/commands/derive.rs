@@ -11,7 +11,6 @@ use springfit_foundation::error::{Error, Result};
 use springfit_foundation::named::unknown;
 use springfit_report::report::Derivation;
 use springfit_studies::study::Event;
-use std::process::ExitCode;
 
 /// Print the exact closed forms of an element's stiffness and spring constants
 #[derive(Args)]
@@ -50,7 +49,7 @@ Examples:
   springfit derive quad4 --orthotropic --sides           # an orthotropic rectangle";
 
 impl Derive {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let (exact, weights) = self.forms()?;
         let element = Element::load(&self.element)?;
         let plane = match (element.dimension(), self.plane) {
@@ -68,8 +67,7 @@ impl Derive {
         let exact = exact.then(|| form.exact());
         let (exact, matrix) = (exact.as_ref(), self.matrix);
         let derivation = Derivation { element: &element, form: &form, exact, fits: &fits, plane, matrix };
-        terminal.print(&if self.latex { derivation.latex() } else { derivation.text() })?;
-        Ok(ExitCode::SUCCESS)
+        terminal.print(&if self.latex { derivation.latex() } else { derivation.text() })
     }
 
     /// Whether the exact network is derived, and the weights of the fits that are.

@@ -9,7 +9,6 @@ use springfit_foundation::error::Result;
 use springfit_report::report;
 use springfit_studies::study::Event;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// List the shipped elements with their spring groups, print the file of one, or draw them
 #[derive(Args)]
@@ -36,7 +35,7 @@ Examples:
 With --json: a list of elements with the keys name, title, cell, nodes, springs, gmsh, vtk, source";
 
 impl Elements {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if let Some(folder) = &self.out {
             let elements = match &self.name {
                 Some(name) => vec![Element::load(name)?],
@@ -47,17 +46,14 @@ impl Elements {
             let edition = report::open_outputs(folder, &files.iter().map(String::as_str).collect::<Vec<_>>(), &inputs)?;
             let mut progress = |event: Event| terminal.show(event);
             let paths = report::write_element_page(&elements, edition, &mut progress)?;
-            terminal.written(&paths)?;
-            return Ok(ExitCode::SUCCESS);
+            return terminal.written(&paths);
         }
         if let Some(name) = &self.name {
-            terminal.print(shipped_text(SHIPPED.iter().map(|file| (file.name, file.text)), name)?)?;
-            return Ok(ExitCode::SUCCESS);
+            return terminal.print(shipped_text(SHIPPED.iter().map(|file| (file.name, file.text)), name)?);
         }
         let elements = SHIPPED.iter().map(Outline::shipped).collect::<Result<Vec<_>>>()?;
         let tables = || vec![report::elements_table(&elements)];
-        self.output.print(terminal, || &elements, tables, || report::elements_table(&elements).text())?;
-        Ok(ExitCode::SUCCESS)
+        self.output.print(terminal, || &elements, tables, || report::elements_table(&elements).text())
     }
 }
 

@@ -10,7 +10,6 @@ use springfit_foundation::named::unknown;
 use springfit_report::report::{NetworkFile, NetworkRecord, read_network};
 use springfit_studies::study::{Controls, run_with};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Write a network as the files and scripts of another program
 #[derive(Args)]
@@ -43,7 +42,7 @@ Examples:
 Programs:";
 
 impl Export {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let target = target_named(&self.to)?;
         let stem = self.network.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-{}", target.name)));
@@ -85,8 +84,7 @@ impl Export {
         if !target.command.is_empty() {
             terminal.print(&format!("run it: cd {} && {}\n", folder.display(), target.command))?;
         }
-        terminal.written(&written)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&written)
     }
 
     fn read(&self) -> Result<NetworkRecord> {

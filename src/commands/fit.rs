@@ -22,7 +22,6 @@ use springfit_studies::study::{
     assumed, fit_mesh, fit_some, fit_without_errors, point_masses,
 };
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Fit the springs of a mesh, without a scene
@@ -100,7 +99,7 @@ Published methods, for --objective:
   maciel-uniform                   Maciel et al. (2003)";
 
 impl Fit {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let shard = self.shard.as_deref().map(Shard::parse).transpose()?;
         let format = match shard {
             Some(_) => None,
@@ -160,8 +159,7 @@ impl Fit {
         let forecast = Forecast::of_fits(&mesh, material, std::slice::from_ref(&named), None);
         if self.explain {
             let title = self.mesh.display().to_string();
-            self.format.print_plan(terminal, &forecast, || report::forecast_text(&title, &forecast, &[]))?;
-            return Ok(ExitCode::SUCCESS);
+            return self.format.print_plan(terminal, &forecast, || report::forecast_text(&title, &forecast, &[]));
         }
         let Some(format) = format else {
             let shard = shard.unwrap_or(Shard::WHOLE);
@@ -208,7 +206,7 @@ impl Fit {
         terminal.written(std::slice::from_ref(&self.output))?;
         // The program ends: the system takes its memory back at once, not spring by spring.
         std::mem::forget(outcome);
-        Ok(ExitCode::SUCCESS)
+        Ok(())
     }
 
     /// Fits one range of cells, and writes what it gives to the springs.
@@ -219,7 +217,7 @@ impl Fit {
         mesh: &Mesh,
         material: Material,
         named: &NamedFit,
-    ) -> Result<ExitCode> {
+    ) -> Result<()> {
         let cells = mesh.cell_count();
         if shard.count > cells {
             return Err(Error::expected("--shard", format!("at most {cells} shards, one for each cell"), shard.count));
@@ -252,8 +250,7 @@ impl Fit {
         record.write(&self.output)?;
         let cells = range.len();
         terminal.print(&format!("{cells} cells of shard {} of {}\n", shard.number, shard.count))?;
-        terminal.written(std::slice::from_ref(&self.output))?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(std::slice::from_ref(&self.output))
     }
 
     /// What tells the shards of one fit and material from those of another: keys, values and the sums of files that are read.

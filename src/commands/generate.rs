@@ -6,7 +6,6 @@ use springfit_element::element::Element;
 use springfit_foundation::error::{Error, Result};
 use springfit_generate::generate::{LANGUAGES, Program, Recipe, language, language_of};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Write code that computes the springs of a cell at run time, for programs that cut, remesh or adapt
 #[derive(Args)]
@@ -62,7 +61,7 @@ fn language_help() -> String {
 }
 
 impl Generate {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let ending = self.output.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
         let language = match (self.language.as_deref(), ending) {
             (Some(name), _) => language(name),
@@ -85,10 +84,9 @@ impl Generate {
         };
         let text = program.print(language).map_err(Error::of_option)?;
         match &self.output {
-            Some(path) => springfit_foundation::file::write_whole(path, text.as_bytes())?,
-            None => terminal.print(&text)?,
+            Some(path) => springfit_foundation::file::write_whole(path, text.as_bytes()),
+            None => terminal.print(&text),
         }
-        Ok(ExitCode::SUCCESS)
     }
 
     /// Moves a fault to the option that it is about: objectives name themselves, and what is wrong with an element names no option.

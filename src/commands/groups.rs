@@ -9,7 +9,6 @@ use springfit_foundation::error::Result;
 use springfit_mesh::mesh::listed_endings;
 use springfit_report::report::NamedMesh;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// List the groups of a mesh, with what they hold and where they are
 #[derive(Args)]
@@ -34,7 +33,7 @@ Examples:
 With --json: the keys mesh, points, elements, extent (m), groups with name, cells, sides, edges, points, from, to (m)";
 
 impl Groups {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let (name, mesh) = if is_scene(&self.mesh) {
             self.options.expect_none()?;
             let scene = self.settings.scene(&self.mesh)?;
@@ -46,7 +45,6 @@ impl Groups {
             (self.mesh.display().to_string(), mesh)
         };
         let named = NamedMesh { name, mesh };
-        self.output.print(terminal, || &named, || vec![named.table()], || named.text())?;
-        Ok(ExitCode::SUCCESS)
+        self.output.print(terminal, || &named, || vec![named.table()], || named.text())
     }
 }

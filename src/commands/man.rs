@@ -5,7 +5,6 @@ use clap::Args;
 use clap_mangen::Man as Page;
 use springfit_foundation::error::{Error, Result};
 use springfit_foundation::named::unknown;
-use std::process::ExitCode;
 
 /// Write the manual page of the program or of a command to standard output
 #[derive(Args)]
@@ -21,7 +20,7 @@ Examples:
   springfit man run | man -l -                          # read it at once";
 
 impl Man {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let mut program = (terminal.grammar)();
         program.build();
         let page = match &self.command {
@@ -38,7 +37,6 @@ impl Man {
         };
         let mut text = Vec::new();
         page.render(&mut text).map_err(|e| Error::io("the manual page cannot be written", e))?;
-        terminal.print_bytes(&text)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.print_bytes(&text)
     }
 }

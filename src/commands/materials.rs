@@ -7,7 +7,6 @@ use clap::Args;
 use springfit_element::material::{Energy, SHIPPED};
 use springfit_foundation::error::Result;
 use springfit_report::report;
-use std::process::ExitCode;
 
 /// List the shipped hyperelastic materials, which "law" names, or print the file of one
 #[derive(Args)]
@@ -30,14 +29,12 @@ Examples:
 With --json: a list of materials with the keys name, title, parameters, fibres, source";
 
 impl Materials {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if let Some(name) = &self.name {
-            terminal.print(shipped_text(SHIPPED.iter().copied(), name)?)?;
-            return Ok(ExitCode::SUCCESS);
+            return terminal.print(shipped_text(SHIPPED.iter().copied(), name)?);
         }
         let materials = Energy::shipped()?;
         let tables = || vec![report::materials_table(&materials)];
-        self.output.print(terminal, || &materials, tables, || report::materials_table(&materials).text())?;
-        Ok(ExitCode::SUCCESS)
+        self.output.print(terminal, || &materials, tables, || report::materials_table(&materials).text())
     }
 }

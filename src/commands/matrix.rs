@@ -11,7 +11,6 @@ use springfit_fit::fit::{Choices, Fit, GivenFit, GivenStiffness, Objective, cond
 use springfit_foundation::error::{Error, Result};
 use springfit_report::report::{PointTable, read_matrix, read_points};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Fit springs to a stiffness matrix from elsewhere: of a shell, of displacements and pressures, of a superelement
 #[derive(Args)]
@@ -65,7 +64,7 @@ struct Record<'a> {
 }
 
 impl Matrix {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         springfit_foundation::file::check_apart(
             std::slice::from_ref(&self.output),
             &[self.matrix.clone(), self.points.clone()],
@@ -130,8 +129,7 @@ impl Matrix {
         if !found.is_unique {
             terminal.note("other constants reach the same value: these are the smallest");
         }
-        terminal.written(std::slice::from_ref(&self.output))?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(std::slice::from_ref(&self.output))
     }
 }
 

@@ -15,7 +15,6 @@ use springfit_report::report::{
 };
 use springfit_studies::study::{EngineEntry, MeasureOptions, MeasuredNetwork, NamedLattice, load_elements, measure};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Measure a network as a material: its elasticity tensor, density, stability, frequencies, longest step
 #[derive(Args)]
@@ -101,7 +100,7 @@ struct Record<'a> {
 }
 
 impl Measure {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let mut written = Vec::new();
         let mut volume = self.volume;
         let (title, formulas, file) = match (&self.lattice, &self.network) {
@@ -157,8 +156,7 @@ impl Measure {
         if !self.format.json {
             file.notes.iter().for_each(|note| terminal.note(note));
         }
-        terminal.written(&written)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&written)
     }
 
     fn read(&self, path: &Path) -> Result<SpecimenFile> {

@@ -5,7 +5,6 @@ use clap::Args;
 use springfit_foundation::error::{Error, ErrorKind, Result};
 use springfit_report::report::merge_shards;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Merge the shards that springfit fit --shard wrote into one network
 #[derive(Args)]
@@ -26,7 +25,7 @@ Examples:
   springfit merge organ-1.shard organ-2.shard -o springs.csv";
 
 impl Merge {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if self.output.extension().is_none_or(|ending| ending != "csv") {
             let found = self.output.display();
             return Err(Error::expected("--output", "a file ending in .csv", found).of_kind(ErrorKind::Unsupported));
@@ -36,7 +35,6 @@ impl Merge {
         let merged = merge_shards(&self.shards, &self.output)?;
         let shards = self.shards.len();
         terminal.print(&format!("{} springs of {shards} shards, {} with k < 0\n", merged.springs, merged.negative))?;
-        terminal.written(std::slice::from_ref(&self.output))?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(std::slice::from_ref(&self.output))
     }
 }

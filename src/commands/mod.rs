@@ -40,7 +40,7 @@ pub use output::typed_as;
 use crate::terminal::Terminal;
 use clap::Subcommand;
 use springfit_foundation::error::Result;
-use std::process::ExitCode;
+use std::process::{ExitCode, Termination};
 
 /// One list of the subcommands: their names, and who runs them.
 macro_rules! commands {
@@ -57,7 +57,7 @@ macro_rules! commands {
             /// An input is wrong, or a file cannot be read or written.
             pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
                 match self {
-                    $(Command::$name(arguments) => arguments.run(terminal)),+
+                    $(Command::$name(arguments) => arguments.run(terminal).map(Termination::report)),+
                 }
             }
         }

@@ -12,7 +12,6 @@ use springfit_foundation::text::{not_a_line, printable};
 use springfit_mesh::mesh::{Mesh, listed_endings};
 use springfit_studies::study::{DraftMaterial, DraftSource, DraftUnit, FillEntry, draft};
 use std::path::{Component, Path, PathBuf};
-use std::process::ExitCode;
 
 /// Write a commented scene for a mesh, which runs as it is
 #[derive(Args)]
@@ -46,7 +45,7 @@ Examples:
   springfit run organ.toml";
 
 impl New {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if let Some(output) = &self.output {
             if output.symlink_metadata().is_ok() {
                 return Err(Error::new("is there already and is not replaced: name another file").in_file(output));
@@ -74,13 +73,12 @@ impl New {
         let source = fill.as_ref().map_or(DraftSource::File(&file), DraftSource::Fill);
         let text = draft(&mesh, source, unit, &elements, &title, &self.material(&mesh)?);
         match &self.output {
-            None => terminal.print(&text)?,
+            None => terminal.print(&text),
             Some(output) => {
                 write_whole(output, text.as_bytes())?;
-                terminal.written(std::slice::from_ref(output))?;
+                terminal.written(std::slice::from_ref(output))
             }
         }
-        Ok(ExitCode::SUCCESS)
     }
 }
 

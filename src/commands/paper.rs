@@ -7,7 +7,6 @@ use springfit_foundation::error::{Error, Result};
 use springfit_report::report::{self, open_outputs};
 use springfit_studies::study::{self, Index};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Reproduce the tables and figures of Natsupakpong and Cavusoglu (2010)
 #[derive(Args)]
@@ -37,7 +36,7 @@ Examples:
 const SCENES: &str = "scenes";
 
 impl Paper {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join("paper"));
         let index = self.index.as_ref().map_or_else(Index::shipped, |path| Index::load(path))?;
         index.expect(&self.only).map_err(|e| e.at_key("--only"))?;
@@ -62,7 +61,6 @@ impl Paper {
         )?;
         // The experiments are in a folder of their own.
         let written: Vec<PathBuf> = written?.into_iter().filter(|path| path.parent() == Some(&folder)).collect();
-        terminal.say(&format!("written: {} files in {}", written.len(), folder.display()))?;
-        Ok(ExitCode::SUCCESS)
+        terminal.say(&format!("written: {} files in {}", written.len(), folder.display()))
     }
 }

@@ -7,7 +7,6 @@ use springfit_foundation::error::{Error, Result};
 use springfit_foundation::file::{check_apart, check_file, write_whole};
 use springfit_report::report::{Columns, Cost, Figure, Markup, PictureFormat, RunFolder, Table, folder_tables};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Figures and tables for a paper, from the folder of a run, a comparison, a sweep or a convergence study
 #[derive(Args)]
@@ -53,7 +52,7 @@ Examples:
   springfit plot out/cube_tet --table markdown";
 
 impl Plot {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let run = RunFolder::at(&self.run);
         let format = match (&self.output, self.figure) {
             (Some(path), Some(_)) => PictureFormat::of(path)?,
@@ -76,13 +75,12 @@ impl Plot {
             (None, None) => return Err(Error::new("expected --figure or --table")),
         };
         match &self.output {
-            None => terminal.print(&text)?,
+            None => terminal.print(&text),
             Some(path) => {
                 write_whole(path, &format.bytes(text)?)?;
-                terminal.written(std::slice::from_ref(path))?;
+                terminal.written(std::slice::from_ref(path))
             }
         }
-        Ok(ExitCode::SUCCESS)
     }
 
     fn tables(&self, run: &RunFolder, markup: Markup) -> Result<String> {

@@ -10,7 +10,6 @@ use springfit_foundation::file::check_apart;
 use springfit_report::report;
 use springfit_studies::study::{Controls, Forecast, engine_limits, run_with, stages};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::Arc;
 
 /// Fit, solve and compare a scene
@@ -50,7 +49,7 @@ Examples:
   springfit run scene.toml --json | jq '.fits[].name'    # the keys of report.json: springfit schema report";
 
 impl Run {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         let mut scene = self.settings.scene(&self.scene)?;
         if self.report {
             scene.output_mut().report = Some(true);
@@ -62,8 +61,7 @@ impl Run {
             let mut forecast = Forecast::of(&scene)?;
             forecast.engines = engine_limits(&scene)?;
             let text = || report::forecast_text(scene.title(), &forecast, &stages(&scene));
-            self.output.print_plan(terminal, &forecast, text)?;
-            return Ok(ExitCode::SUCCESS);
+            return self.output.print_plan(terminal, &forecast, text);
         }
         let stem = self.scene.file_stem().unwrap_or_default();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(stem));
@@ -84,7 +82,6 @@ impl Run {
         // Files first: who reads the table may have gone away.
         let paths = report::write_outputs(&outcome, scene.output(), edition);
         self.output.print_outcome(terminal, &outcome)?;
-        terminal.written(&paths?)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&paths?)
     }
 }

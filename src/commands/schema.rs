@@ -6,7 +6,6 @@ use springfit_element::{element, material};
 use springfit_foundation::error::Result;
 use springfit_report::report;
 use springfit_studies::study;
-use std::process::ExitCode;
 
 /// Write the JSON Schema of scenes, comparisons, elements, materials, networks or reports, for editors
 #[derive(Args)]
@@ -44,7 +43,7 @@ Examples:
   springfit schema scene --markdown        # what each key means";
 
 impl Schema {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         // The third says whether the program writes such files.
         let (schema, name, is_written) = match self.of {
             Kind::Scene => (study::scene_schema(), "scene", false),
@@ -55,9 +54,8 @@ impl Schema {
             Kind::Report => (report::schema(), "report", true),
         };
         match self.markdown {
-            true => terminal.print(&report::key_tables_text(&report::key_tables(&schema, name, is_written)))?,
-            false => terminal.print_json(&schema)?,
+            true => terminal.print(&report::key_tables_text(&report::key_tables(&schema, name, is_written))),
+            false => terminal.print_json(&schema),
         }
-        Ok(ExitCode::SUCCESS)
     }
 }

@@ -10,7 +10,6 @@ use springfit_report::report::{self, Shard, StudyLines, StudyRecord, StudyTable}
 use springfit_studies::study::{Event, Sweep as Studies};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Run a scene for many values of its keys, as its [sweep] says: lists, grids, random and Sobol samples
@@ -57,7 +56,7 @@ const BETWEEN_TABLES: Duration = Duration::from_secs(5);
 const MOST_JOBS: usize = 1024;
 
 impl Sweep {
-    pub fn run(&self, terminal: &mut Terminal) -> Result<ExitCode> {
+    pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
         if !(1..=MOST_JOBS).contains(&self.jobs) {
             return Err(Error::expected("--jobs", format!("a number from 1 to {MOST_JOBS}"), self.jobs));
         }
@@ -129,11 +128,10 @@ impl Sweep {
             write_whole(&page, report::studies_page(&title, &found(), &folder).as_bytes())?;
             written.push(page);
         }
-        terminal.written(&written)?;
-        Ok(ExitCode::SUCCESS)
+        terminal.written(&written)
     }
 
-    fn explain(&self, terminal: &mut Terminal, sweep: &Studies) -> Result<ExitCode> {
+    fn explain(&self, terminal: &mut Terminal, sweep: &Studies) -> Result<()> {
         let (keys, studies) = (sweep.keys(), sweep.studies());
         let title = format!("{}: {} studies", sweep.title(), studies.len());
         self.output.print(
@@ -141,7 +139,6 @@ impl Sweep {
             || studies.iter().map(|study| study.values()).collect::<Vec<_>>(),
             || vec![report::planned_table(&title, keys, studies)],
             || report::studies_text(report::planned_table(&title, keys, studies)),
-        )?;
-        Ok(ExitCode::SUCCESS)
+        )
     }
 }
