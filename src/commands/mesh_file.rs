@@ -1,7 +1,7 @@
 //! Arguments that are meshes.
 
 use clap::Args;
-use springfit_foundation::error::{Error, Result};
+use springfit_foundation::error::{Error, Result, expect_none};
 use springfit_foundation::quantity::Quantity;
 use springfit_foundation::range;
 use springfit_mesh::mesh::{Gate, Mesh, MeshSource};
@@ -93,10 +93,7 @@ impl MeshOptions {
                 ("--space", self.space.is_some()),
                 ("--element", !self.element.is_empty()),
             ];
-            if let Some((option, _)) = others.into_iter().find(|(_, given)| *given) {
-                let problem = "belongs to the cells of a file, found it with a fill, whose cells are all alike";
-                return Err(Error::at(option, problem));
-            }
+            expect_none(others, "belongs to the cells of a file, found it with a fill, whose cells are all alike")?;
             let fault = |e: Error| {
                 let option = match e.key() {
                     Some("cell") => "--fill",
@@ -167,11 +164,7 @@ impl MeshOptions {
             ("--space", self.space.is_some()),
             ("--element", !self.element.is_empty()),
         ];
-        match given.iter().chain(&self.filling_options()).find(|(_, given)| *given) {
-            None => Ok(()),
-            Some((option, _)) => {
-                Err(Error::at(*option, "belongs to a mesh file, found it with a scene, which has keys for it"))
-            }
-        }
+        let given = given.into_iter().chain(self.filling_options());
+        expect_none(given, "belongs to a mesh file, found it with a scene, which has keys for it")
     }
 }

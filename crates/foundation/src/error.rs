@@ -162,6 +162,17 @@ impl Error {
     }
 }
 
+/// Checks that none of these keys is given: each has to do with something else, as the problem says.
+///
+/// # Errors
+/// One is given; the error has the first.
+pub fn expect_none<'a>(given: impl IntoIterator<Item = (&'a str, bool)>, problem: impl Into<String>) -> Result<()> {
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => Err(Error::at(key, problem)),
+        None => Ok(()),
+    }
+}
+
 /// Puts the text on one line: names and texts that are quoted from a file may contain line ends.
 fn line(text: String) -> String {
     printable(&text).into_owned()

@@ -12,7 +12,7 @@ use super::part::Part;
 use super::reference::ReferenceEntry;
 use crate::bound::{self, check_count};
 use crate::choice::choice;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::fits::FitEntry;
 use crate::solve::{Newton, StaticMethod, StaticSolver};
 use crate::sweep::SweepEntry;
@@ -147,8 +147,8 @@ impl SolverEntry {
         let solver = StaticSolver::default();
         let method = choice("method", self.method.as_deref(), solver.method, StaticMethod::named)?;
         let given = [("tolerance", self.tolerance.is_some()), ("iterations", self.iterations.is_some())];
-        if let (StaticMethod::Cholesky, Some((key, _))) = (method, given.iter().find(|(_, given)| *given)) {
-            return Err(Error::at(*key, "belongs to iterations, found with method = \"cholesky\""));
+        if method == StaticMethod::Cholesky {
+            expect_none(given, "belongs to iterations, found with method = \"cholesky\"")?;
         }
         let tolerance = self.tolerance.unwrap_or(solver.tolerance);
         let iterations = self.iterations.unwrap_or(solver.iterations);

@@ -3,7 +3,7 @@
 use super::elements::load_element;
 use super::value::MeshLength;
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Mesh, MeshSource, VoxelMesh};
 use crate::range;
 use crate::text::toml as quoted;
@@ -135,13 +135,7 @@ impl FillEntry {
             ("boundary", self.boundary != stepped()),
             ("layers", self.layers.is_some()),
         ];
-        match given.into_iter().find(|(_, given)| *given) {
-            None => Ok(()),
-            Some((key, _)) => {
-                let problem = format!("belongs to a surface, found it with {}, whose cells are solid", path.display());
-                Err(Error::at(key, problem))
-            }
-        }
+        expect_none(given, format!("belongs to a surface, found it with {}, whose cells are solid", path.display()))
     }
 
     /// The entry as a table of TOML, without keys that have their defaults.

@@ -5,7 +5,7 @@ use super::fill::FillEntry;
 use super::in_memory::InMemory;
 use super::value;
 use crate::bound;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::extent::unit_note;
 use crate::mesh::{BoxMesh, DiscMesh, Embedding, Gate, Mesh, MeshSource};
 use crate::range;
@@ -156,12 +156,7 @@ impl MeshInput {
                 ("mesh.elements", !self.elements.is_empty()),
                 ("mesh.quality", self.quality.is_some()),
             ];
-            if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-                return Err(Error::at(
-                    key,
-                    "belongs to a mesh that is read, found one from memory, which is in metres",
-                ));
-            }
+            expect_none(given, "belongs to a mesh that is read, found one from memory, which is in metres")?;
         }
         if let Some(space) = self.space {
             if self.file.is_none() && self.generated.is_none() {

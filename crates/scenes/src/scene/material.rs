@@ -10,7 +10,7 @@ use super::distribution::{self, Distribution};
 use super::part::Part;
 use super::relaxation::RelaxationEntry;
 use super::value::{self, Forms};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::material::{Material, Plane};
 use crate::range;
 use schemars::JsonSchema;
@@ -244,12 +244,8 @@ impl MaterialEntry {
         }
         let isotropic = [("young", self.young.is_some()), ("poisson", self.poisson.is_some())];
         if let Some(AnisotropicLaw { key: law, .. }) = &found {
-            if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| *given) {
-                return Err(Error::at(key, format!("belongs to isotropic materials, found with \"{law}\"")));
-            }
-            if self.law.is_some() {
-                return Err(Error::at("law", format!("belongs to isotropic materials, found with \"{law}\"")));
-            }
+            let own = isotropic.into_iter().chain([("law", self.law.is_some())]);
+            expect_none(own, format!("belongs to isotropic materials, found with \"{law}\""))?;
         } else {
             if let Some((key, _)) = isotropic.into_iter().find(|(_, given)| !given) {
                 return Err(Error::new(format!("missing field \"{key}\"")));
@@ -286,8 +282,8 @@ impl MaterialEntry {
         let law = self.anisotropy()?;
         self.axes()?;
         let of_law = [("parameters", self.parameters.is_some()), ("fibre", self.fibre.is_some())];
-        if let (None, Some((key, _))) = (&self.law, of_law.into_iter().find(|(_, given)| *given)) {
-            return Err(Error::at(key, "belongs to a law, found no \"law\""));
+        if self.law.is_none() {
+            expect_none(of_law, "belongs to a law, found no \"law\"")?;
         }
         self.fibre.as_ref().map_or(Ok(()), |fibre| fibre.check().map(|_| ()).map_err(|e| e.under("fibre")))?;
         for (key, distribution) in self.distributions() {

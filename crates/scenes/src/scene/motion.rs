@@ -9,7 +9,7 @@ use super::value::{self, Varying};
 use crate::bound::{self, check_count};
 use crate::choice::choice;
 use crate::dynamics::{Integrator, LEAST_TOLERANCE, LinearSolver, Options};
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, expect_none};
 use crate::model::Lumping;
 use crate::quantity::Quantity;
 use crate::range;
@@ -214,8 +214,8 @@ impl MotionEntry {
             forces.push(AppliedForce { part, force: components, each: force.each });
         }
         let beside = [("integrator", self.integrator.is_some()), ("damping", damping.is_some())];
-        if let (true, Some((key, _))) = (self.quasi_static, beside.iter().find(|(_, given)| *given)) {
-            return Err(Error::at(*key, "belongs to motions with inertia, found with quasi-static = true"));
+        if self.quasi_static {
+            expect_none(beside, "belongs to motions with inertia, found with quasi-static = true")?;
         }
         match self.error {
             Some(_) if !self.quasi_static => {
@@ -267,8 +267,8 @@ impl MotionEntry {
             (_, false) => None,
         };
         let given = [("iterations", self.iterations.is_some()), ("tolerance", self.tolerance.is_some())];
-        if let (Some(foreign), Some((key, _))) = (foreign, given.iter().find(|(_, given)| *given)) {
-            return Err(Error::at(*key, format!("belongs to Newton's method, found with {foreign}")));
+        if let Some(foreign) = foreign {
+            expect_none(given, format!("belongs to Newton's method, found with {foreign}"))?;
         }
         if let (Integrator::SymplecticEuler, Some(_)) = (integrator, &self.solver) {
             let problem = "belongs to implicit steps, found with integrator = \"symplectic-euler\"";

@@ -3,7 +3,7 @@
 use super::damping::{DampingMeasurement, MeasuredDamping};
 use super::value::{self, Numbers};
 use crate::choice::choice;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result, expect_none};
 use crate::fit::{FittedSeries, ModulusTest};
 use crate::material::{Relaxation, RelaxationTerm};
 use schemars::JsonSchema;
@@ -142,9 +142,7 @@ impl MeasuredModuli {
                 ("storage", self.storage.is_some()),
                 ("loss", self.loss.is_some()),
             ];
-            if let Some((key, _)) = others.iter().find(|(_, given)| *given) {
-                return Err(Error::at(*key, "is a modulus, found beside damping"));
-            }
+            expect_none(others, "is a modulus, found beside damping")?;
             return Relaxation::new(damping.series()?.terms.iter().map(term).collect());
         }
         let fitted = self.fit()?;

@@ -3,7 +3,7 @@
 use super::recipe::{DISCREPANCY, LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, Start, ValidationRecipe, WholeRecipe};
 use crate::bound::{self, check_count};
 use crate::choice::choice;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::fit::{Choices, Fit, Objective, ShearSprings, VolumeSprings};
 use crate::fits::sampled::SampledRecipe;
 use crate::named::unknown;
@@ -124,10 +124,8 @@ impl WholeEntry {
     fn without_objective(&self, name: &str, start: Start) -> Result<Start> {
         let choices =
             [("weight", self.weight.is_some()), ("higher", self.higher.is_some()), ("balance", self.balance.is_some())];
-        match choices.iter().find(|(_, given)| *given) {
-            Some((key, _)) => Err(Error::at(*key, format!("belongs to an objective, found with the start \"{name}\""))),
-            None => Ok(start),
-        }
+        expect_none(choices, format!("belongs to an objective, found with the start \"{name}\""))?;
+        Ok(start)
     }
 
     fn objective(&self, name: &str) -> Result<Start> {

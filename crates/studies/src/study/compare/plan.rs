@@ -6,7 +6,7 @@ use super::sets::shape_sets;
 use crate::analysis::shapes::ShapeSet;
 use crate::bound::{self, check_count};
 use crate::element::Element;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, expect_none};
 use crate::file::{self, Sum};
 use crate::fit::Solver;
 use crate::material::{Energy, Material, Plane};
@@ -224,8 +224,7 @@ fn element_cases(entry: &CompareEntry, folder: &Path) -> Result<Vec<Case>> {
         ];
         let belongs =
             "belongs to elements, found without them: a scene has its own, and [compare] takes several scenes";
-        let without = given.into_iter().find(|(_, is_given)| *is_given);
-        return without.map_or(Ok(Vec::new()), |(key, _)| Err(Error::at(key, belongs)));
+        return expect_none(given, belongs).map(|()| Vec::new());
     }
     for (place, name) in entry.elements.iter().enumerate().filter(|(_, name)| name.ends_with(".toml")) {
         expect_file(&format!("elements[{place}]"), &folder.join(name))?;
