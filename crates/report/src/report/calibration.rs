@@ -5,7 +5,7 @@ use super::tables_page::tables_page;
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
-use crate::study::{CalibratedLoad, CalibratedRegion, CalibrationOutcome, Value};
+use crate::study::{CalibratedRegion, CalibrationOutcome, Value};
 use crate::text::printable;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -101,33 +101,29 @@ fn field(outcome: &CalibrationOutcome) -> Table {
 }
 
 fn loads(outcome: &CalibrationOutcome) -> Table {
-    let columns = vec![
-        Column::words("load"),
-        Column::words("measured"),
-        Column::numbers("numbers"),
-        Column::numbers("rms").unit("m, N"),
-        Column::numbers("residual").unit("m, N"),
-        Column::numbers("noise").unit("m, N"),
-        Column::numbers("residual\nover noise"),
-    ];
-    let row = |load: &CalibratedLoad| {
-        vec![
-            load.load.clone(),
-            load.quantity.clone(),
-            load.measurements.to_string(),
-            format!("{:.4e}", load.size),
-            format!("{:.4e}", load.residual),
-            load.sigma.map_or("-".into(), |sigma| format!("{sigma:.4e}")),
-            load.misfit.map_or("-".into(), |misfit| format!("{misfit:.3}")),
-        ]
-    };
+    let size = |title| Column::numbers(title).unit("m, N");
+    let long = |value: f64| format!("{value:.4e}");
+    let short = |value: f64| format!("{value:.3}");
     let chi = match (outcome.chi_square, outcome.degrees_of_freedom, outcome.probability) {
         (Some(square), Some(freedom), Some(probability)) => {
             format!(": chi-square {square:.1} of {freedom} degrees of freedom, probability {probability:.2}")
         }
         _ => String::new(),
     };
-    Table::new("residuals", format!("residuals by load{chi}"), columns, outcome.loads.iter().map(row))
+    Table::of(
+        "residuals",
+        format!("residuals by load{chi}"),
+        &outcome.loads,
+        &[
+            (Column::words("load"), &|load| load.load.clone().into()),
+            (Column::words("measured"), &|load| load.quantity.clone().into()),
+            (Column::numbers("numbers"), &|load| load.measurements.to_string().into()),
+            (size("rms"), &|load| long(load.size).into()),
+            (size("residual"), &|load| long(load.residual).into()),
+            (size("noise"), &|load| load.sigma.map_or("-".into(), long).into()),
+            (Column::numbers("residual\nover noise"), &|load| load.misfit.map_or("-".into(), short).into()),
+        ],
+    )
 }
 
 fn correlations(outcome: &CalibrationOutcome) -> Table {

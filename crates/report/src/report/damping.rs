@@ -7,31 +7,12 @@ use crate::study::{ComplexModulus, DynamicModuli, DynamicModuliOutcome, Measured
 
 /// One row for each measurement.
 pub(super) fn damping(all: &[MeasuredDamping]) -> Table {
-    let columns = vec![
-        Column::words("measured"),
-        Column::words("fitted").priority(Always),
-        Column::numbers("from").unit("Hz").group("band").priority(Always),
-        Column::numbers("to").unit("Hz").group("band").priority(Always),
-        Column::numbers("measured").group("damping ratio").priority(Always),
-        Column::numbers("largest").group("off by").priority(Always),
-        Column::numbers("rms").group("off by").priority(Always),
-    ];
-    let row = |measured: &MeasuredDamping| {
-        let fitted = match measured.rayleigh {
-            Some([mass, stiffness]) => format!("alpha = {mass:.4e} 1/s, beta = {stiffness:.4e} s"),
-            None => format!("Prony series of {} terms", measured.terms.len()),
-        };
-        let number = |value| Cell::number(Some(value), Significant(4));
-        vec![
-            Cell::from(&*measured.key),
-            fitted.into(),
-            number(measured.band[0]),
-            number(measured.band[1]),
-            number(measured.ratio),
-            number(measured.largest_difference),
-            number(measured.rms_difference),
-        ]
+    let fitted = |measured: &MeasuredDamping| match measured.rayleigh {
+        Some([mass, stiffness]) => format!("alpha = {mass:.4e} 1/s, beta = {stiffness:.4e} s"),
+        None => format!("Prony series of {} terms", measured.terms.len()),
     };
+    let number = |value| Cell::number(Some(value), Significant(4));
+    let column = |title, group| Column::numbers(title).group(group).priority(Always);
     let between =
         "Between frequencies that were measured, the damping ratio is on a line over the logarithm of the frequency.";
     let constant = |measured: &MeasuredDamping| {
@@ -46,8 +27,21 @@ pub(super) fn damping(all: &[MeasuredDamping]) -> Table {
     let notes = all.iter().any(|measured| !measured.is_constant).then(|| between.to_string());
     let notes =
         notes.into_iter().chain(all.iter().flat_map(|measured| [constant(measured), decay(measured)]).flatten());
-    Table::new("damping", "Damping that was measured, over a band of frequencies", columns, all.iter().map(row))
-        .with_notes(notes.collect::<Vec<_>>())
+    let table = Table::of(
+        "damping",
+        "Damping that was measured, over a band of frequencies",
+        all,
+        &[
+            (Column::words("measured"), &|measured| measured.key.as_str().into()),
+            (Column::words("fitted").priority(Always), &|measured| fitted(measured).into()),
+            (column("from", "band").unit("Hz"), &|measured| number(measured.band[0])),
+            (column("to", "band").unit("Hz"), &|measured| number(measured.band[1])),
+            (column("measured", "damping ratio"), &|measured| number(measured.ratio)),
+            (column("largest", "off by"), &|measured| number(measured.largest_difference)),
+            (column("rms", "off by"), &|measured| number(measured.rms_difference)),
+        ],
+    );
+    table.with_notes(notes.collect::<Vec<_>>())
 }
 
 /// One row for each model and frequency; the moduli of the material stand beside.

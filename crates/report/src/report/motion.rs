@@ -13,47 +13,38 @@ use crate::study::{ModelMotion, MotionEnding, MotionOutcome, MotionRecipe, Outco
 
 /// One row per model.
 pub(super) fn motions(options: Option<&MotionOptionsRecord>, models: &[MotionRecord]) -> Table {
-    let energy = |title| Column::numbers(title).unit("J");
-    let columns = vec![
-        Column::words("model"),
-        Column::words("ended").priority(Always),
-        Column::numbers("steps").priority(Always),
-        Column::numbers("speed").unit("steps/s").priority(Always),
-        energy("kinetic").group("at the end"),
-        energy("work").group("at the end"),
-        energy("dissipated").group("at the end"),
-        energy("start").group("elastic energy"),
-        energy("end").group("elastic energy"),
-        Column::numbers("drift of\nthe energy").unit("%").priority(Always),
-        Column::numbers("momentum\nat the end").unit("kg m/s"),
-        Column::numbers("mean").unit("%").group("e_rms").priority(Always),
-        Column::numbers("max").unit("%").group("e_rms").priority(Always),
-    ];
-    let row = |model: &MotionRecord| {
-        // The state at the start says nothing of the end.
-        let end = |values: &[Option<f64>]| if values.len() > 1 { values.last().copied().flatten() } else { None };
-        let start = |values: &[Option<f64>]| values.first().copied().flatten().filter(|_| values.len() > 1);
-        let momentum = model.momentum.last().filter(|_| model.momentum.len() > 1);
-        let momentum = momentum.and_then(|axes| axes.iter().copied().collect::<Option<Vec<f64>>>());
-        let energy = |value| Cell::number(value, Significant(4));
-        vec![
-            Cell::from(&*model.name),
-            ended(model).into(),
-            model.steps.into(),
-            Cell::number(model.steps_per_second, Significant(3)),
-            energy(end(&model.kinetic)),
-            energy(end(&model.work)),
-            energy(end(&model.dissipated)),
-            energy(start(&model.elastic)),
-            energy(end(&model.elastic)),
-            Cell::percent(end(&model.drift), Fixed(2)),
-            energy(momentum.map(|axes| norm(&axes))),
-            Cell::number(model.e_rms_mean, Fixed(2)),
-            Cell::number(model.e_rms_max, Fixed(2)),
-        ]
+    // The state at the start says nothing of the end.
+    let end = |values: &[Option<f64>]| if values.len() > 1 { values.last().copied().flatten() } else { None };
+    let start = |values: &[Option<f64>]| values.first().copied().flatten().filter(|_| values.len() > 1);
+    let momentum = |model: &MotionRecord| {
+        let axes = model.momentum.last().filter(|_| model.momentum.len() > 1)?;
+        Some(norm(&axes.iter().copied().collect::<Option<Vec<f64>>>()?))
     };
+    let number = |value| Cell::number(value, Significant(4));
+    let energy = |title, group| Column::numbers(title).unit("J").group(group);
+    let percent = |title| Column::numbers(title).unit("%").priority(Always);
+    let speed = Column::numbers("speed").unit("steps/s").priority(Always);
     let title = options.map_or(String::new(), |options| setting(options, models));
-    Table::new("motion", title, columns, models.iter().map(row))
+    Table::of(
+        "motion",
+        title,
+        models,
+        &[
+            (Column::words("model"), &|model| model.name.as_str().into()),
+            (Column::words("ended").priority(Always), &|model| ended(model).into()),
+            (Column::numbers("steps").priority(Always), &|model| model.steps.into()),
+            (speed, &|model| Cell::number(model.steps_per_second, Significant(3))),
+            (energy("kinetic", "at the end"), &|model| number(end(&model.kinetic))),
+            (energy("work", "at the end"), &|model| number(end(&model.work))),
+            (energy("dissipated", "at the end"), &|model| number(end(&model.dissipated))),
+            (energy("start", "elastic energy"), &|model| number(start(&model.elastic))),
+            (energy("end", "elastic energy"), &|model| number(end(&model.elastic))),
+            (percent("drift of\nthe energy"), &|model| Cell::percent(end(&model.drift), Fixed(2))),
+            (Column::numbers("momentum\nat the end").unit("kg m/s"), &|model| number(momentum(model))),
+            (percent("mean").group("e_rms"), &|model| Cell::number(model.e_rms_mean, Fixed(2))),
+            (percent("max").group("e_rms"), &|model| Cell::number(model.e_rms_max, Fixed(2))),
+        ],
+    )
 }
 
 fn setting(options: &MotionOptionsRecord, models: &[MotionRecord]) -> String {

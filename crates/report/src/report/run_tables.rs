@@ -9,8 +9,8 @@ use super::motion::motions;
 use super::overview::{loads, measured, overview, standard};
 use super::table::Digits::{Fixed, Signed, Significant};
 use super::table::Priority::InFiles;
-use super::table::{Cell, Column, Table};
-use crate::study::{BODY, FitTimes, LoadOutcome, ModelTimes, Reading, SampledOutcome, Times};
+use super::table::{Cell, Column, Filled, Table};
+use crate::study::{BODY, FitTimes, LoadOutcome, ModelTimes, Reading, Times};
 
 impl Table {
     /// All tables for which the report has results.
@@ -36,43 +36,28 @@ impl Table {
 fn fits(report: &Report) -> Table {
     let matrices = "|R-K|/|R| Frobenius";
     let passes = if report.fits.iter().all(|fit| fit.times.is_some()) { "fit median" } else { "fit once" };
-    let mut columns = vec![
-        Column::words("fit"),
-        Column::words("network"),
-        Column::numbers("mean").group(matrices),
-        Column::numbers("max").group(matrices),
-        Column::numbers("mean").group("2-norm"),
-        Column::numbers("max").group("2-norm"),
-        Column::numbers(passes).unit("µs/element"),
-        Column::numbers("all").unit("ms").priority(InFiles),
+    let column = |title, group: &str| Column::numbers(title).group(group);
+    let share = |value| Cell::number(Some(value), Fixed(4));
+    let trained = |fit: &FitRecord| Some(fit.sampled.as_ref()?.trained.mean);
+    let held_out = |fit: &FitRecord| Some(fit.sampled.as_ref()?.held_out.as_ref()?.mean);
+    let all = Column::numbers("all").unit("ms").priority(InFiles);
+    let columns: [Filled<&FitRecord>; 10] = [
+        (Column::words("fit"), &|fit| fit.name.as_str().into()),
+        (Column::words("network"), &|fit| fit.status.as_str().into()),
+        (column("mean", matrices), &|fit| share(fit.relative_frobenius.mean)),
+        (column("max", matrices), &|fit| share(fit.relative_frobenius.max)),
+        (column("mean", "2-norm"), &|fit| share(fit.relative_spectral.mean)),
+        (column("max", "2-norm"), &|fit| share(fit.relative_spectral.max)),
+        (column(passes, "").unit("µs/element"), &|fit| Cell::number(Some(1e6 * fit.seconds_per_element), Fixed(2))),
+        (all, &|fit| Cell::number(Some(1e3 * fit.seconds), Significant(3))),
+        (column("fitted", "sampled forces").unit("%"), &|fit| Cell::percent(trained(fit), Fixed(2))),
+        (column("held out", "sampled forces").unit("%"), &|fit| Cell::percent(held_out(fit), Fixed(2))),
     ];
+    // The last two are those of sampled fits.
     let is_sampled = report.fits.iter().any(|fit| fit.sampled.is_some());
-    if is_sampled {
-        let column = |title| Column::numbers(title).unit("%").group("sampled forces");
-        columns.extend(["fitted", "held out"].map(column));
-    }
-    let row = |fit: &FitRecord| {
-        let share = |value| Cell::number(Some(value), Fixed(4));
-        let mut row = vec![
-            Cell::from(&*fit.name),
-            Cell::from(&*fit.status),
-            share(fit.relative_frobenius.mean),
-            share(fit.relative_frobenius.max),
-            share(fit.relative_spectral.mean),
-            share(fit.relative_spectral.max),
-            Cell::number(Some(1e6 * fit.seconds_per_element), Fixed(2)),
-            Cell::number(Some(1e3 * fit.seconds), Significant(3)),
-        ];
-        if is_sampled {
-            let held_out = |sampled: &SampledOutcome| Some(sampled.held_out.as_ref()?.mean);
-            let sampled = fit.sampled.as_ref();
-            let errors = [sampled.map(|sampled| sampled.trained.mean), sampled.and_then(held_out)];
-            row.extend(errors.map(|error| Cell::percent(error, Fixed(2))));
-        }
-        row
-    };
+    let shown = if is_sampled { columns.len() } else { columns.len() - 2 };
     let title = "Matrices of the elements, and what the fits took";
-    Table::new("fits", title, columns, report.fits.iter().map(row))
+    Table::of("fits", title, &report.fits, &columns[..shown])
 }
 
 fn errors(report: &Report) -> Table {
@@ -211,35 +196,40 @@ fn samples(report: &Report) -> Option<String> {
 }
 
 fn times(report: &Report) -> Table {
-    let columns = [
-        Column::words("load"),
-        Column::numbers("finite elements").unit("ms"),
-        Column::numbers("springs").unit("ms"),
-        Column::words("solver"),
-        Column::numbers("unknowns"),
-        Column::numbers("iterations"),
-        Column::numbers("residual"),
-    ];
-    let columns = std::iter::once(Column::words("fit")).chain(columns.map(|column| column.priority(InFiles)));
-    let row = |fit: &FitRecord, load: &LoadOutcome| {
-        let solver = load.solved_lem.as_ref();
-        let known = |value: Option<usize>| Cell::number(value.map(|value| value as f64), Fixed(0));
-        let followed = load.followed.as_ref();
-        vec![
-            Cell::from(&*fit.name),
-            Cell::from(&*load.name),
-            Cell::number(Some(1e3 * load.seconds_fem), Significant(3)),
-            Cell::number(Some(1e3 * load.seconds_lem), Significant(3)),
-            solver.map_or(if followed.is_some() { "Newton" } else { "–" }, |solver| &solver.method).into(),
-            known(solver.map(|solver| solver.unknowns)),
-            known(solver.and_then(|solver| solver.iterations).or(followed.map(|followed| followed.iterations))),
-            Cell::number(solver.map(|s| s.residual).or(followed.map(|f| f.residual)), Significant(2)),
-        ]
+    let words = |title| Column::words(title).priority(InFiles);
+    let numbers = |title| Column::numbers(title).priority(InFiles);
+    let known = |value: Option<usize>| Cell::number(value.map(|value| value as f64), Fixed(0));
+    let time = |seconds: f64| Cell::number(Some(1e3 * seconds), Significant(3));
+    let solver = |load: &LoadOutcome| match (&load.solved_lem, &load.followed) {
+        (Some(solver), _) => solver.method.clone(),
+        (None, Some(_)) => "Newton".into(),
+        (None, None) => "–".into(),
     };
-    let rows: Vec<_> = report.fits.iter().flat_map(|fit| fit.loads.iter().map(move |load| row(fit, load))).collect();
-    let title = "Processor times to assemble and solve, each load as if it were alone";
-    let notes = means(report).into_iter().chain(iterations(report));
-    Table::new("times", title, columns.collect(), rows).with_notes(notes)
+    let iterated = |load: &LoadOutcome| {
+        let solved = load.solved_lem.as_ref().and_then(|solver| solver.iterations);
+        solved.or(load.followed.map(|followed| followed.iterations))
+    };
+    let residual = |load: &LoadOutcome| {
+        let solved = load.solved_lem.as_ref().map(|solver| solver.residual);
+        solved.or(load.followed.map(|followed| followed.residual))
+    };
+    let rows = report.fits.iter().flat_map(|fit| fit.loads.iter().map(move |load| (fit, load)));
+    let table = Table::of(
+        "times",
+        "Processor times to assemble and solve, each load as if it were alone",
+        rows,
+        &[
+            (Column::words("fit"), &|(fit, _)| fit.name.as_str().into()),
+            (words("load"), &|(_, load)| load.name.as_str().into()),
+            (numbers("finite elements").unit("ms"), &|(_, load)| time(load.seconds_fem)),
+            (numbers("springs").unit("ms"), &|(_, load)| time(load.seconds_lem)),
+            (words("solver"), &|(_, load)| solver(load).into()),
+            (numbers("unknowns"), &|(_, load)| known(load.solved_lem.as_ref().map(|solver| solver.unknowns))),
+            (numbers("iterations"), &|(_, load)| known(iterated(load))),
+            (numbers("residual"), &|(_, load)| Cell::number(residual(load), Significant(2))),
+        ],
+    );
+    table.with_notes(means(report).into_iter().chain(iterations(report)))
 }
 
 /// What fits and models cost, where the scene asks for it.

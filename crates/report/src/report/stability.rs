@@ -1,6 +1,6 @@
 //! A sweep as a table, as CSV, and as maps of its errors.
 
-use super::table::{Column, Table, csv};
+use super::table::{Column, Table, csv_of};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
@@ -114,47 +114,29 @@ fn reasons(outcome: &StabilityOutcome, is_trouble: bool) -> Vec<Reason<'_>> {
 
 /// Every case in full.
 fn table(outcome: &StabilityOutcome) -> String {
-    let header = [
-        "of",
-        "family",
-        "case",
-        "method",
-        "status",
-        "words",
-        "error",
-        "allowed",
-        "error_f32",
-        "condition",
-        "negative",
-        "springs",
-        "softest",
-        "step_s",
-        "iterations",
-        "way_out",
-    ];
     let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
-    let row = |row: &StabilityRow| {
-        let count = |of: usize| row.negative.map_or(String::new(), |negative| negative[of].to_string());
-        vec![
-            row.subject.clone(),
-            row.family.name().into(),
-            row.case.clone(),
-            row.method.clone(),
-            row.verdict.name().into(),
-            row.verdict.words().into(),
-            full(row.error),
-            full(row.allowed),
-            full(row.single),
-            full(row.condition),
-            count(0),
-            count(1),
-            full(row.softest),
-            full(row.step),
-            row.iterations.map_or(String::new(), |count| count.to_string()),
-            row.way_out.unwrap_or_default().into(),
-        ]
-    };
-    csv(&header, &outcome.rows.iter().map(row).collect::<Vec<_>>())
+    let whole = |count: Option<usize>| count.map_or(String::new(), |count| count.to_string());
+    csv_of(
+        &outcome.rows,
+        &[
+            ("of", &|row| row.subject.clone()),
+            ("family", &|row| row.family.name().into()),
+            ("case", &|row| row.case.clone()),
+            ("method", &|row| row.method.clone()),
+            ("status", &|row| row.verdict.name().into()),
+            ("words", &|row| row.verdict.words().into()),
+            ("error", &|row| full(row.error)),
+            ("allowed", &|row| full(row.allowed)),
+            ("error_f32", &|row| full(row.single)),
+            ("condition", &|row| full(row.condition)),
+            ("negative", &|row| whole(row.negative.map(|[negative, _]| negative))),
+            ("springs", &|row| whole(row.negative.map(|[_, springs]| springs))),
+            ("softest", &|row| full(row.softest)),
+            ("step_s", &|row| full(row.step)),
+            ("iterations", &|row| whole(row.iterations)),
+            ("way_out", &|row| row.way_out.unwrap_or_default().into()),
+        ],
+    )
 }
 
 /// One map for each subject with a case per column and a method per row, in the order of the sweep; an SVG file's text.

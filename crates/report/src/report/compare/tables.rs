@@ -314,39 +314,13 @@ pub(super) fn plain(value: &Value) -> String {
 }
 
 fn pairs(pairs: &[Pair]) -> Table {
-    let columns = vec![
-        Column::words("quantity"),
-        Column::words("first").priority(Always),
-        Column::words("second").priority(Always),
-        Column::numbers("pairs"),
-        Column::numbers("first wins"),
-        Column::numbers("second wins"),
-        Column::numbers("median").group("first / second").priority(Always),
-        Column::numbers("from").group("first / second"),
-        Column::numbers("to").group("first / second"),
-        Column::numbers("p").priority(Always),
-        Column::words("better").priority(Always),
-    ];
-    let row = |pair: &Pair| {
-        let number = |value: f64| Cell::number(Some(value), Significant(4));
-        vec![
-            Cell::from(pair.quantity.as_str()),
-            pair.first.as_str().into(),
-            pair.second.as_str().into(),
-            pair.paired.count.into(),
-            pair.paired.wins.into(),
-            pair.paired.losses.into(),
-            number(pair.paired.ratio),
-            number(pair.paired.interval.low),
-            number(pair.paired.interval.high),
-            Cell::number(pair.adjusted, Significant(2)),
-            match pair.verdict {
-                Verdict::First => pair.first.as_str().into(),
-                Verdict::Second => pair.second.as_str().into(),
-                Verdict::Tie => "tie".into(),
-                Verdict::TooFew => "too few pairs".into(),
-            },
-        ]
+    let number = |value: f64| Cell::number(Some(value), Significant(4));
+    let ratio = |title| Column::numbers(title).group("first / second");
+    let better = |pair: &Pair| match pair.verdict {
+        Verdict::First => pair.first.clone(),
+        Verdict::Second => pair.second.clone(),
+        Verdict::Tie => "tie".into(),
+        Verdict::TooFew => "too few pairs".into(),
     };
     let notes = [
         "Errors: the median ratio of the first to the second on the same shapes or loads, its bootstrap interval of 95 %, and the probability \
@@ -354,7 +328,25 @@ fn pairs(pairs: &[Pair]) -> Table {
          Errors below 1e-12 count as 1e-12.",
         "Times: a tie where medians differ by less than 10 % or the interval of their ratio has 1 on some case, or cases disagree.",
     ];
-    Table::new("pairs", "Methods in pairs", columns, pairs.iter().map(row)).with_notes(notes.map(String::from))
+    let table = Table::of(
+        "pairs",
+        "Methods in pairs",
+        pairs,
+        &[
+            (Column::words("quantity"), &|pair| pair.quantity.as_str().into()),
+            (Column::words("first").priority(Always), &|pair| pair.first.as_str().into()),
+            (Column::words("second").priority(Always), &|pair| pair.second.as_str().into()),
+            (Column::numbers("pairs"), &|pair| pair.paired.count.into()),
+            (Column::numbers("first wins"), &|pair| pair.paired.wins.into()),
+            (Column::numbers("second wins"), &|pair| pair.paired.losses.into()),
+            (ratio("median").priority(Always), &|pair| number(pair.paired.ratio)),
+            (ratio("from"), &|pair| number(pair.paired.interval.low)),
+            (ratio("to"), &|pair| number(pair.paired.interval.high)),
+            (Column::numbers("p").priority(Always), &|pair| Cell::number(pair.adjusted, Significant(2))),
+            (Column::words("better").priority(Always), &|pair| better(pair).into()),
+        ],
+    );
+    table.with_notes(notes.map(String::from))
 }
 
 fn ranks(summary: &Summary) -> Table {

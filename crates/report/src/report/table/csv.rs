@@ -12,6 +12,16 @@ impl Table {
     }
 }
 
+/// A heading, and the text below it of a row.
+type Headed<'a, R> = (&'a str, &'a dyn Fn(&R) -> String);
+
+/// A row for each of these as CSV text: each heading stands beside its text of a row.
+pub(in crate::report) fn csv_of<R>(rows: &[R], columns: &[Headed<R>]) -> String {
+    let header: Vec<&str> = columns.iter().map(|(heading, _)| *heading).collect();
+    let row = |row: &R| columns.iter().map(|(_, text)| text(row)).collect();
+    csv(&header, &rows.iter().map(row).collect::<Vec<_>>())
+}
+
 /// A header and rows as CSV text: cells with commas, quotes or line ends are quoted, and no text is a formula of a spreadsheet.
 pub(in crate::report) fn csv<H: AsRef<str>>(header: &[H], rows: &[Vec<String>]) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());

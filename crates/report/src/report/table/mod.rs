@@ -10,7 +10,7 @@ pub use cell::Cell;
 pub(super) use cell::Digits;
 pub use column::Column;
 pub(super) use column::Priority;
-pub(super) use csv::csv;
+pub(super) use csv::{csv, csv_of};
 pub(super) use terminal::run_text;
 pub use terminal::{Detail, set_page};
 pub use typeset::Markup;
@@ -34,6 +34,9 @@ pub struct Table {
     pub notes: Vec<String>,
 }
 
+/// A column, and its cell of a row.
+pub(super) type Filled<'a, R> = (Column, &'a dyn Fn(&R) -> Cell);
+
 impl Table {
     /// A table without notes.
     pub(super) fn new<C: Into<Cell>>(
@@ -45,6 +48,18 @@ impl Table {
         let row = |row: Vec<C>| row.into_iter().zip(&columns).map(|(cell, column)| cell.into().of(column)).collect();
         let rows = rows.into_iter().map(row).collect();
         Table { name: name.into(), title: title.into(), columns, rows, notes: Vec::new() }
+    }
+
+    /// A table with a row for each of these: each column stands beside its cell of a row.
+    pub(super) fn of<R>(
+        name: &str,
+        title: impl Into<String>,
+        rows: impl IntoIterator<Item = R>,
+        columns: &[Filled<R>],
+    ) -> Table {
+        let row = |row: R| columns.iter().map(|(_, cell)| cell(&row)).collect::<Vec<Cell>>();
+        let rows: Vec<Vec<Cell>> = rows.into_iter().map(row).collect();
+        Table::new(name, title, columns.iter().map(|(column, _)| column.clone()).collect(), rows)
     }
 
     /// Puts sentences below the table.
