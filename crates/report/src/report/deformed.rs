@@ -1,5 +1,6 @@
 //! Shapes of a body under a load: at rest, with finite elements, and with springs.
 
+use super::figure::magnification;
 use super::outline::edges_of_sides;
 use crate::springs::norm;
 use crate::study::{DisplacementError, Outcome};
@@ -11,8 +12,6 @@ use svg::node::element::{Path, Text};
 const PANEL: f64 = 320.0;
 const MARGIN: f64 = 20.0;
 const CAPTION: f64 = 44.0;
-/// The largest displacement is drawn as this part of the body's size.
-const SHOWN: f64 = 0.2;
 
 /// A panel for each of these fits that has displacements under the load: undeformed dotted grey, finite elements dashed blue,
 /// springs solid red; the SVG file's text. `None` where there is nothing to show.
@@ -38,9 +37,8 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
         return None;
     }
     let edges = edges_of_sides(mesh, faces_viewer);
-    let size = extent(&mesh.points, d);
     // At large deformation shapes are drawn as they are.
-    let factor = if outcome.law.is_some() { 1.0 } else { round(SHOWN * size / largest) };
+    let factor = if outcome.law.is_some() { 1.0 } else { magnification(mesh, fem) };
     let moved = |u: &[f64]| -> Vec<[f64; 2]> {
         let x: Vec<f64> = mesh.points.iter().zip(u).map(|(x, u)| x + factor * u).collect();
         x.chunks_exact(d).map(seen).collect()
@@ -91,19 +89,6 @@ pub fn deformed(outcome: &Outcome, load: &str, fits: &[&str]) -> Option<String> 
     let key = format!("{}, {load}{size}: at rest dotted, finite elements dashed blue, springs red", outcome.scene);
     let key = Text::new(key).set("x", width / 2.0).set("y", height - 10.0).set("text-anchor", "middle");
     Some(document.add(key.set("font-size", 11)).to_string())
-}
-
-/// Two digits, so that the factor can be said.
-fn round(factor: f64) -> f64 {
-    format!("{factor:.1e}").parse().unwrap_or(factor)
-}
-
-fn extent(points: &[f64], d: usize) -> f64 {
-    let range = |k: usize| {
-        let of = || points.iter().skip(k).step_by(d);
-        of().fold(f64::NEG_INFINITY, |a, x| a.max(*x)) - of().fold(f64::INFINITY, |a, x| a.min(*x))
-    };
-    (0..d).map(range).fold(0.0, f64::max)
 }
 
 /// A solid in cabinet projection: x to the right, z up, y into the picture at half its length.

@@ -79,7 +79,7 @@ impl Deformation {
         let (springs, is_surface_only) = springs_drawn(&network, &faces);
         let nodal = network.loads.iter().find(|nodal| nodal.name == load.name);
         let held = nodal.map_or(&network.held, |nodal| &nodal.held);
-        let factor = if report.law.is_some() { 1.0 } else { factor(&mesh, &displacements[0]) };
+        let factor = if report.law.is_some() { 1.0 } else { magnification(&mesh, &displacements[0]) };
         Ok(Deformation {
             title: format!("{} under {}: at rest, finite elements and {}", report.scene, load.name, fit.name),
             fit: fit.name.clone(),
@@ -117,8 +117,8 @@ fn check_same(mesh: &Mesh, network: &NetworkRecord) -> Result<()> {
     }
 }
 
-/// Two digits, so that the factor can be said.
-fn factor(mesh: &Mesh, displacement: &[f64]) -> f64 {
+/// By which displacements are multiplied in a picture: two digits, so that the factor can be said.
+pub(in crate::report) fn magnification(mesh: &Mesh, displacement: &[f64]) -> f64 {
     let d = mesh.dimension;
     let extent = |k: usize| {
         let values = || mesh.points.iter().skip(k).step_by(d);

@@ -20,6 +20,7 @@ mod swept;
 pub use axis::Axis;
 pub use chart::{Chart, Series, Shape};
 pub use deformation::Deformation;
+pub(super) use deformation::magnification;
 pub use format::PictureFormat;
 pub use moduli::{Moduli, ModulusCurve};
 pub use run_folder::RunFolder;
