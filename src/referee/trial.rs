@@ -202,21 +202,16 @@ fn row(case: &Case, poisson: f64, own: &[f64], ends: &[Rest; 2]) -> RefereeRow {
     let both = ends[0].displacement.as_ref().zip(ends[1].displacement.as_ref());
     let u = both.map(|(there, back)| there.iter().zip(back).map(|(a, b)| (a - b) / 2.0).collect::<Vec<f64>>());
     RefereeRow {
-        engine: String::new(),
-        solver: String::new(),
-        model: String::new(),
-        telling: Telling::Given,
         load: case.load.clone(),
         poisson,
-        told: None,
         truth: case.truth[0],
         truth_uncertainty_percent: 100.0 * (case.truth[1] / case.truth[0]).abs(),
         tip_of_finite_elements: case.tip(&case.elements),
         energy_of_finite_elements: case.energy(&case.elements),
         found: u.as_ref().filter(|_| moving <= MOVING).map(|u| found(case, own, u, moving <= STILL)),
         moving_percent: u.map(|_| 100.0 * moving),
-        seconds: 0.0,
         warnings,
+        ..RefereeRow::default()
     }
 }
 

@@ -59,7 +59,7 @@ pub enum Factor {
 }
 
 /// A body under a load, at rest in an engine.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct RefereeRow {
     /// The engine.
     pub engine: String,
@@ -113,10 +113,11 @@ pub struct FoundRow {
 }
 
 /// What an engine was told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Telling {
     /// The moduli or constants of the body.
+    #[default]
     Given,
     /// E or the constants multiplied so that tension is right.
     Repaired,

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The heading of a column, and how its cells are written.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Column {
     /// Columns beside each other belong together if they have the same group, such as the name of a load; it is empty for a column alone.
     #[serde(default)]
@@ -37,14 +37,7 @@ pub(in crate::report) enum Priority {
 impl Column {
     /// A column of words.
     pub fn words(title: impl Into<String>) -> Column {
-        Column {
-            group: String::new(),
-            title: title.into(),
-            unit: String::new(),
-            numbers: false,
-            wraps: false,
-            priority: Priority::Verbose,
-        }
+        Column { title: title.into(), ..Column::default() }
     }
 
     /// A column of lists or sentences.
