@@ -32,8 +32,9 @@ pub struct Case {
     pub moduli: Moduli,
     pub r: DMatrix<f64>,
     pub g: Vec<DVector<f64>>,
-    /// W of the relative weight, once it is asked for.
+    /// W of the relative weight, and the projection on the linear motions, once they are asked for.
     relative: OnceLock<DMatrix<f64>>,
+    linear: OnceLock<DMatrix<f64>>,
 }
 
 pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
@@ -53,6 +54,7 @@ pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli
         r,
         g,
         relative: OnceLock::new(),
+        linear: OnceLock::new(),
     }
 }
 
@@ -107,15 +109,18 @@ impl Case {
             Weight::Modal(higher) => {
                 // All linear motions u_a = e_k x_al, translations among them: C Cᵀ is their projection on a matrix that
                 // vanishes on the rigid ones.
-                let linear = DMatrix::from_fn(n * d, d * (d + 1), |row, column| {
-                    let (a, k, l) = (row / d, column % d, column / d);
-                    let place = if l == d { 1.0 } else { self.x[a * d + l] };
-                    if row % d == k { place } else { 0.0 }
-                });
-                let basis = linear.qr().q();
-                let projection = &basis * basis.transpose();
+                let form = || {
+                    let linear = DMatrix::from_fn(n * d, d * (d + 1), |row, column| {
+                        let (a, k, l) = (row / d, column % d, column / d);
+                        let place = if l == d { 1.0 } else { self.x[a * d + l] };
+                        if row % d == k { place } else { 0.0 }
+                    });
+                    let basis = linear.qr().q();
+                    &basis * basis.transpose()
+                };
+                let projection = self.linear.get_or_init(form);
                 let identity = DMatrix::identity(n * d, n * d);
-                Some(&projection + higher.value() * (identity - &projection))
+                Some(projection + higher.value() * (identity - projection))
             }
             Weight::Relative => {
                 let form = || {

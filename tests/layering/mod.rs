@@ -21,6 +21,7 @@ const LAYERS: [&str; 42] = [
     "bound",
     "range",
     "named",
+    "order",
     "number",
     "random",
     "quantity",
