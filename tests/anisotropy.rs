@@ -1,22 +1,17 @@
 //! Anisotropic linear materials: blocks against their compliance in turned axes, fits against least squares on whole matrices, and the
 //! isotropic law as one of them.
 
+use crate::kit::{outcome, outcome_in, refusal};
 use crate::messages::reads;
+use crate::shapes::geometry;
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_element::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
 use springfit_numerics::dense::eigenvalues;
-use springfit_studies::study::{Outcome, Scene, run};
-use std::path::Path;
+use springfit_studies::study::{Scene, run};
 use tempfile::TempDir;
-
-fn outcome(text: &str) -> Outcome {
-    let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
-    run(&scene, &mut |_| ()).unwrap()
-}
 
 /// Numbers from 0 to 1 without pattern.
 fn random(seed: &mut u64) -> f64 {
@@ -159,8 +154,7 @@ fn distorted(element: &Element, seed: &mut u64) -> Vec<f64> {
 /// `Σ_q v Bᵀ D B` with B written out, in the order xx, yy, zz, yz, xz, xy.
 fn stiffness(element: &Element, x: &[f64], d: &DMatrix<f64>) -> DMatrix<f64> {
     let (n, dim) = (element.nodes(), element.dimension());
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, x).unwrap();
+    let geometry = geometry(&element, x);
     let rows: &[(usize, usize)] = match dim {
         1 => &[(0, 0)],
         2 => &[(0, 0), (1, 1), (0, 1)],
@@ -197,8 +191,7 @@ fn fits_are_least_squares_of_the_whole_matrix() {
         let given = definite(d * (d + 1) / 2, &mut seed);
         let hooke = Hooke::Anisotropic(Stiffness::new(d, given.as_slice()).unwrap());
         let r = stiffness(&element, &x, &given);
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         assert!((geometry.stiffness(&hooke) - &r).norm() < 1e-11 * r.norm(), "{}", element.name);
         let mut g = Vec::new();
         springs.gradients(&x, &geometry, &mut g);
@@ -251,8 +244,7 @@ fn the_spectral_fit_is_the_least_two_norm() {
         let given = definite(d * (d + 1) / 2, &mut seed);
         let hooke = Hooke::Anisotropic(Stiffness::new(d, given.as_slice()).unwrap());
         let r = stiffness(&element, &x, &given);
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         let mut g = Vec::new();
         springs.gradients(&x, &geometry, &mut g);
         let value = |k: &[f64]| {
@@ -288,8 +280,7 @@ fn an_isotropic_stiffness_is_the_isotropic_law() {
         let moduli = Material::for_body(d, 3e3, 0.3, None, None).unwrap().moduli();
         let plain = Hooke::Isotropic(moduli);
         let general = Hooke::Anisotropic(Stiffness::new(d, &plain.entries(d).0).unwrap());
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         let [a, b] = [geometry.stiffness(&plain), geometry.stiffness(&general)];
         assert!((&a - &b).norm() < 1e-12 * a.norm(), "{}", element.name);
         let large = element.nodes() * d > 30;
@@ -460,9 +451,7 @@ fn constants_vary_from_place_to_place() {
             "material.cubic.c44.interpolation: … \"cubic\"",
         ),
     ] {
-        let text = block("hex8", law);
-        let scene = Scene::parse(&text, &folder.path().join("scene.toml"));
-        let found = scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string();
+        let found = outcome_in(folder.path(), &block("hex8", law)).unwrap_err().to_string();
         reads(&found, &format!("…{expected}…")).unwrap();
     }
 }
@@ -533,23 +522,18 @@ fn wrong_laws_are_named() {
         ),
     ];
     for (material, place, words) in cases {
-        let text = block("hex8", &material);
-        let scene = Scene::parse(&text, &folder.path().join("scene.toml"));
-        let found = scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string();
+        let found = outcome_in(folder.path(), &block("hex8", &material)).unwrap_err().to_string();
         assert!(found.contains(place) && found.contains(words), "{material}\n{found}\nexpected {place} {words}");
     }
     // Networks that have no form are refused where they are asked for, with those that do.
     for objective in ["exact", "van-gelder"] {
         let element = if objective == "exact" { "hex8" } else { "tet4" };
         let text = block(element, ORTHOTROPIC).replace("\"frobenius\"", &format!("\"{objective}\""));
-        let scene = Scene::parse(&text, Path::new("scene.toml")).unwrap();
-        let found = run(&scene, &mut |_| ()).unwrap_err().to_string();
+        let found = refusal(&text);
         assert!(found.contains("fit[0].objective") && found.contains("frobenius, offdiag"), "{found}");
     }
     // A solid that cannot change its volume.
-    let incompressible = block("hex8", "young = 1e3\npoisson = 0.5\n");
-    let scene = Scene::parse(&incompressible, Path::new("scene.toml")).unwrap();
-    let found = run(&scene, &mut |_| ()).unwrap_err().to_string();
+    let found = refusal(&block("hex8", "young = 1e3\npoisson = 0.5\n"));
     assert!(found.contains("take 0.4999") && found.contains("volume = \"patches\""), "{found}");
     assert!(Anisotropy::of_stiffness(Matrix6::zeros()).is_err());
 }

@@ -1,27 +1,23 @@
 //! Branches that yield, and branches in explicit steps: against independent integration, and against each other.
 
+use crate::kit::{outcome, refusal};
 use crate::messages::reads;
+use crate::shapes::Random;
+use crate::shapes::bodies::grid;
 use springfit_bodies::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, Memory};
 use springfit_bodies::model::{MaterialPoints, displaced};
 use springfit_element::element::Element;
 use springfit_element::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State};
 use springfit_fit::fit::ShearSprings;
-use springfit_mesh::mesh::{BoxMesh, Mesh};
-use springfit_studies::study::{MotionEnding, Outcome, Scene, run};
+use springfit_mesh::mesh::Mesh;
+use springfit_studies::study::MotionEnding;
 use std::path::Path;
-use std::sync::Arc;
 
 /// μ of the bodies in these tests, Pa: E = 10 kPa, ν = 0.3.
 const MU: f64 = 1e4 / 2.6;
 const BULK: f64 = 1e4 / 1.2;
 
 type Tensor = nalgebra::Matrix3<f64>;
-
-fn grid(element: &str, cells: &[usize], size: &[f64]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let origin = vec![0.0; size.len()];
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin }.build().unwrap()
-}
 
 fn points(mesh: &Mesh, shear: ShearSprings) -> MaterialPoints {
     let state = if mesh.dimension == 3 { State::Solid } else { State::PlaneStrain { thickness: 0.5 } };
@@ -101,7 +97,7 @@ pub fn yield_errors<const N: usize>(steps: [usize; N]) -> [[f64; 2]; N] {
     };
     let shear = |t: f64| Tensor::new(1.0, 2.0 * pulse(t), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
     let (share, time, limit, end) = (0.8, 0.25, 600.0, 2.5);
-    let mesh = grid("hex8", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let cases: [&dyn Fn(f64) -> Tensor; 2] = [&stretch, &shear];
     let expected =
         cases.map(|f| kirchhoff(&f(end), &integrated(f, end, REFERENCE, share * MU, time, limit), share * MU));
@@ -130,7 +126,7 @@ fn a_branch_that_yields_is_its_differential_equation() {
         f
     };
     let (share, time, limit) = (0.8, 0.25, 600.0);
-    let mesh = grid("hex8", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let cases: [(&str, &dyn Fn(f64) -> Tensor); 2] = [("stretch", &stretch), ("shear", &shear)];
     for (name, f) in cases {
         for end in [1.0, 2.5] {
@@ -154,7 +150,7 @@ fn a_branch_that_yields_is_its_differential_equation() {
 fn a_branch_that_is_held_keeps_its_yield_stress() {
     let mut f = Tensor::identity();
     f[(0, 1)] = 0.7;
-    let mesh = grid("tet4", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("tet4", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let (share, time, limit) = (0.8, 0.25, 600.0);
     let mises = |s: Tensor| 1.5f64.sqrt() * (s - Tensor::identity() * (s.trace() / 3.0)).norm();
     for steps in [1, 3, 40] {
@@ -177,7 +173,7 @@ fn yield_stresses_have_their_limits() {
         f[(0, 1)] = t;
         f
     };
-    let mesh = grid("hex8", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let of = |mut memory: Memory| {
         follow(&mut memory, &mesh, &shear, 1.0, 50);
         (stress(&mut memory, &mesh, &shear(1.0), 1e-6), memory.dissipated())
@@ -198,21 +194,11 @@ fn yield_stresses_have_their_limits() {
     assert!((whole - alike).norm() < 1e-12 * MU && (alike_lost / lost - 1.0).abs() < 1e-10);
 }
 
-struct Random(u64);
-
-impl Random {
-    /// From −1 to 1 (Knuth's linear congruential generator).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 /// 33 333 random steps of random length, with a term that yields beside one that does not: what is dissipated never decreases, no branch has less
 /// energy than none, and the forces are the gradient of the potential of a step.
 #[test]
 fn what_flow_dissipates_is_never_negative() {
-    let mesh = grid("tet4", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("tet4", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let terms = [
         BranchTerm { time: 0.1, yield_stress: Some(300.0), shares: vec![0.6] },
         BranchTerm { time: 3.0, yield_stress: None, shares: vec![0.3] },
@@ -264,7 +250,7 @@ fn explicit_steps_are_the_same_steps() {
     let of = |shear: f64, time: f64| RelaxationTerm { shear, bulk: 0.0, time, yield_stress: None };
     let series = Relaxation::new(vec![of(0.5, 0.3), of(0.2, 2.0)]).unwrap();
     for (element, cells, size, shear) in bodies {
-        let mesh = grid(element, cells, size);
+        let mesh = grid(element, size, cells);
         let large = LargeMemory::new(points(&mesh, shear), BranchForm::Tensors, &mesh.points, &series).unwrap();
         let mut general = Memory::Large(Box::new(large));
         let flow =
@@ -306,7 +292,7 @@ fn explicit_steps_are_the_same_steps() {
         }
     }
     // A shape that is turned inside out has no forces, and the present ones stay.
-    let mesh = grid("tet4", &[1, 1, 1], &[0.01; 3]);
+    let mesh = grid("tet4", &[0.01; 3], &[1, 1, 1]);
     let large = LargeMemory::new(points(&mesh, ShearSprings::Cells), BranchForm::Edges, &mesh.points, &series).unwrap();
     let mut quick = Memory::Large(Box::new(large)).for_explicit(0.1);
     assert!(quick.reset(&vec![0.0; mesh.points.len()]));
@@ -316,10 +302,6 @@ fn explicit_steps_are_the_same_steps() {
     assert!(!quick.pull(&inside_out, &mut vec![0.0; inside_out.len()]));
     quick.prepare(0.0);
     assert!(quick.pull(&vec![0.0; inside_out.len()], &mut vec![0.0; inside_out.len()]));
-}
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
 }
 
 /// A bar that is pulled beyond its yield stress and let go.
@@ -448,9 +430,7 @@ fn wrong_yield_stresses_are_named() {
             "…material.relaxation.terms[0].yield: … a law…",
         ),
     ] {
-        let scene = Scene::parse(&text, Path::new("scene.toml"));
-        let found = scene.and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string();
-        reads(&found, message).unwrap();
+        reads(&refusal(&text), message).unwrap();
     }
 }
 
@@ -464,7 +444,7 @@ fn elements_with_negative_weights_do_not_relax() {
     let rule = "[quadrature]\nrule = \"explicit\"\npoints = [[0, 0], [\"1/2\", \"1/2\"], [\"-1/2\", \"1/2\"], [\"1/2\", \"-1/2\"], [\"-1/2\", \"-1/2\"]]\n\
                 weights = [\"-4/3\", \"4/3\", \"4/3\", \"4/3\", \"4/3\"]\n";
     let element = Element::parse(&format!("{head}{rule}{rest}")).unwrap();
-    let mut mesh = grid("quad4", &[2, 1], &[0.02, 0.01]);
+    let mut mesh = grid("quad4", &[0.02, 0.01], &[2, 1]);
     mesh.blocks[0].element = element.into();
     let material = Material::new(1e4, 0.3, State::PlaneStrain { thickness: 0.5 }).unwrap();
     let found = MaterialPoints::of(&mesh, &material.into(), ShearSprings::Cells).unwrap_err().to_string();
@@ -529,6 +509,5 @@ displacement = ["0.004*t/(t + 0.001)", "0.002*t/(t + 0.001)", 0]
         assert!(models[1].error().unwrap()[1] < 1e-8, "{:?}", models[1].error());
     }
     let wrong = scene(&whole, &(whole.clone() + &relaxing(1.0, 0.1)), still);
-    let found = Scene::parse(&wrong, Path::new("scene.toml")).and_then(|scene| run(&scene, &mut |_| {})).unwrap_err();
-    reads(&found.to_string(), "…material[1].relaxation.terms: … less than 1 …").unwrap();
+    reads(&refusal(&wrong), "…material[1].relaxation.terms: … less than 1 …").unwrap();
 }

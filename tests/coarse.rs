@@ -1,18 +1,14 @@
 //! Coarse networks for fine bodies: where the points of one mesh lie in another, and what a network fitted to a finer body gains.
 
+use crate::kit::{outcome, refusal};
+use crate::shapes::bodies::grid;
 use springfit_bodies::model::{Entries, Support, finite_elements};
 use springfit_bodies::solve::System;
 use springfit_element::material::{Material, State};
 use springfit_identify::whole::{Pressure, varied_loads};
-use springfit_mesh::mesh::{BoxMesh, Embedding, Mesh};
+use springfit_mesh::mesh::{Embedding, Mesh};
 use springfit_studies::study::{Outcome, Scene, SupportPart, run};
-use std::sync::Arc;
-
-/// A box with its corner at the origin, m.
-pub fn block(element: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    let element = Arc::new(springfit_element::element::Element::load(element).unwrap());
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; size.len()] }.build().unwrap()
-}
+use std::path::Path;
 
 /// Affine fields are interpolated without error, and forces keep their sum, their moment and the work of every field of the coarse
 /// mesh.
@@ -27,8 +23,8 @@ fn points_are_found_in_the_cells_of_another_mesh() {
     ];
     for (coarse, fine, size) in pairs {
         let d = size.len();
-        let coarse = block(coarse, &size, &vec![2; d]);
-        let fine = block(fine, &size, &vec![5; d]);
+        let coarse = grid(coarse, &size, &vec![2; d]);
+        let fine = grid(fine, &size, &vec![5; d]);
         let embedding = Embedding::of(&fine.points, &coarse).unwrap();
         assert_eq!(embedding.outside, 0);
         let affine = |x: &[f64]| -> Vec<f64> {
@@ -50,7 +46,7 @@ fn points_are_found_in_the_cells_of_another_mesh() {
         }
     }
     // A mesh of another body is refused.
-    let (here, there) = (block("tet4", &[1.0, 1.0, 1.0], &[2, 2, 2]), block("tet4", &[9.0, 1.0, 1.0], &[2, 2, 2]));
+    let (here, there) = (grid("tet4", &[1.0, 1.0, 1.0], &[2, 2, 2]), grid("tet4", &[9.0, 1.0, 1.0], &[2, 2, 2]));
     let error = Embedding::of(&there.points, &here).unwrap_err().to_string();
     assert!(error.contains("near them"), "{error}");
 }
@@ -90,10 +86,7 @@ fn scene(element: &str, start: &str, keys: &str) -> String {
 }
 
 fn ran(element: &str, start: &str, keys: &str) -> Outcome {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, scene(element, start, keys)).unwrap();
-    run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap()
+    outcome(&scene(element, start, keys))
 }
 
 /// Under loads that it has not seen, a network of moduli fitted to a finer body errs less than half as much as finite elements of its
@@ -228,10 +221,7 @@ fn masses_give_the_frequencies_of_a_finer_body() {
     let keys = "masses = 6\nvolume = \"patches\"";
     let text = scene("tet4", "exact", keys).replace("poisson = 0.3", "poisson = 0.3\ndensity = 1000");
     let text = text.replace("cells = [4, 1, 1]", "cells = [8, 2, 2]");
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
+    let outcome = outcome(&text);
     let found = outcome.fits[1].kind.whole().unwrap().masses.as_ref().unwrap();
     assert!(found.supports.len() == 1);
     for support in &found.supports {
@@ -279,31 +269,22 @@ fn masses_that_cannot_be_fitted_are_named() {
         let material = format!("poisson = 0.3\n{density}");
         scene("hex8", "exact", keys).replace("poisson = 0.3", &material)
     };
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    let of = |keys: &str, density: &str| {
-        std::fs::write(&path, text(keys, density)).unwrap();
-        Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {}))
-    };
-    let outcome = of("masses = 2", "density = 1000").unwrap();
+    let outcome = outcome(&text("masses = 2", "density = 1000"));
     let found = outcome.fits[1].kind.whole().unwrap().masses.as_ref().unwrap();
     assert!((found.masses.iter().sum::<f64>() - 4000.0).abs() < 1e-6);
-    let error = of("masses = 2", "").unwrap_err().to_string();
+    let error = refusal(&text("masses = 2", ""));
     assert!(error.contains("masses") && error.contains("density"), "{error}");
-    let error = of("masses = 100", "density = 1000").unwrap_err().to_string();
+    let error = refusal(&text("masses = 100", "density = 1000"));
     assert!(error.contains("masses") && error.contains("free degrees of freedom"), "{error}");
 }
 
 /// A support that holds all points leaves nothing to fit.
 #[test]
 fn supports_that_hold_all_points_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
     let text = scene("hex8", "exact", "supports = [[\"xmin\"], [\"xmin\", \"xmax\"]]");
     let (before, rest) = text.split_once("cells = [").unwrap();
     let (_, after) = rest.split_once(',').unwrap();
-    std::fs::write(&path, format!("{before}cells = [1,{after}")).unwrap();
-    let error = Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string();
+    let error = refusal(&format!("{before}cells = [1,{after}"));
     assert!(error.contains("fit[1].supports[1]: expected groups that leave points free to move"), "{error}");
 }
 
@@ -311,17 +292,14 @@ fn supports_that_hold_all_points_are_refused() {
 #[test]
 fn finer_meshes_of_other_bodies_are_refused() {
     let of = |size: &str, cells: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
         let other = format!("mesh = {{ box = {{ element = \"quad4\", size = {size}, cells = {cells} }} }}");
         let text = format!(
             "[mesh]\nbox = {{ element = \"quad4\", size = [4, 1], cells = [8, 2] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
              plane = \"strain\"\n[reference]\n{other}\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\n\
              traction = [1, 0]\n[[fit]]\nobjective = \"exact\"\n"
         );
-        std::fs::write(&path, text).unwrap();
         let mut notes = Vec::new();
-        let found = run(&Scene::load(&path).unwrap(), &mut |event| {
+        let found = run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |event| {
             if let springfit_studies::study::Event::Note(words) = event {
                 notes.push(words.to_string());
             }
@@ -341,16 +319,12 @@ fn finer_meshes_of_other_bodies_are_refused() {
 #[test]
 fn pyramids_have_finer_bodies() {
     for element in ["pyramid5", "pyramid13"] {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
         let text = format!(
             "[mesh]\nbox = {{ element = \"{element}\", size = [1, 1, 2], cells = [2, 2, 4] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
              [reference]\nrefine = 1\n[[fix]]\ngroup = \"zmin\"\n[[load]]\nname = \"pull\"\ngroup = \"zmax\"\n\
              traction = [0, 0, 100]\n[[fit]]\nobjective = \"exact\"\n"
         );
-        std::fs::write(&path, text).unwrap();
-        let found = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
-        let error = found.loads[0].measured.as_ref().unwrap().fem_e_rms.unwrap();
+        let error = outcome(&text).loads[0].measured.as_ref().unwrap().fem_e_rms.unwrap();
         assert!(error < 20.0, "{element}: {error:?}");
     }
 }
@@ -358,12 +332,6 @@ fn pyramids_have_finer_bodies() {
 /// The starting network of moduli has springs between all nodes, a support counts once, and patches of two regions have no Poisson's ratio of one.
 #[test]
 fn keys_that_a_fit_of_moduli_cannot_serve_are_errors() {
-    let error = |element: &str, start: &str, keys: &str| {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, scene(element, start, keys)).unwrap();
-        Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string()
-    };
     for (element, keys, words) in [
         ("hex8", "springs = [\"edge\"]", "springs: expected no groups"),
         (
@@ -384,7 +352,7 @@ fn keys_that_a_fit_of_moduli_cannot_serve_are_errors() {
         ("hex8", "validate_supports = [[]]", "validate_supports[0]: expected groups that are held"),
         ("tet4", "unknowns = \"region-young\"\nvolume = \"patches\"", "volume: expected \"points\" or \"cells\""),
     ] {
-        let found = error(element, "exact", keys);
+        let found = refusal(&scene(element, "exact", keys));
         assert!(found.contains("fit[1].") && found.contains(words), "{keys}: {found}");
     }
 }

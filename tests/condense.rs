@@ -1,11 +1,10 @@
 //! Functions that are condensed in each cell: Wilson's modes and bubbles, against hand-made matrices, bending and the patch test.
 
-use crate::shapes::{Random, distorted};
+use crate::shapes::{Random, distorted, geometry};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{
     CellFits, ClosedForm, ExactFit, Fit, Higher, Objective, Weight, condense, element_errors, fit_cells, fit_element,
     fit_exact, plain,
@@ -23,8 +22,7 @@ fn example(name: &str) -> Element {
 }
 
 fn stiffness(element: &Element, x: &[f64], hooke: impl Into<Hooke>) -> DMatrix<f64> {
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, x).unwrap();
+    let geometry = geometry(&element, x);
     geometry.stiffness(hooke)
 }
 
@@ -124,8 +122,7 @@ fn every_shape_passes_the_patch_test() {
                 }
                 _ => distorted(&element, &mut random),
             };
-            let mut geometry = Geometry::new(&element.tabulation);
-            geometry.set(&element.tabulation, &x).unwrap();
+            let geometry = geometry(&element, &x);
             let h = DMatrix::from_fn(d, d, |_, _| random.next());
             let strain = (&h + h.transpose()) * 0.5;
             let stress = DMatrix::identity(d, d) * (MODULI.lambda * strain.trace()) + &strain * (2.0 * MODULI.mu);

@@ -1,5 +1,6 @@
 //! What fits and models cost: which costs a run has, and that each is of what it says.
 
+use crate::kit::outcome;
 use springfit_report::report::{Cost, Figure, Picture, Report, RunFolder, Table, open_scene_outputs, write_outputs};
 use springfit_studies::study::{FitOutcome, Outcome, Scene, Times, run};
 use std::path::Path;
@@ -30,10 +31,6 @@ name = "shear"
 group = "xmax"
 traction = [0, 1]
 "#;
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("s.toml")).unwrap(), &mut |_| {}).unwrap()
-}
 
 fn timed(text: &str) -> Outcome {
     outcome(&format!("{text}[output]\ntime = true\n"))

@@ -2,21 +2,20 @@
 //! materials, and errors against the limit of refinement beside those of the finite elements of the same mesh.
 
 use crate::shapes::Random;
-use crate::shapes::statics::{compliance, membrane};
+use crate::shapes::bodies::grid;
+use crate::shapes::statics::{compliance, membrane, product};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{
     Elastic, Entries, Lumping, Network, Support, edge_springs, finite_elements, lumped_masses, patch_springs,
 };
 use springfit_bodies::solve::{System, lowest_modes};
-use springfit_element::element::Element;
 use springfit_element::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use springfit_foundation::error::ErrorKind;
-use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::{Scene, SpringOwners, network_material};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 const EDGES: ExactFit = ExactFit {
     energy: ExactEnergy::StableNeoHookean,
@@ -30,10 +29,8 @@ const ENERGIES: [ExactEnergy; 3] =
 
 /// A box of simplices whose inner points are moved at random.
 fn shaken(element: &str, cells: &[usize], size: &[f64], random: &mut Random) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
     let d = size.len();
-    let spec = BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; d] };
-    let mut mesh = spec.build().unwrap();
+    let mut mesh = grid(element, size, cells);
     for x in mesh.points.chunks_exact_mut(d) {
         if x.iter().zip(size).all(|(x, size)| *x > 0.0 && *x < *size) {
             x.iter_mut().zip(size).zip(cells).for_each(|((x, size), n)| *x += 0.15 * random.next() * size / *n as f64);
@@ -223,13 +220,7 @@ fn forces_and_tangents_are_derivatives() {
         let slope = (at(&network, &moved(h)) - at(&network, &moved(-h))) / (2.0 * h);
         let along: f64 = response.force.iter().zip(&direction).map(|(f, v)| f * v).sum();
         assert!((slope / along - 1.0).abs() < 1e-7, "{energy:?}: {slope} {along}");
-        let mut product = vec![0.0; x.len()];
-        for entry in &response.tangent {
-            product[entry.row] += entry.val * direction[entry.col];
-            if entry.row != entry.col {
-                product[entry.col] += entry.val * direction[entry.row];
-            }
-        }
+        let product = product(&response.tangent, &direction);
         let force = |h: f64| network.respond(&moved(h)).unwrap().force;
         let (after, before) = (force(h), force(-h));
         let size = product.iter().fold(0.0f64, |most, k| most.max(k.abs()));
@@ -336,8 +327,7 @@ fn edges_add_no_soft_motion() {
             let factor = system.cholesky().unwrap().unwrap();
             lowest_modes(&system, &factor, &masses, 3, 30).unwrap().frequencies()
         };
-        let element = Arc::new(Element::load("hex20").unwrap());
-        let fine = BoxMesh { element, size: vec![1.0; 3], cells: vec![4; 3], origin: vec![0.0; 3] }.build().unwrap();
+        let fine = grid("hex20", &[1.0; 3], &[4; 3]);
         let known = frequencies(&fine, &finite_elements(&fine, material.moduli()), &held(&fine).0);
         let mesh = shaken("tet4", &[8, 8, 8], &[1.0; 3], &mut Random(75));
         let (support, held) = held(&mesh);
@@ -366,10 +356,7 @@ fn the_network_is_its_material() {
 /// What has no such network is one error that says what is possible.
 #[test]
 fn what_edges_do_not_serve_is_refused() {
-    let load = |element: &str, d: usize| {
-        let element = Arc::new(Element::load(element).unwrap());
-        BoxMesh { element, size: vec![1.0; d], cells: vec![1; d], origin: vec![0.0; d] }.build().unwrap()
-    };
+    let load = |element: &str, d: usize| grid(element, &vec![1.0; d], &vec![1; d]);
     for (element, d) in [("quad4", 2), ("hex8", 3), ("tet10", 3), ("tri6", 2)] {
         let error = edge_springs(&load(element, d), solid(d, 0.3), &EDGES).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Unsupported);

@@ -1,6 +1,9 @@
 //! Motion of models with lumped masses: against closed forms, conservation laws and orders of convergence.
 
 use crate::messages::reads;
+use crate::shapes::bodies::grid;
+use crate::shapes::single;
+use crate::shapes::statics::{dense, product};
 use springfit_bodies::dynamics::largest_square;
 use springfit_bodies::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome,
@@ -13,7 +16,7 @@ use springfit_element::element::{Element, SHIPPED};
 use springfit_element::material::{Energy, Material, State};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Higher, Objective, Weight, fit_cells};
-use springfit_mesh::mesh::{BoxMesh, DiscMesh, Mesh};
+use springfit_mesh::mesh::{DiscMesh, Mesh};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -43,10 +46,8 @@ fn pair(constant: f64) -> (Network, Vec<f64>) {
 
 /// A square or a cube of `side` cells of 1 cm along each edge, 10 kPa; all springs, also those on the volume.
 pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
-    let element = Arc::new(Element::load(element).unwrap());
-    let d = element.dimension();
-    let spec = BoxMesh { element, size: vec![0.01 * side as f64; d], cells: vec![side; d], origin: vec![0.0; d] };
-    let mesh = spec.build().unwrap();
+    let d = Element::load(element).unwrap().dimension();
+    let mesh = grid(element, &vec![0.01 * side as f64; d], &vec![side; d]);
     let block = &mesh.blocks[0];
     let every: Vec<String> = block.element.springs.iter().map(|group| group.name.clone()).collect();
     let springs = Springs::select(&block.element, Some(&every)).unwrap();
@@ -412,13 +413,7 @@ struct Linearized {
 impl Elastic for Linearized {
     fn respond(&self, x: &[f64]) -> Option<Response> {
         let u: Vec<f64> = x.iter().zip(&self.points).map(|(x, p)| x - p).collect();
-        let mut force = self.force.clone();
-        for entry in &self.tangent {
-            force[entry.row] += entry.val * u[entry.col];
-            if entry.row != entry.col {
-                force[entry.col] += entry.val * u[entry.row];
-            }
-        }
+        let force: Vec<f64> = product(&self.tangent, &u).iter().zip(&self.force).map(|(a, b)| a + b).collect();
         let energy = force.iter().zip(&self.force).zip(&u).map(|((a, b), u)| (a + b) * u / 2.0).sum();
         Some(Response { energy, force, tangent: self.tangent.clone() })
     }
@@ -724,19 +719,17 @@ fn lumped_masses_are_positive() {
     for shipped in SHIPPED {
         let element = Element::shipped(shipped).unwrap();
         let d = element.dimension();
-        let nodes = element.nodes();
         let points = element.positions.clone();
         // The reference cell itself, pulled to another shape.
         let points: Vec<f64> = points.iter().enumerate().map(|(i, x)| x * (1.0 + 0.3 * (i % d) as f64)).collect();
-        let block = springfit_mesh::mesh::CellBlock { element: Arc::new(element), connectivity: (0..nodes).collect() };
-        let mesh = Mesh::of_cells(d, points, vec![block]);
+        let mesh = single(&element, &points);
         let rows = masses(&mesh, 1000.0, 0.5);
         let hrz = lumped_masses(&mesh, 1000.0, 0.5, Lumping::Hrz);
         assert_eq!(lumped_masses(&mesh, 1000.0, 0.5, Lumping::RowSum), rows);
         assert!(hrz.iter().all(|m| *m > 0.0), "{}: {hrz:?}", shipped.name);
         let total: f64 = rows.iter().sum();
         assert_near(hrz.iter().sum::<f64>(), total, 1e-12 * total);
-        if nodes == d + 1 {
+        if element.nodes() == d + 1 {
             hrz.iter().zip(&rows).for_each(|(a, b)| assert_near(*a, *b, 1e-12 * total));
         }
     }
@@ -792,14 +785,8 @@ fn forces_and_tangents_are_derivatives() {
     let largest = |v: &[f64]| v.iter().fold(0.0f64, |a, x| a.max(x.abs()));
     force.iter().zip(&response.force).for_each(|(a, b)| assert_near(*a, *b, 1e-13 * largest(&response.force)));
     assert_near(network.energy(&x).unwrap(), response.energy, 1e-13 * response.energy);
-    let mut tangent = nalgebra::DMatrix::<f64>::zeros(n, n);
-    for e in &response.tangent {
-        assert!(e.row >= e.col);
-        tangent[(e.row, e.col)] += e.val;
-        if e.row != e.col {
-            tangent[(e.col, e.row)] += e.val;
-        }
-    }
+    assert!(response.tangent.iter().all(|e| e.row >= e.col));
+    let tangent = dense(n, &response.tangent);
     let h = 1e-8;
     for j in 0..n {
         let at = |by: f64| {
@@ -824,9 +811,7 @@ fn forces_and_tangents_are_derivatives() {
 /// some with implicit Euler.
 #[test]
 fn bodies_of_finite_elements_move() {
-    let element = Arc::new(Element::load("tet4").unwrap());
-    let spec = BoxMesh { element, size: vec![0.02; 3], cells: vec![2; 3], origin: vec![0.0; 3] };
-    let mesh = spec.build().unwrap();
+    let mesh = grid("tet4", &[0.02; 3], &[2; 3]);
     let energy = Energy::load("neo-hookean", Material::new(10e3, 0.3, State::Solid).unwrap()).unwrap();
     let laws = (energy.clone(), State::Solid).into();
     let body = Body::new(&mesh, &laws);

@@ -1,6 +1,7 @@
 //! What every element file must give, at random distorted shapes.
 
-use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::statics::product;
+use crate::shapes::{Random, distorted, elements, geometry, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Support, finite_elements};
 use springfit_bodies::solve::System;
@@ -9,12 +10,6 @@ use springfit_element::springs::Springs;
 use springfit_element::stiffness::{Fault, Geometry};
 use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::sync::Arc;
-
-fn geometry(element: &Element, x: &[f64]) -> Geometry {
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, x).unwrap();
-    geometry
-}
 
 /// Central differences of step 1e-5 err by about 1e-10 for functions of size one.
 #[test]
@@ -208,13 +203,7 @@ fn distorted_patches_carry_uniform_strain() {
             assert!(worst < 1e-12, "{}: {worst}", mesh.blocks[0].element.name);
 
             // σ = λ tr(ε) I + 2μ ε: the nodal forces on the face xmax add up to its first column times the area 1.
-            let (mut forces, moduli) = (vec![0.0; u.len()], material.moduli());
-            for e in &entries {
-                forces[e.row] += e.val * u[e.col];
-                if e.row != e.col {
-                    forces[e.col] += e.val * u[e.row];
-                }
-            }
+            let (forces, moduli) = (product(&entries, &u), material.moduli());
             let face = Selection::Group("xmax".into()).points(&mesh).unwrap();
             let interior = |p: &usize| mesh.point(*p)[1..].iter().all(|x| *x > 1e-9 && *x < 1.0 - 1e-9);
             let symmetric = |i: usize, j: usize| (strain[i * d + j] + strain[j * d + i]) / 2.0;

@@ -1,15 +1,15 @@
 //! The order of elimination: large meshes are dissected, small ones and those that it does not help keep approximate minimum degree, and
 //! the solution is the same.
 
+use crate::shapes::Random;
+use crate::shapes::bodies::grid;
 use faer::Side;
 use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::{Pair, SymbolicSparseColMat};
 use springfit_bodies::model::{Support, finite_elements};
 use springfit_bodies::solve::{System, factor_cost};
-use springfit_element::element::Element;
 use springfit_element::material::{Material, State};
-use springfit_mesh::mesh::{BoxMesh, Mesh};
-use std::sync::Arc;
+use springfit_mesh::mesh::Mesh;
 
 /// `Σ c²` over the columns of the factor by approximate minimum degree, for one unknown per point.
 fn by_degree(mesh: &Mesh) -> f64 {
@@ -37,15 +37,10 @@ fn by_degree(mesh: &Mesh) -> f64 {
 }
 
 fn mesh(element: &str, cells: &[usize]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let size = cells.iter().map(|n| *n as f64).collect();
-    let spec = BoxMesh { element, size, cells: cells.to_vec(), origin: vec![0.0; cells.len()] };
-    let mut mesh = spec.build().unwrap();
-    let mut random = 1_u64;
-    for x in &mut mesh.points {
-        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        *x += 0.2 * ((random >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
-    }
+    let size: Vec<f64> = cells.iter().map(|n| *n as f64).collect();
+    let mut mesh = grid(element, &size, cells);
+    let mut random = Random(1);
+    mesh.points.iter_mut().for_each(|x| *x += 0.2 * random.next());
     mesh
 }
 

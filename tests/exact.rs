@@ -1,7 +1,9 @@
 //! Exact networks are the finite element: energies, forces and tangents of every element, bodies under loads, frequencies and
 //! motion; and networks with volume springs on cells and patches, which do not lock.
 
-use crate::shapes::{Random, distorted, elements, materials};
+use crate::shapes::bodies::grid;
+use crate::shapes::statics::dense;
+use crate::shapes::{Random, elements, geometry, materials, single, valid};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit_bodies::model::{
@@ -11,9 +13,8 @@ use springfit_bodies::solve::{System, lowest_modes};
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Moduli, Plane, State};
 use springfit_element::springs::Measure;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
-use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_mesh::mesh::Mesh;
 use springfit_report::report::{NetworkFile, network_json};
 use springfit_studies::study::{Scene, run};
 use std::path::Path;
@@ -26,25 +27,6 @@ const POINTS: ExactFit = ExactFit {
     large: false,
 };
 
-/// A random shape whose Jacobian is positive at all points.
-fn valid(element: &Element, random: &mut Random) -> Vec<f64> {
-    loop {
-        let x = distorted(element, random);
-        if Geometry::new(&element.tabulation).set(&element.tabulation, &x).is_ok() {
-            return x;
-        }
-    }
-}
-
-/// A mesh of one cell with its nodes at `x`, `[nodes × space]`.
-fn single(element: &Arc<Element>, x: &[f64]) -> Mesh {
-    Mesh::of_cells(
-        element.space(),
-        x.to_vec(),
-        vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
-    )
-}
-
 fn cells(mesh: &Mesh, material: Material, fit: ExactFit) -> CellFits {
     let block = &mesh.blocks[0];
     fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap()
@@ -52,17 +34,6 @@ fn cells(mesh: &Mesh, material: Material, fit: ExactFit) -> CellFits {
 
 fn network(mesh: &Mesh, material: Material, fit: ExactFit) -> Network {
     Network::assemble(mesh, &[cells(mesh, material, fit)])
-}
-
-fn dense(size: usize, entries: &springfit_bodies::model::Entries) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(size, size);
-    for entry in entries {
-        matrix[(entry.row, entry.col)] += entry.val;
-        if entry.row != entry.col {
-            matrix[(entry.col, entry.row)] += entry.val;
-        }
-    }
-    matrix
 }
 
 /// The force at rest, relative to the largest force of one spring there.
@@ -87,8 +58,7 @@ fn squares_of_edges_are_the_square_of_the_gradient() {
         let mut random = Random(31);
         for _ in 0..3 {
             let x = valid(&element, &mut random);
-            let mut geometry = Geometry::new(&element.tabulation);
-            geometry.set(&element.tabulation, &x).unwrap();
+            let geometry = geometry(&element, &x);
             let now: Vec<f64> = x.iter().map(|x| x * 1.3 + random.next()).collect();
             let (mut gradient, mut edges) = (0.0, 0.0);
             for (g, v) in geometry.gradients.chunks_exact(n * d).zip(&geometry.volumes) {
@@ -253,19 +223,13 @@ fn measures_have_the_derivatives_of_differences() {
             check(&Measure::PointContent(embedded, q), &bent, 3, &format!("{} in space", flat.name));
         }
     }
-    let mesh = cube("tet4", [1; 3], [1.0; 3]);
+    let mesh = grid("tet4", &[1.0; 3], &[1; 3]);
     let material = Material::new(1.0, 0.4, State::Solid).unwrap();
     let fit = ExactFit { volume: VolumeSprings::Patches, ..POINTS };
     for spring in patch_springs(&mesh, material, &fit, &[]).unwrap() {
         let x: Vec<f64> = spring.points.iter().flat_map(|p| mesh.point(*p)).map(|x| x + 0.1 * random.next()).collect();
         check(&spring.measure, &x, 3, "patch");
     }
-}
-
-fn cube(element: &str, cells: [usize; 3], size: [f64; 3]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let spec = BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; 3] };
-    spec.build().unwrap()
 }
 
 /// On cells, the term in λ is that of the mean dilatation: `R(0, μ) + λ/V (∫∇N)(∫∇N)ᵀ`, at rest without force.
@@ -277,8 +241,7 @@ fn volume_springs_on_cells_are_selective_integration() {
         let material = Material::for_body(d, 1e4, 0.4999, plane, None).unwrap();
         let mesh = single(&element, &valid(&element, &mut Random(36)));
         let Moduli { lambda, mu } = material.moduli();
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &mesh.points).unwrap();
+        let geometry = geometry(&element, &mesh.points);
         let g = DVector::from_vec(geometry.content_gradient());
         let expected =
             geometry.stiffness(Moduli { lambda: 0.0, mu }) + &g * g.transpose() * (lambda / geometry.content());
@@ -296,7 +259,7 @@ fn volume_springs_on_cells_are_selective_integration() {
 /// `Σ_n V_n λ/2 (J_n − 1)²` beside the cells' part in μ, each cell shared among its free points.
 #[test]
 fn patches_have_their_energy() {
-    let mesh = cube("tet4", [2, 2, 2], [1.0; 3]);
+    let mesh = grid("tet4", &[1.0; 3], &[2, 2, 2]);
     let material = Material::new(1.0, 0.49, State::Solid).unwrap();
     let Moduli { lambda, mu } = material.moduli();
     let held: Vec<bool> = (0..mesh.point_count()).map(|p| mesh.point(p)[2] == 0.0).collect();
@@ -352,7 +315,7 @@ fn frequencies_and_motion_are_those_of_the_body() {
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
     let law = Energy::load("stable-neo-hookean", material).unwrap();
     for element in ["tet4", "hex8"] {
-        let mesh = cube(element, [2, 2, 2], [0.02; 3]);
+        let mesh = grid(element, &[0.02; 3], &[2, 2, 2]);
         let network = network(&mesh, material, ExactFit { large: true, ..POINTS });
         let laws = (law.clone(), State::Solid).into();
         let body = Body::new(&mesh, &laws);
@@ -405,7 +368,7 @@ fn the_json_of_a_network_has_all_that_its_energy_needs() {
         ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Patches),
         ("hex8", ExactEnergy::StableMooneyRivlin { share: 0.4 }, VolumeSprings::Points),
     ] {
-        let mesh = cube(element, [2, 1, 1], [0.02; 3]);
+        let mesh = grid(element, &[0.02; 3], &[2, 1, 1]);
         let fit = ExactFit { energy, volume, ..ExactFit::default() };
         let mut network = network(&mesh, material, fit);
         if volume == VolumeSprings::Patches {

@@ -2,6 +2,7 @@
 //! alike on any number of threads.
 
 use crate::dynamics::{cube, scattered};
+use crate::shapes::statics::dense;
 use springfit_bodies::dynamics::{
     Curve, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, StepOutcome,
 };
@@ -222,15 +223,9 @@ fn absolute_sums_are_those_of_the_entries() {
     let (mesh, network) = cube("tet4", 3);
     let n = mesh.points.len();
     let weights: Vec<f64> = scattered(n, 1.0).iter().map(|w| 1.0 + w.abs()).collect();
-    let mut full = vec![0.0; n * n];
-    for entry in network.stiffness(&mesh.points) {
-        full[entry.row * n + entry.col] += entry.val;
-        if entry.row != entry.col {
-            full[entry.col * n + entry.row] += entry.val;
-        }
-    }
+    let full = dense(n, &network.stiffness(&mesh.points));
     let sums = BlockStiffness::of_network(&network, &mesh.points, None).absolute_sums(&weights);
-    for (row, sum) in full.chunks_exact(n).zip(sums) {
+    for (row, sum) in full.as_slice().chunks_exact(n).zip(sums) {
         let expected: f64 = row.iter().zip(&weights).map(|(k, w)| k.abs() * w).sum();
         assert!((sum / expected - 1.0).abs() < 1e-13, "{sum} instead of {expected}");
     }

@@ -1,11 +1,11 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
+use crate::kit::outcome;
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
 use springfit_bodies::engine::{Engine, Setting};
 use springfit_bodies::model::Elastic;
 use springfit_foundation::error::ErrorKind;
 use springfit_report::report::{Division, NetworkFile, NetworkRecord, Parts};
-use springfit_studies::study::{Outcome, Scene, run};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -35,10 +35,6 @@ objective = \"frobenius\"
 [[fix]]
 group = \"zmin\"
 ";
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-}
 
 fn networks(text: &str) -> BTreeMap<String, NetworkRecord> {
     let outcome = outcome(text);

@@ -1,10 +1,10 @@
 //! Closed surfaces that are filled with cells.
 
+use crate::kit::outcome;
 use springfit_bodies::model::{Action, nodal_forces};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
 use springfit_report::report::{Report, notes_beside_summary};
-use springfit_studies::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -208,11 +208,10 @@ fn centres_on_the_surface_are_decided_alike() {
 fn tractions_on_steps_and_what_a_fill_found_are_notes() {
     let egg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl");
     let scene = |rest: &str| {
-        let text = format!(
+        outcome(&format!(
             "[mesh]\nfill = {{ surface = {egg:?}, {rest} }}\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n\
              [[fix]]\nwhere = \"z < 0\"\n[[load]]\nname = \"wind\"\ngroup = \"surface\"\ntraction = [0, 0, 1]\n"
-        );
-        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+        ))
     };
     for (rest, is_stepped) in [
         ("cell = 0.4", true),

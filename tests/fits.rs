@@ -1,12 +1,11 @@
 //! The constants of every fit at random shapes of every element, against matrices formed here entry by entry.
 
-use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::{Random, distorted, elements, geometry, materials, rigid_motions};
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, Moduli};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element, plain,
 };
@@ -38,8 +37,7 @@ pub struct Case {
 }
 
 pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, x).unwrap();
+    let geometry = geometry(&element, x);
     let mut rows = Vec::new();
     springs.gradients(x, &geometry, &mut rows);
     let g = rows.chunks_exact(x.len()).map(DVector::from_column_slice).collect();

@@ -1,9 +1,9 @@
 //! Published and derived figures for single elements.
 
+use crate::shapes::geometry;
 use springfit_element::element::Element;
 use springfit_element::material::{Material, State};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
 
 const SQUARE: [f64; 8] = [-1., -1., 1., -1., 1., 1., -1., 1.];
@@ -54,8 +54,7 @@ fn square_stiffness_is_equation_19() {
         vec![d],
     ];
     let element = Element::load("quad4").unwrap();
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, &SQUARE).unwrap();
+    let geometry = geometry(&element, &SQUARE);
     let stiffness = geometry.stiffness(material.moduli());
     let ours = [3, 2, 1, 0];
     for (i, row) in upper.iter().enumerate() {
@@ -182,8 +181,7 @@ fn simplex_closed_form_off_the_diagonal() {
     let material = Material::new(7.0, 0.37, State::Solid).unwrap();
     let (l, m) = (material.moduli().lambda, material.moduli().mu);
     let element = Element::load("tet4").unwrap();
-    let mut geometry = Geometry::new(&element.tabulation);
-    geometry.set(&element.tabulation, &x).unwrap();
+    let geometry = geometry(&element, &x);
     let k = constants("tet4", &x, material, Objective::Frobenius(Weight::OffDiagonal));
     for (k, nodes) in k.iter().zip(&element.springs[0].nodes) {
         let (i, j) = (nodes[0], nodes[1]);

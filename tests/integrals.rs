@@ -1,21 +1,15 @@
 //! Loads and masses are integrals by rules of their own, whatever the rule of the stiffness.
 
-use crate::shapes::{Random, elements};
+use crate::shapes::{Random, elements, geometry, single};
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use springfit_bodies::model::{Action, Component, Lumping, lumped_masses, masses, nodal_forces};
 use springfit_element::element::{Element, Integrand, Quadrature, Tabulation};
 use springfit_element::stiffness::Geometry;
 use springfit_foundation::symbolic::Scope;
-use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh, Selection};
+use springfit_mesh::mesh::{BoxMesh, Selection};
 use springfit_studies::study::random_shapes;
 use std::sync::Arc;
-
-fn one_cell(element: &Element, points: Vec<f64>) -> Mesh {
-    let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
-    let dimension = element.dimension();
-    Mesh::of_cells(dimension, points, vec![block])
-}
 
 /// Reference positions under an affine map.
 fn affine(element: &Element, random: &mut Random) -> Vec<f64> {
@@ -60,7 +54,7 @@ fn varying_loads_are_exact() {
             }
             let mut body = vec![Component::Constant(0.0); d];
             body[0] = component(load);
-            let mesh = one_cell(&element, x);
+            let mesh = single(&element, &x);
             let found = nodal_forces(&mesh, &Selection::Everything, &Action::Body(body), 1.0).unwrap();
             let size = expected.iter().fold(0.0f64, |m, f| m.max(f.abs()));
             let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
@@ -115,9 +109,8 @@ fn masses_are_exact_fractions() {
             }
         }
         let (content, square): (BigRational, BigRational) = (rows.iter().sum(), squares.iter().sum());
-        let mesh = one_cell(&element, affine(&element, &mut Random(3)));
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &mesh.points).unwrap();
+        let mesh = single(&element, &affine(&element, &mut Random(3)));
+        let geometry = geometry(&element, &mesh.points);
         let total = 800.0 * geometry.content();
         let share = |part: &BigRational, of: &BigRational| (part / of).to_f64().unwrap();
         let rows: Vec<f64> = rows.iter().map(|row| total * share(row, &content)).collect();
@@ -168,7 +161,7 @@ fn the_rule_of_the_stiffness_does_not_matter() {
     let x = affine(&own, &mut Random(8));
     let body = Action::Body([LOADS[2], LOADS[1], LOADS[0]].map(component).into());
     let of = |element: &Element| {
-        let mesh = one_cell(element, x.clone());
+        let mesh = single(element, &x);
         let forces = nodal_forces(&mesh, &Selection::Everything, &body, 1.0).unwrap();
         (forces, masses(&mesh, 1.0, 1.0), lumped_masses(&mesh, 1.0, 1.0, Lumping::Hrz))
     };

@@ -1,5 +1,7 @@
-//! The program as users start it, and what it says.
+//! The program as users start it, and what it says; and scenes as the library runs them.
 
+use springfit_foundation::error::Result;
+use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -26,4 +28,19 @@ pub fn refused(folder: &Path, arguments: &[&str]) -> String {
     let said = said(&output);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
     said
+}
+
+/// What comes of the scene of this text, `scene.toml`, whose files are in a folder.
+pub fn outcome_in(folder: &Path, text: &str) -> Result<Outcome> {
+    run(&Scene::parse(text, &folder.join("scene.toml"))?, &mut |_| {})
+}
+
+/// What comes of the scene of this text.
+pub fn outcome(text: &str) -> Outcome {
+    outcome_in(Path::new(""), text).unwrap()
+}
+
+/// Why the scene of this text is refused.
+pub fn refusal(text: &str) -> String {
+    outcome_in(Path::new(""), text).unwrap_err().to_string()
 }

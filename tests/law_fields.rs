@@ -1,8 +1,8 @@
 //! Laws at large deformation whose numbers and fibres vary from cell to cell.
 
+use crate::kit::{outcome, refusal};
 use crate::messages::reads;
-use springfit_studies::study::{Outcome, Scene, run};
-use std::path::Path;
+use springfit_studies::study::Outcome;
 use tempfile::TempDir;
 
 fn scene(material: &str, fits: &str) -> String {
@@ -10,11 +10,6 @@ fn scene(material: &str, fits: &str) -> String {
         "[mesh]\nbox = {{ element = \"tet4\", size = [1, 1, 2], cells = [2, 2, 4] }}\n{material}\n{fits}\n\
          [[fix]]\ngroup = \"zmin\"\n[[load]]\nname = \"pull\"\ngroup = \"zmax\"\ntraction = [150, 0, 400]\n"
     )
-}
-
-fn outcome(text: &str, folder: &Path) -> Outcome {
-    let scene = Scene::parse(text, &folder.join("scene.toml")).unwrap();
-    run(&scene, &mut |_| ()).unwrap()
 }
 
 const EXACT: &str = "[[fit]]\nobjective = \"exact\"\n";
@@ -36,7 +31,7 @@ fn exact_networks_follow_the_fields() {
     for law in
         ["law = \"stable-neo-hookean\"\n", "law = \"stable-mooney-rivlin\"\n", &format!("law = \"fibre\"\n{fibres}")]
     {
-        let found = outcome(&scene(&format!("[material]\n{moduli}{law}"), EXACT), folder.path());
+        let found = outcome(&scene(&format!("[material]\n{moduli}{law}"), EXACT));
         let errors = &found.fits[0].loads[0];
         let error = errors.error.as_ref().unwrap();
         assert!(error.rms < 1e-9, "{law}: {:e}", error.rms);
@@ -47,7 +42,7 @@ fn exact_networks_follow_the_fields() {
 #[test]
 fn fields_are_regions_of_cells() {
     let folder = TempDir::new().unwrap();
-    let of = |material: &str| outcome(&scene(material, EXACT), folder.path());
+    let of = |material: &str| outcome(&scene(material, EXACT));
     let field = of("[material]\nyoung = \"if_(z)\"\npoisson = 0.3\nlaw = \"neo-hookean\"\n"
         .replace("if_(z)", "1e3 + 1e3*step(z - 1)")
         .as_str());
@@ -92,9 +87,6 @@ fn wrong_numbers_of_laws_are_named() {
         ("parameters = { a = 1 }\n", "scene.toml:… material.parameters: belongs to a law…"),
         ("fibre = [1, 0, 0]\n", "scene.toml:… material.fibre: belongs to a law…"),
     ] {
-        let text = scene(&format!("{base}{rest}"), EXACT);
-        let scene = Scene::parse(&text, Path::new("scene.toml"));
-        let found = scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string();
-        reads(&found, expected).unwrap();
+        reads(&refusal(&scene(&format!("{base}{rest}"), EXACT)), expected).unwrap();
     }
 }

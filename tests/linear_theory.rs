@@ -1,21 +1,16 @@
 //! Errors that a root mean square hides, and results beyond the theory that they are computed by.
 
-use crate::shapes::{Random, elements};
+use crate::kit::outcome;
+use crate::shapes::bodies::grid;
+use crate::shapes::statics::dense;
+use crate::shapes::{Random, elements, single};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{Deformation, finite_elements};
 use springfit_element::element::Element;
-use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_mesh::mesh::{CellBlock, Mesh};
 use springfit_report::report::{Report, notes, tables};
-use springfit_studies::study::{Outcome, Scene, converge, run};
+use springfit_studies::study::{Scene, converge};
 use std::sync::Arc;
-use tempfile::TempDir;
-
-fn outcome(text: &str) -> Outcome {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap()
-}
 
 const BEAM: &str = r#"
 [mesh]
@@ -47,16 +42,13 @@ fn strains_and_rotations_are_those_of_the_gradient() {
             .chunks_exact(d)
             .flat_map(|x| (0..d).map(|k| (0..d).map(|l| h[(k, l)] * x[l]).sum::<f64>()).collect::<Vec<_>>())
             .collect();
-        let connectivity = (0..element.nodes()).collect();
-        let blocks = vec![CellBlock { element: Arc::new(element), connectivity }];
-        let mesh = Mesh::of_cells(d, points, blocks);
+        let mesh = single(&element, &points);
         let found = Deformation::largest(&mesh, &u);
         let strain = ((&h + h.transpose()) / 2.0).symmetric_eigenvalues().amax();
         let rotation = ((&h - h.transpose()) / 2.0).norm() / 2f64.sqrt();
         assert!((found.strain - strain).abs() < 1e-12 && (found.rotation - rotation).abs() < 1e-12, "{found:?}");
     }
-    let element = Arc::new(Element::load("quad4").unwrap());
-    let flat = BoxMesh { element, size: vec![1.0; 2], cells: vec![2; 2], origin: vec![0.0; 2] }.build().unwrap();
+    let flat = grid("quad4", &[1.0; 2], &[2; 2]);
     let points: Vec<f64> = flat.points.chunks_exact(2).flat_map(|x| [x[0], x[1], 3.0]).collect();
     let element = Arc::new(Element::load("quad4").unwrap().in_space(3));
     let blocks = vec![CellBlock { element, connectivity: flat.blocks[0].connectivity.clone() }];
@@ -145,22 +137,12 @@ displacement = ["free", 0.01]
 "#;
     let outcome = outcome(&format!("{BEAM}{loads}"));
     let points = outcome.mesh.points.len();
-    let dense = |entries: springfit_bodies::model::Entries| {
-        let mut matrix = DMatrix::<f64>::zeros(points, points);
-        for entry in entries {
-            matrix[(entry.row, entry.col)] += entry.val;
-            if entry.row != entry.col {
-                matrix[(entry.col, entry.row)] += entry.val;
-            }
-        }
-        matrix
-    };
-    let body = dense(finite_elements(&outcome.mesh, outcome.material.moduli()));
+    let body = dense(points, &finite_elements(&outcome.mesh, outcome.material.moduli()));
     let report = Report::of(&outcome);
     let text = tables(&outcome);
     assert!(text.contains("e_tip / e_energy %"), "{text}");
     for (fit, record) in outcome.fits.iter().zip(&report.fits) {
-        let network = dense(fit.network.stiffness(&outcome.mesh.points));
+        let network = dense(points, &fit.network.stiffness(&outcome.mesh.points));
         for (i, (load, record)) in fit.loads.iter().zip(&record.loads).enumerate() {
             let (fem, lem) =
                 (nalgebra::DVector::from_column_slice(&outcome.loads[i].fem), load.displacement.as_ref().unwrap());

@@ -1,16 +1,14 @@
 //! Which sides, cells or points a total force is shared over, and that sides which no cell has are no part of a load.
 
+use crate::kit::outcome;
+use crate::shapes::bodies;
 use springfit_bodies::model::{Action, nodal_forces};
-use springfit_element::element::Element;
 use springfit_foundation::symbolic::Scope;
-use springfit_mesh::mesh::{BoxMesh, Gate, Group, ListedSides, Mesh, Selection, gmsh};
-use springfit_studies::study::{Outcome, Scene, run};
-use std::path::Path;
-use std::sync::Arc;
+use springfit_mesh::mesh::{Gate, Group, ListedSides, Mesh, Selection, gmsh};
+use springfit_studies::study::{Scene, run};
 
 fn grid(element: &str, cells: &[usize]) -> Mesh {
-    let (size, origin) = (cells.iter().map(|&n| n as f64).collect(), vec![0.0; cells.len()]);
-    BoxMesh { element: Arc::new(Element::load(element).unwrap()), size, cells: cells.to_vec(), origin }.build().unwrap()
+    bodies::grid(element, &cells.iter().map(|&n| n as f64).collect::<Vec<_>>(), cells)
 }
 
 fn at(condition: &str) -> Selection {
@@ -108,10 +106,6 @@ fn a_set_with_points_beside_its_sides_shares_a_force_equally() {
     let expected: Vec<f64> =
         (0..mesh.point_count()).map(|p| if mesh.groups["set"].points.contains(&p) { 0.1 } else { 0.0 }).collect();
     assert_same(&shares(&mesh, &named("set")), &expected, "set");
-}
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| ()).unwrap()
 }
 
 /// The thickness weighs the sides of both alike: a tapered strip.

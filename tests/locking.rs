@@ -1,24 +1,18 @@
 //! Near the incompressible: volume springs on cells and patches answer where finite elements lock.
 
+use crate::kit::outcome;
+use crate::shapes::bodies::grid;
 use crate::shapes::statics::{compliance, membrane};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{
     Entries, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs, smoothed_pressure,
 };
 use springfit_bodies::solve::{System, lowest_modes};
-use springfit_element::element::Element;
 use springfit_element::material::{Material, Plane, State};
 use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
-use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::{Scene, run};
 use std::path::Path;
-use std::sync::Arc;
-
-fn grid(element: &str, cells: &[usize], size: &[f64]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let spec = BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; size.len()] };
-    spec.build().unwrap()
-}
 
 /// Held where `test` is true of the place.
 fn held(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> (Support, Vec<bool>) {
@@ -76,7 +70,7 @@ fn a_cantilever_bends_near_the_incompressible() {
     let mut errors = Vec::new();
     for (nu, known) in [(0.3, 263.0), (0.4999, 249.0)] {
         let material = Material::new(1.0, nu, State::Solid).unwrap();
-        let mesh = grid("tet4", &[16, 4, 4], &[4.0, 1.0, 1.0]);
+        let mesh = grid("tet4", &[4.0, 1.0, 1.0], &[16, 4, 4]);
         let (support, held) = held(&mesh, |x| x[0] == 0.0);
         let load = end_load(&mesh, 2, |x| x[0] == 4.0);
         let bodies = compliance(&finite_elements(&mesh, material.moduli()), &support, &load);
@@ -125,9 +119,9 @@ fn patches_add_no_soft_motion() {
             let factor = system.cholesky().unwrap().unwrap();
             lowest_modes(&system, &factor, &masses, 3, 30).unwrap().frequencies()
         };
-        let fine = grid("hex20", &[4, 4, 4], &[1.0; 3]);
+        let fine = grid("hex20", &[1.0; 3], &[4, 4, 4]);
         let known = frequencies(&fine, &finite_elements(&fine, material.moduli()), &held(&fine, |x| x[2] == 0.0).0);
-        let mesh = grid("tet4", &[8, 8, 8], &[1.0; 3]);
+        let mesh = grid("tet4", &[1.0; 3], &[8, 8, 8]);
         let (support, held) = held(&mesh, |x| x[2] == 0.0);
         let found = frequencies(&mesh, &stiffness(&mesh, material, VolumeSprings::Patches, &held), &support);
         let ratios: Vec<f64> = found.iter().zip(&known).map(|(a, b)| a / b).collect();
@@ -169,7 +163,7 @@ fn alternate(mesh: &mut Mesh) {
 #[test]
 fn the_smoothed_pressure_of_a_cylinder_is_lames() {
     let nu = 0.4999;
-    let mut mesh = grid("tri3", &[16, 24], &[1.0, 1.0]);
+    let mut mesh = grid("tri3", &[1.0, 1.0], &[16, 24]);
     let on = |value: f64, expected: f64| (value - expected).abs() < 1e-12;
     let (rest, a, b) = (mesh.points.clone(), 1.0, 2.0);
     alternate(&mut mesh);
@@ -222,7 +216,7 @@ fn patches_carry_large_compression() {
                 poisson = 0.4999\nlaw = \"stable-neo-hookean\"\n[[fit]]\nobjective = \"exact\"\nvolume = \"patches\"\n\
                 [[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"zmin\"\n[[load]]\ngroup = \"zmax\"\n\
                 displacement = [0, 0, -0.3]\n";
-    let outcome = run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    let outcome = outcome(text);
     for fit in &outcome.fits {
         assert_eq!(fit.status(), "converged");
         assert_eq!(fit.loads[0].followed.unwrap().inverted, 0);
@@ -237,13 +231,12 @@ fn a_spring_on_a_linear_simplex_is_that_of_its_point() {
     let outcome = |element: &str, volume: &str| {
         let size = if element == "tri3" { "[2, 1]" } else { "[2, 1, 1]" };
         let plane = if element == "tri3" { "plane = \"strain\"\n" } else { "" };
-        let text = format!(
+        outcome(&format!(
             "[mesh]\nbox = {{ element = \"{element}\", size = {size}, cells = {size} }}\n[material]\nyoung = 1e4\npoisson = 0.49\n\
              {plane}[[fit]]\nobjective = \"exact\"\nvolume = \"{volume}\"\nname = \"network\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\n\
              group = \"xmax\"\nforce = {}\n",
             if element == "tri3" { "[1, 0]" } else { "[1, 0, 0]" }
-        );
-        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
+        ))
     };
     for element in ["tri3", "tet4", "hex8"] {
         let [points, cells] = ["points", "cells"].map(|volume| outcome(element, volume));
@@ -291,11 +284,10 @@ fn a_body_of_one_cell_across_that_bends_is_told() {
 #[test]
 fn frequencies_are_off_those_of_elements_that_do_not_lock() {
     let solved = |element: &str, poisson: f64, more: &str| {
-        let text = format!(
+        outcome(&format!(
             "mesh = {{ box = {{ element = \"{element}\", size = [0.08, 0.02, 0.02], cells = [6, 2, 2] }} }}\nmaterial = {{ young = 1e4, poisson = {poisson}, density = 1000 }}\n\
              fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\noutput = {{ frequencies = 4 }}\n{more}"
-        );
-        run(&Scene::parse(&text, Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap()
+        ))
     };
     let locks = solved("tet4", 0.49, "");
     let quadratic = locks.frequencies.last().unwrap();
@@ -318,11 +310,10 @@ fn frequencies_are_off_those_of_elements_that_do_not_lock() {
 #[test]
 fn what_is_compared_with_cells_that_lock_is_told() {
     let notes = |material: &str, loads: &str| {
-        let text = format!(
+        let outcome = outcome(&format!(
             "mesh = {{ box = {{ element = \"tet4\", size = [0.04, 0.02, 0.02], cells = [4, 2, 2] }} }}\nmaterial = {{ young = 1e4, poisson = 0.45{material} }}\n\
              fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\nload = [{loads}]\n"
-        );
-        let outcome = run(&Scene::parse(&text, Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap();
+        ));
         (
             outcome.loads.iter().map(|load| load.measured.is_some()).collect::<Vec<_>>(),
             springfit_report::report::notes(&outcome).join("\n"),

@@ -1,8 +1,9 @@
 //! The matrix errors of cells, computed side by side, are those of the matrices.
 
+use crate::shapes::statics::dense;
 use crate::shapes::{Random, distorted, elements, materials};
 use nalgebra::DMatrix;
-use springfit_bodies::model::{Entries, Network, finite_elements};
+use springfit_bodies::model::{Network, finite_elements};
 use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_element::springs::Springs;
@@ -16,17 +17,6 @@ use std::sync::Arc;
 
 /// More than lanes, and not a multiple of them.
 const CELLS: usize = 11;
-
-fn dense(size: usize, entries: &Entries) -> DMatrix<f64> {
-    let mut matrix = DMatrix::zeros(size, size);
-    for entry in entries {
-        matrix[(entry.row, entry.col)] += entry.val;
-        if entry.row != entry.col {
-            matrix[(entry.col, entry.row)] += entry.val;
-        }
-    }
-    matrix
-}
 
 /// Cells without common nodes; the fourth is so thin that it is computed alone.
 fn cells(element: &Element, random: &mut Random) -> Vec<f64> {

@@ -1,6 +1,7 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
 use crate::messages::reads;
+use crate::shapes::bodies::grid;
 use nalgebra::DMatrix;
 use springfit_bodies::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
 use springfit_bodies::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
@@ -98,11 +99,6 @@ impl Model {
     }
 }
 
-fn bar(size: [f64; 3], cells: [usize; 3]) -> Mesh {
-    let element = Arc::new(Element::load("hex8").unwrap());
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; 3] }.build().unwrap()
-}
-
 fn assert_near(found: f64, expected: f64, tolerance: f64) {
     assert!((found / expected - 1.0).abs() < tolerance, "{found} instead of {expected}");
 }
@@ -169,7 +165,7 @@ fn every_copy_of_a_frequency_is_found() {
 #[test]
 fn square_bars_have_pairs_of_bending_modes() {
     for (size, cells) in [([3.0, 1.0, 1.0], [6, 2, 2]), ([1.0, 1.0, 1.0], [4, 4, 4]), ([1.0, 1.0, 1.0], [1, 1, 1])] {
-        let model = Model::body(&bar(size, cells), 0.3);
+        let model = Model::body(&grid("hex8", &size, &cells), 0.3);
         let dense = model.dense_squares();
         for count in (1..=20).filter(|count| *count <= model.system.size()) {
             let modes = model.modes(count);
@@ -190,7 +186,7 @@ fn square_bars_have_pairs_of_bending_modes() {
 #[test]
 fn a_bar_swings_lengthwise_as_a_rod() {
     let (length, cells) = (2.0, 8);
-    let model = Model::body(&bar([length, 0.8, 0.8], [cells, 3, 3]), 0.0);
+    let model = Model::body(&grid("hex8", &[length, 0.8, 0.8], &[cells, 3, 3]), 0.0);
     let modes = model.modes(10);
     let along = |shape: &Vec<f64>| shape.chunks(3).zip(&model.masses).map(|(u, m)| m * u[0] * u[0]).sum::<f64>();
     let mode = modes.shapes.iter().position(|shape| along(shape) > 0.999).unwrap();
@@ -205,7 +201,7 @@ fn a_bar_swings_lengthwise_as_a_rod() {
 #[test]
 fn a_bar_with_the_consistent_matrix_swings_as_linear_elements_do() {
     let (length, cells) = (2.0, 8);
-    let mesh = bar([length, 0.8, 0.8], [cells, 3, 3]);
+    let mesh = grid("hex8", &[length, 0.8, 0.8], &[cells, 3, 3]);
     let model = Model::body(&mesh, 0.0);
     let matrix = ConsistentMasses::of_mesh(&mesh, 1.0, 1.0).unwrap();
     let modes = lowest_modes(&model.system, &model.factor, &matrix, 3, 10).unwrap();
@@ -293,7 +289,7 @@ fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
 
 #[test]
 fn faults_of_a_mass_matrix_are_named() {
-    let mesh = bar([1.0; 3], [1; 3]);
+    let mesh = grid("hex8", &[1.0; 3], &[1; 3]);
     let matrix = ConsistentMasses::of_mesh(&mesh, 1.0, 1.0).unwrap();
     let of = |found: springfit_foundation::error::Result<ConsistentMasses>| found.unwrap_err().to_string();
     reads(&of(matrix.blended(&[1.0; 8], 1.5)), "share: … from 0 to 1, found 1.5").unwrap();
@@ -313,7 +309,7 @@ fn faults_of_a_mass_matrix_are_named() {
 /// `½ (length/height)²` of its own to a layer's bending stiffness, here half of the quarter that two layers bend by.
 #[test]
 fn slender_bars_pass() {
-    let model = Model::body(&bar([100.0, 1.0, 1.0], [200, 2, 2]), 0.0);
+    let model = Model::body(&grid("hex8", &[100.0, 1.0, 1.0], &[200, 2, 2]), 0.0);
     let modes = model.modes(8);
     for pair in modes.squares.chunks(2) {
         assert_near(pair[1], pair[0], 1e-6);

@@ -1,5 +1,6 @@
 //! Conjugate gradients with multigrid answer as a factor does, for bodies and for networks of every standing.
 
+use crate::kit::outcome;
 use springfit_bodies::model::{BlockStiffness, Support, finite_elements};
 use springfit_bodies::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
 use springfit_foundation::error::ErrorKind;
@@ -117,10 +118,8 @@ fn an_answer_is_as_good_as_was_asked() {
         "{BOX}[[fit]]\nobjective = \"modal\"\n[[load]]\nname = \"pull\"\ngroup = \"xmax\"\ntraction = [3, 0, 1]\n[[load]]\n\
          group = \"xmax\"\ndisplacement = [0.01, \"free\", 0]\n"
     );
-    let solved = |tolerance: &str| {
-        let text = format!("{text}[solver]\nmethod = \"multigrid\"\ntolerance = {tolerance}\n");
-        run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-    };
+    let solved =
+        |tolerance: &str| outcome(&format!("{text}[solver]\nmethod = \"multigrid\"\ntolerance = {tolerance}\n"));
     let known = solved("1e-12");
     for tolerance in ["1e-7", "1e-6", "1e-5", "1e-4", "9e-4"] {
         let found = solved(tolerance);

@@ -1,5 +1,6 @@
 //! Network files: what is written is read again, explains itself, and is refused in one line where it is wrong.
 
+use crate::kit::outcome;
 use crate::report::{LARGE, LINEAR};
 use springfit_bodies::model::{Elastic, MeasureSpring, displaced};
 use springfit_element::element::{Element, SHIPPED};
@@ -9,7 +10,7 @@ use springfit_report::report::{
     FORMAT, MeasureKind, NETWORK_VERSION, NetworkFile, NetworkFormat, NetworkRecord, SpringRecord, network_json,
     network_schema, points_csv, read_network,
 };
-use springfit_studies::study::{Outcome, Scene, run};
+use springfit_studies::study::{Scene, run};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -42,10 +43,6 @@ finite_elements = false
 group = \"zmax\"
 force = [\"0.1*sin(3*t)\", 0, 0]
 ";
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-}
 
 fn json(file: &NetworkFile) -> Vec<u8> {
     let mut text = Vec::new();

@@ -1,21 +1,18 @@
 //! Large deformation: forces and tangents of elements, Newton's method on both models.
 
-use crate::shapes::{Random, distorted, elements};
+use crate::shapes::bodies::grid;
+use crate::shapes::{Random, distorted, elements, geometry};
 use nalgebra::Matrix3;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
 use springfit_bodies::solve::{Ending, Newton, System};
-use springfit_element::element::{Element, SpringKind};
+use springfit_element::element::SpringKind;
 use springfit_element::material::{Energy, Material, Plane, SHIPPED, State};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
-use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
-use std::sync::Arc;
+use springfit_mesh::mesh::{Mesh, Selection};
 
 fn cube(name: &str, cells: usize) -> Mesh {
-    let element = Arc::new(Element::load(name).unwrap());
-    let d = element.dimension();
-    BoxMesh { element, size: vec![1.0; d], cells: vec![cells; d], origin: vec![0.0; d] }.build().unwrap()
+    grid(name, &[1.0; 3], &[cells; 3])
 }
 
 /// Central differences of step 1e-6 of the sizes here err by 1e-9 of the tangent.
@@ -25,8 +22,7 @@ fn element_forces_and_tangents_are_those_of_differences() {
         let d = element.dimension();
         let mut random = Random(9);
         let rest = distorted(element, &mut random);
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &rest).unwrap();
+        let geometry = geometry(&element, &rest);
         let planes = if d == 2 { vec![Some(Plane::Stress), Some(Plane::Strain)] } else { vec![None] };
         for plane in planes {
             let material = Material::for_body(d, 1.0, 0.3, plane, None).unwrap();
@@ -68,8 +64,7 @@ fn membranes_and_rods_in_space_have_the_forces_of_their_energy() {
         let d = element.dimension();
         let mut random = Random(4);
         let local = distorted(element, &mut random);
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &local).unwrap();
+        let geometry = geometry(&element, &local);
         let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
         for space in d + 1..=3 {
             for name in ["neo-hookean", "corotational", "mooney-rivlin", "st-venant-kirchhoff"] {
@@ -123,8 +118,7 @@ fn the_tangent_at_rest_is_the_linear_stiffness() {
     for element in elements().iter().filter(|e| e.nodes() <= 10) {
         let d = element.dimension();
         let x = distorted(element, &mut Random(2));
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         for material in crate::shapes::materials(d).into_iter().filter(|_| d > 1) {
             for name in ["neo-hookean", "corotational", "mooney-rivlin"] {
                 let energy = Energy::load(name, material).unwrap();

@@ -1,20 +1,18 @@
 //! The nearest network without negative springs to an exact one.
 
-use crate::shapes::Random;
+use crate::shapes::{Random, bodies};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, LengthSpring, Network, Support};
 use springfit_bodies::solve::System;
-use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use springfit_foundation::error::ErrorKind;
 use springfit_identify::positive::{PositiveFit, PositiveOutcome, Route, nearest_positive};
-use springfit_mesh::mesh::{BoxMesh, Mesh, MeshSource};
+use springfit_mesh::mesh::{Mesh, MeshSource};
 use springfit_numerics::dense::least_squares;
 use springfit_studies::study::{FittedKind, Scene, run};
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
 
 const EXACT: ExactFit = ExactFit {
     energy: ExactEnergy::StableNeoHookean,
@@ -30,9 +28,7 @@ fn gmsh(name: &str) -> Mesh {
 }
 
 fn grid(element: &str, cells: &[usize]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let size = vec![1.0; cells.len()];
-    BoxMesh { element, origin: vec![0.0; size.len()], size, cells: cells.to_vec() }.build().unwrap()
+    bodies::grid(element, &vec![1.0; cells.len()], cells)
 }
 
 /// Leans along the first axis: the angles of Kuhn's tetrahedra become obtuse, all in the same way.

@@ -1,11 +1,12 @@
 //! The numbers that a file gives its nodes, in every export of a network, and what a report says of what was not looked for.
 
+use crate::kit;
 use crate::shapes::Random;
 use serde_json::Value;
 use springfit_bodies::model::Network;
 use springfit_mesh::mesh::{Mesh, MeshSource};
 use springfit_report::report::{NetworkFile, Report, network_csv, network_grid, network_json, report, summary};
-use springfit_studies::study::{Outcome, Scene, run};
+use springfit_studies::study::Outcome;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -18,10 +19,9 @@ const VTK: &str = "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GR
                    CELLS 2 8\n3 0 2 3\n3 0 3 4\nCELL_TYPES 2\n5 5\n";
 
 fn outcome(mesh: &str) -> Outcome {
-    let text = format!(
+    kit::outcome(&format!(
         "[mesh]\n{mesh}\n[material]\nyoung = 1e4\npoisson = 0.3\nplane = \"stress\"\n[[fit]]\nobjective = \"offdiag\"\n"
-    );
-    run(&Scene::parse(&text, Path::new("/scene.toml")).unwrap(), &mut |_| {}).unwrap()
+    ))
 }
 
 fn csv(mesh: &Mesh, network: &Network) -> String {
@@ -161,11 +161,10 @@ fn points_of_notes_are_those_of_files() {
     let file = format!("file = {:?}", folder.path().join("m.msh"));
     let box_mesh = "box = { element = \"quad4\", size = [1, 1], cells = [1, 1] }";
     for (mesh, word, names) in [(box_mesh, "point", ["2", "3"]), (&file[..], "node", ["41", "8"])] {
-        let text = format!(
+        let outcome = kit::outcome(&format!(
             "[mesh]\n{mesh}\n[material]\nyoung = 1e4\npoisson = 0.3\nthickness = 1\n[[fit]]\nobjective = \"frobenius\"\n\
              springs = [\"edge\"]\n[[fix]]\nwhere = \"y < 1e-9\"\n[[load]]\nwhere = \"y > 0.9\"\nforce = [1, 0]\n"
-        );
-        let outcome = run(&Scene::parse(&text, Path::new("/scene.toml")).unwrap(), &mut |_| {}).unwrap();
+        ));
         assert_eq!(Report::of(&outcome).fits[0].loose_nodes, [2, 3]);
         let notes = springfit_report::report::notes(&outcome).join("\n");
         let [a, b] = names;

@@ -1,5 +1,6 @@
 //! The files that a run writes.
 
+use crate::kit::outcome;
 use springfit_bodies::model::{Lumping, lumped_masses};
 use springfit_report::report::{NetworkFile, notes, open_scene_outputs, tables, write_outputs};
 use springfit_studies::study::{Scene, run};
@@ -96,7 +97,7 @@ fn each_file_of_points_has_the_masses_of_its_network() {
 #[test]
 fn errors_that_are_not_asked_for_are_not_computed() {
     let text = SCENE.replace("json = false", "errors = false") + "[[fit]]\nname = \"one\"\nobjective = \"frobenius\"\n";
-    let outcome = |text: &str| run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    let outcome = |text: &str| outcome(text);
     let (without, with) = (outcome(&text), outcome(&text.replace("errors = false", "errors = true")));
     let fits = [&without, &with].map(|outcome| &outcome.fits[0]);
     assert_eq!(fits[0].network.lengths, fits[1].network.lengths);

@@ -1,14 +1,11 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
+use crate::kit::outcome;
 use springfit_bodies::model::LengthSpring;
 use springfit_report::report::page::{PageRecord, page_html};
 use springfit_report::report::{Report, open_scene_outputs, write_outputs};
 use springfit_studies::study::{Outcome, Scene, run};
 use std::path::Path;
-
-fn outcome(scene: &str) -> Outcome {
-    run(&Scene::parse(scene, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-}
 
 fn page(outcome: &Outcome) -> String {
     let mut text = Vec::new();

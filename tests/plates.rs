@@ -1,6 +1,7 @@
 //! Sheets that bend: springs on directors are the plate of Morley, on any mesh.
 
 use crate::shapes::Random;
+use crate::shapes::statics::product;
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use springfit_bodies::model::{
     BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
@@ -83,17 +84,6 @@ fn of_plate(mesh: &Mesh, w: impl Fn(f64, f64) -> f64, slope: impl Fn(usize, f64,
         u.extend([-length * lean.x, -length * lean.y, (w(a.x, a.y) + w(b.x, b.y)) / 2.0]);
     }
     u
-}
-
-fn product(entries: &springfit_bodies::model::Entries, u: &[f64]) -> Vec<f64> {
-    let mut f = vec![0.0; u.len()];
-    for entry in entries {
-        f[entry.row] += entry.val * u[entry.col];
-        if entry.row != entry.col {
-            f[entry.col] += entry.val * u[entry.row];
-        }
-    }
-    f
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

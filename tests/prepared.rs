@@ -1,12 +1,12 @@
 //! A prepared network pulls as the network does: on every element, with all kinds of springs, wherever its points are.
 
-use crate::shapes::{Random, distorted, elements, materials};
+use crate::shapes::bodies::grid;
+use crate::shapes::{Random, elements, materials, single, valid};
 use rayon::prelude::*;
 use springfit_bodies::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
 use springfit_element::element::{Element, SpringKind};
 use springfit_element::material::{Material, State};
 use springfit_element::springs::{Law, Measure, Patch, Springs, Squares, Turns};
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{
     CellFits, ExactEnergy, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells, fit_exact,
 };
@@ -69,24 +69,6 @@ fn check(network: &Network, points: &[f64], random: &mut Random, name: &str) {
     check_at(network, &mirrored, name);
 }
 
-/// A mesh of one cell with its nodes at `x`, `[nodes × space]`.
-fn single(element: &Arc<Element>, x: Vec<f64>) -> Mesh {
-    Mesh::of_cells(
-        element.space(),
-        x,
-        vec![CellBlock { element: element.clone(), connectivity: (0..element.nodes()).collect() }],
-    )
-}
-
-fn valid(element: &Element, random: &mut Random) -> Vec<f64> {
-    loop {
-        let x = distorted(element, random);
-        if Geometry::new(&element.tabulation).set(&element.tabulation, &x).is_ok() {
-            return x;
-        }
-    }
-}
-
 /// Two cells along each axis, points moved by up to a tenth of a cell; none of an element whose cells fill no box.
 fn boxed(element: &Arc<Element>, random: &mut Random) -> Option<Mesh> {
     let d = element.dimension();
@@ -122,7 +104,7 @@ fn prepared_networks_pull_as_networks_of_every_element() {
     let mut kinds = 0;
     for element in elements().into_iter().map(Arc::new) {
         let mut random = Random(71);
-        let meshes = [Some(single(&element, valid(&element, &mut random))), boxed(&element, &mut random)];
+        let meshes = [Some(single(&element, &valid(&element, &mut random))), boxed(&element, &mut random)];
         for mesh in meshes.iter().flatten().filter(|mesh| mesh.point_count() < 60) {
             for material in materials(element.dimension()).into_iter().filter(|m| m.poisson() >= 0.0) {
                 check(&classical(mesh, material), &mesh.points, &mut random, &format!("{} classical", element.name));
@@ -157,7 +139,7 @@ fn prepared_networks_pull_as_networks_in_space() {
         let d = element.dimension();
         let x: Vec<f64> = flat.chunks_exact(d).flat_map(|x| [x[0], *x.get(1).unwrap_or(&0.3), 0.4 * x[0]]).collect();
         let element = Arc::new(element.in_space(3));
-        let mesh = single(&element, x);
+        let mesh = single(&element, &x);
         for material in materials(d) {
             for large in [false, true] {
                 let fit = ExactFit { large, ..ExactFit::default() };
@@ -401,9 +383,7 @@ fn parts_of_large_networks_give_the_same_bits_on_any_number_of_threads() {
     let material = Material::new(1e4, 0.4, State::Solid).unwrap();
     let mut random = Random(5);
     let boxed = |element: &str, cells: usize, random: &mut Random| {
-        let element = Arc::new(Element::load(element).unwrap());
-        let spec = BoxMesh { element, size: vec![1.0; 3], cells: vec![cells; 3], origin: vec![0.0; 3] };
-        let mut mesh = spec.build().unwrap();
+        let mut mesh = grid(element, &[1.0; 3], &[cells; 3]);
         mesh.points.iter_mut().for_each(|x| *x += 0.1 / cells as f64 * random.next());
         mesh
     };

@@ -1,7 +1,8 @@
 //! Pressures on faces, at rest and on faces that move; and cavities that are filled to a given volume.
 
+use crate::kit::{outcome, refusal};
 use crate::shapes::bodies::{grid, mapped, patch, sphere};
-use crate::shapes::{Random, distorted, elements};
+use crate::shapes::{Random, distorted, elements, single};
 use springfit_bodies::model::{
     Action, Body, Cavity, Component, Elastic, PressedFaces, Support, displaced, finite_elements, nodal_forces,
 };
@@ -10,15 +11,8 @@ use springfit_element::element::Element;
 use springfit_element::material::{CellMap, Energy, Material, State};
 use springfit_foundation::symbolic::Scope;
 use springfit_mesh::mesh::{CellBlock, CellIndex, Mesh, Selection};
-use springfit_studies::study::{Scene, run};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::Path;
 use std::sync::Arc;
-
-fn one_cell(element: &Element, points: Vec<f64>) -> Mesh {
-    let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
-    Mesh::of_cells(element.dimension(), points, vec![block])
-}
 
 fn at(condition: &str) -> Selection {
     Selection::Where(Scope::new(&["x", "y", "z"]).predicate(condition).unwrap())
@@ -47,7 +41,7 @@ fn a_uniform_pressure_on_a_closed_body_is_in_balance() {
     for element in elements().iter().filter(|element| element.dimension() > 1) {
         let (d, mut random) = (element.dimension(), Random(17));
         for _ in 0..4 {
-            let mesh = one_cell(element, distorted(element, &mut random));
+            let mesh = single(element, &distorted(element, &mut random));
             let faces = pressed(&mesh, &Selection::Everything, 2.0);
             let forces = nodal_forces(&mesh, &Selection::Everything, &Action::Pressure(Component::Constant(2.0)), 1.0);
             let forces = forces.unwrap();
@@ -73,7 +67,7 @@ fn the_tangent_of_a_pressure_is_that_of_differences() {
     for element in elements().iter().filter(|element| element.dimension() > 1) {
         let (d, mut random) = (element.dimension(), Random(5));
         let rest = distorted(element, &mut random);
-        let mesh = one_cell(element, rest.clone());
+        let mesh = single(element, &rest);
         let varying = Scope::new(&["x", "y", "z"]).expression("3 + x - 2*y").unwrap();
         let open = Component::Varying(varying);
         for (pressure, is_closed) in [(open, false), (Component::Constant(1.5), true)] {
@@ -578,16 +572,14 @@ fn wrong_pressures_are_refused() {
         (law, "group = \"zmax\", volume = -2", "a positive number of m³"),
     ] {
         let text = format!("{cube}{material}load = [{{ {load} }}]\n");
-        let error = Scene::parse(&text, Path::new("s.toml")).and_then(|scene| run(&scene, &mut |_| ())).unwrap_err();
-        let error = error.to_string();
-        assert!(error.contains(wanted) && error.contains("s.toml") && !error.contains('\n'), "{load}: {error}");
+        let error = refusal(&text);
+        assert!(error.contains(wanted) && error.contains("scene.toml") && !error.contains('\n'), "{load}: {error}");
     }
     let ring = "mesh = { box = { element = \"quad4\", size = [1, 1], cells = [3, 3] } }\n\
                 fix = [{ group = \"ymin\" }]\nfit = [{ objective = \"exact\" }]\n\
                 material = { young = 1e4, poisson = 0.3, plane = \"strain\", thickness = 1 }\n";
-    let text = format!("{ring}load = [{{ group = \"ymax\", pressure = \"z\" }}]\n");
-    let error = Scene::parse(&text, Path::new("s.toml")).and_then(|scene| run(&scene, &mut |_| ())).unwrap_err();
-    assert!(error.to_string().contains("load[0].pressure: expected an expression of x and y"), "{error}");
+    let error = refusal(&format!("{ring}load = [{{ group = \"ymax\", pressure = \"z\" }}]\n"));
+    assert!(error.contains("load[0].pressure: expected an expression of x and y"), "{error}");
 }
 
 /// On a side between two cells a pressure has no direction, and an inclusion is no cavity, whatever the order of the cells.
@@ -662,11 +654,10 @@ fn parts_of_a_surface_add_up_to_it() {
 #[test]
 fn pressures_of_a_scene_follow_where_there_is_a_law() {
     let scene = |law: &str, loads: &str| {
-        let text = format!(
+        outcome(&format!(
             "mesh = {{ box = {{ element = \"hex8\", size = [3, 1, 1], cells = [6, 2, 2] }} }}\nfix = [{{ group = \"xmin\" }}]\n\
              material = {{ young = 1e4, poisson = 0.3{law} }}\nfit = [{{ objective = \"exact\" }}]\nload = [{loads}]\n"
-        );
-        run(&Scene::parse(&text, Path::new("s.toml")).unwrap(), &mut |_| ()).unwrap()
+        ))
     };
     let loads = "{ name = \"p\", group = \"zmax\", pressure = \"120 Pa\" }, { name = \"t\", group = \"zmax\", traction = [0, 0, -120] }, \
                  { name = \"side\", group = \"ymax\", traction = [0, 5, 0] }, { name = \"both\", sum = [\"p\", \"side\"] }";

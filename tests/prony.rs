@@ -1,28 +1,23 @@
 //! Springs that forget: creep, relaxation and large shear against closed forms, objectivity, dissipation, and every wrong key.
 
+use crate::kit::{outcome, refusal};
 use crate::messages::reads;
+use crate::shapes::Random;
+use crate::shapes::bodies::grid;
 use springfit_bodies::dynamics::{
     BranchForm, Decay, Integrator, LargeMemory, LinearMemory, Memory, Motion, Options, RelaxingPart, Simulation,
 };
 use springfit_bodies::model::{MaterialPoints, Support, displaced, exact_network, finite_elements, lumped_masses};
-use springfit_element::element::Element;
 use springfit_element::material::{Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, State};
 use springfit_fit::fit::{ExactFit, ModulusTest, ShearSprings};
-use springfit_mesh::mesh::{BoxMesh, Mesh};
+use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::{Event, ModelMotion, MotionEnding, Outcome, Record, Scene, run};
 use std::f64::consts::TAU;
 use std::path::Path;
-use std::sync::Arc;
 
 /// μ, K of the bodies in these tests, Pa: E = 10 kPa, ν = 0.3.
 const MU: f64 = 1e4 / 2.6;
 const BULK: f64 = 1e4 / 1.2;
-
-fn grid(element: &str, cells: &[usize], size: &[f64]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let origin = vec![0.0; size.len()];
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin }.build().unwrap()
-}
 
 fn material(d: usize) -> MaterialMap {
     let state = if d == 3 { State::Solid } else { State::PlaneStrain { thickness: 0.5 } };
@@ -39,16 +34,6 @@ fn series(terms: &[[f64; 3]]) -> Relaxation {
 fn branches(mesh: &Mesh, form: BranchForm, terms: &[[f64; 3]]) -> Memory {
     let points = MaterialPoints::of(mesh, &material(mesh.dimension), ShearSprings::Cells).unwrap();
     Memory::Large(Box::new(LargeMemory::new(points, form, &mesh.points, &series(terms)).unwrap()))
-}
-
-struct Random(u64);
-
-impl Random {
-    /// From −1 to 1 (Knuth's linear congruential generator).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }
 
 type Tensor = [[f64; 3]; 3];
@@ -110,14 +95,14 @@ fn errors_of(mesh: &Mesh, form: BranchForm, steps: usize) -> [f64; 2] {
 
 /// The errors of a network of tetrahedra.
 pub fn shear_errors(steps: usize) -> [f64; 2] {
-    errors_of(&grid("tet4", &[2, 1, 1], &[0.02, 0.01, 0.01]), BranchForm::Edges, steps)
+    errors_of(&grid("tet4", &[0.02, 0.01, 0.01], &[2, 1, 1]), BranchForm::Edges, steps)
 }
 
 /// The shear of H is linear in time, so that the rule has σ_xy to rounding; the error of N₁ falls with the square of the step.
 #[test]
 fn shear_to_600_percent_is_upper_convected() {
     for (element, cells) in [("tet4", [2, 1, 1]), ("hex8", [2, 1, 1]), ("tet10", [1, 1, 1]), ("hex20", [1, 1, 1])] {
-        let mesh = grid(element, &cells, &[0.02, 0.01, 0.01]);
+        let mesh = grid(element, &[0.02, 0.01, 0.01], &cells);
         for form in [BranchForm::Edges, BranchForm::Tensors] {
             let errors = [100, 400, 1000].map(|steps| errors_of(&mesh, form, steps));
             println!("{element} {form:?}: {errors:?}");
@@ -139,7 +124,7 @@ fn stress_turns_with_the_body() {
     };
     let shape =
         |t: f64| -> Tensor { [[1.0 + 0.8 * t, 2.0 * t, 0.1], [0.0, 1.0 - 0.2 * t, 0.3 * t], [0.0, 0.1 * t, 1.0]] };
-    let mesh = grid("hex8", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     for form in [BranchForm::Edges, BranchForm::Tensors] {
         let still = follow(&mut branches(&mesh, form, &[[0.7, 0.0, 0.5]]), &mesh, 0.05, 30, shape, 1e-6);
         let mut memory = branches(&mesh, form, &[[0.7, 0.0, 0.5]]);
@@ -157,7 +142,7 @@ fn a_dilation_does_not_relax() {
     let dilation = |t: f64| -> Tensor {
         std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 + 0.3 * t } else { 0.0 }))
     };
-    let mesh = grid("tet4", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("tet4", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     for form in [BranchForm::Edges, BranchForm::Tensors] {
         let s = follow(&mut branches(&mesh, form, &[[0.9, 0.0, 0.2]]), &mesh, 0.05, 20, dilation, 1e-6);
         assert!(s.iter().flatten().all(|s| s.abs() < 1e-9 * MU), "{form:?}: {s:?}");
@@ -173,7 +158,7 @@ fn a_small_strain_relaxes_in_shear_alone() {
     let f = |_: f64| -> Tensor {
         std::array::from_fn(|i| std::array::from_fn(|j| size * strain[i][j] + if i == j { 1.0 } else { 0.0 }))
     };
-    let mesh = grid("hex8", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let mut memory = branches(&mesh, BranchForm::Edges, &[[0.6, 0.0, 0.5], [0.3, 0.0, 2.0]]);
     assert!(memory.reset(&affine(&mesh, &f(0.0))));
     let s = follow(&mut memory, &mesh, 0.1, 7, f, 1e-6);
@@ -199,7 +184,7 @@ fn a_step_has_a_potential() {
         ("quad8", &[1, 1], &[0.01, 0.01]),
     ];
     for (element, cells, size) in bodies {
-        let mesh = grid(element, cells, size);
+        let mesh = grid(element, size, cells);
         let mut random = Random(7);
         let mut shape = |large: f64| -> Vec<f64> { mesh.points.iter().map(|_| large * 0.01 * random.next()).collect() };
         let (first, second, u) = (shape(0.05), shape(0.08), shape(0.1));
@@ -255,7 +240,7 @@ fn a_step_has_a_potential() {
 /// 10⁵ random steps of random length: what is dissipated never decreases, and no branch has less energy than none.
 #[test]
 fn dissipation_is_never_negative() {
-    let mesh = grid("tet4", &[1, 1, 1], &[0.01, 0.01, 0.01]);
+    let mesh = grid("tet4", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let dofs = mesh.points.len();
     let stiffness = |lambda: f64, mu: f64| finite_elements(&mesh, Moduli { lambda, mu });
     let part = |entries, shares| RelaxingPart::new(&entries, dofs, shares).unwrap();
@@ -315,15 +300,6 @@ fn what_a_maxwell_element_dissipates_is_its_integral() {
         let expected = sum * x / (3.0 * n as f64);
         assert!((found / expected - 1.0).abs() < 1e-8, "{x}: {found} {expected}");
     }
-}
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-}
-
-fn refusal(text: &str) -> String {
-    let scene = Scene::parse(text, Path::new("scene.toml"));
-    scene.and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string()
 }
 
 /// A bar of 96 tetrahedra under uniaxial stress, and how it is driven.
@@ -666,7 +642,7 @@ fn a_body_that_is_held_ends_with_what_is_left() {
 /// relaxation time.
 #[test]
 fn the_stable_step_is_that_of_a_sudden_strain() {
-    let mesh = grid("hex8", &[1, 1, 3], &[0.01, 0.01, 0.03]);
+    let mesh = grid("hex8", &[0.01, 0.01, 0.03], &[1, 1, 3]);
     let map = material(3);
     let network = exact_network(&mesh, &map, &ExactFit::default(), &[]).unwrap();
     let masses = lumped_masses(&mesh, 1000.0, 1.0, Default::default());

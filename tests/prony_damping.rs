@@ -1,23 +1,14 @@
 //! Damping from measurements, and moduli over frequency: against closed forms, integration in time, and every wrong key.
 
+use crate::kit::{outcome, refusal};
 use crate::messages::reads;
 use nalgebra::Complex;
 use springfit_fit::fit::{DampingKind, DampingTest, ratio_of_decay};
 use springfit_report::report::Table;
-use springfit_studies::study::{ComplexModulus, DynamicModuli, Outcome, Scene, run};
+use springfit_studies::study::{ComplexModulus, DynamicModuli, Outcome};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 type C = Complex<f64>;
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
-}
-
-fn refusal(text: &str) -> String {
-    let scene = Scene::parse(text, Path::new("scene.toml"));
-    scene.and_then(|scene| run(&scene, &mut |_| {})).unwrap_err().to_string()
-}
 
 fn test<'a>(kind: DampingKind, values: &'a [f64], frequencies: &'a [f64], band: Option<[f64; 2]>) -> DampingTest<'a> {
     DampingTest { kind, values, frequencies, band }

@@ -3,10 +3,11 @@
 //! Figures with few digits were computed apart from this program, from the same formulas; all else is derived where it stands.
 
 use crate::messages::reads;
+use crate::shapes::statics::dense;
 
-use crate::shapes::{Random, distorted, elements, materials, rigid_motions};
+use crate::shapes::{Random, distorted, elements, materials, rigid_motions, single};
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Elastic, Entries, Network};
+use springfit_bodies::model::{Elastic, Network};
 use springfit_element::element::{Cell, Element, SpringKind};
 use springfit_element::material::{Material, Plane};
 use springfit_element::springs::Springs;
@@ -77,11 +78,6 @@ fn all_close(found: &[f64], expected: f64, digits: f64) {
     found.iter().for_each(|k| close(*k, expected, digits));
 }
 
-fn single(element: &Element, x: &[f64]) -> Mesh {
-    let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
-    Mesh::of_cells(element.space(), x.to_vec(), vec![block])
-}
-
 fn boxed(element: &Element, size: &[f64], cells: usize) -> Mesh {
     let d = element.dimension();
     let element = Arc::new(element.clone());
@@ -91,17 +87,6 @@ fn boxed(element: &Element, size: &[f64], cells: usize) -> Mesh {
 fn network(method: Method, mesh: &Mesh, material: Material) -> Network {
     let CellBlock { element, connectivity } = &mesh.blocks[0];
     Network::assemble(mesh, &[fitted(method, element, &mesh.points, connectivity, material)])
-}
-
-fn dense(entries: &Entries, size: usize) -> DMatrix<f64> {
-    let mut k = DMatrix::zeros(size, size);
-    for e in entries {
-        k[(e.row, e.col)] += e.val;
-        if e.row != e.col {
-            k[(e.col, e.row)] += e.val;
-        }
-    }
-    k
 }
 
 /// The moduli of the springs as a material, in a box repeated without end.
@@ -212,7 +197,7 @@ fn preserving_forces_give_the_bulk_modulus() {
         for (name, x) in [("tri3", TRIANGLE.to_vec()), ("quad4", unit("quad4"))] {
             let element = Element::load(name).unwrap();
             let mesh = single(&element, &x);
-            let k = dense(&network(Method::LloydPreserving, &mesh, stress(nu)).stiffness(&x), x.len());
+            let k = dense(x.len(), &network(Method::LloydPreserving, &mesh, stress(nu)).stiffness(&x));
             let u = DVector::from_column_slice(&x);
             let area = if name == "tri3" { 3f64.sqrt() / 4.0 } else { 1.0 };
             // ½ uᵀKu = ½ K (div u)² A
@@ -223,7 +208,7 @@ fn preserving_forces_give_the_bulk_modulus() {
     for nu in [0.25, 0.3, 0.45, 0.49] {
         let x = tetrahedron();
         let mesh = single(&Element::load("tet4").unwrap(), &x);
-        let k = dense(&network(Method::LloydPreserving, &mesh, solid(nu)).stiffness(&x), x.len());
+        let k = dense(x.len(), &network(Method::LloydPreserving, &mesh, solid(nu)).stiffness(&x));
         let u = DVector::from_column_slice(&x);
         let bulk = |nu: f64| THIRD / (1.0 - 2.0 * nu);
         close((&k * &u).dot(&u) / (9.0 * 2f64.sqrt() / 12.0), bulk(nu) - bulk(0.25) + 0.64, 1e-12);
@@ -556,7 +541,7 @@ fn constants_follow_the_cell() {
             .collect();
         let own = network(method, &single(&element, &x), material(d, 0.4));
         let other = network(method, &single(&element, &turned), material(d, 0.4));
-        let k = dense(&own.stiffness(&x), x.len());
+        let k = dense(x.len(), &own.stiffness(&x));
         let size = k.amax();
         for (a, b) in own.lengths.iter().zip(&other.lengths) {
             close(a.constant, b.constant, 1e-13 * size);
@@ -571,7 +556,7 @@ fn constants_follow_the_cell() {
                 continue;
             };
             let renumbered = Network::assemble(&mesh, &[fits]);
-            let difference = dense(&renumbered.stiffness(&x), x.len()) - &k;
+            let difference = dense(x.len(), &renumbered.stiffness(&x)) - &k;
             assert!(difference.amax() < 1e-12 * size, "{method:?} {}", element.name);
         }
     }
@@ -592,10 +577,10 @@ fn networks_resist_all_but_rigid_motions() {
         };
         let (x, material) = (&mesh.points, material(d, 0.4));
         let network = network(method, &mesh, material);
-        let k = dense(&network.stiffness(x), x.len());
+        let k = dense(x.len(), &network.stiffness(x));
         let rest = network.respond(x).unwrap();
         assert!(rest.energy == 0.0 && rest.force.iter().all(|f| *f == 0.0), "{method:?} {}", element.name);
-        assert!((dense(&rest.tangent, x.len()) - &k).amax() < 1e-14 * k.amax());
+        assert!((dense(x.len(), &rest.tangent) - &k).amax() < 1e-14 * k.amax());
         for motion in rigid_motions(x, d) {
             assert!((&k * DVector::from_vec(motion)).amax() < 1e-13 * k.amax(), "{method:?} {}", element.name);
         }

@@ -1,27 +1,21 @@
 //! What the linear cells of a body that bends lack of its energy, estimated from the jumps of their strains, is what quadratic elements on smaller cells
 //! have more.
 
+use crate::shapes::Random;
+use crate::shapes::bodies::grid;
 use springfit_bodies::model::{Action, Support, finite_elements, lacking_energy, nodal_forces};
 use springfit_bodies::solve::System;
-use springfit_element::element::Element;
 use springfit_element::material::{Material, MaterialMap};
-use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
-use std::sync::Arc;
-
-fn body(element: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let origin = vec![0.0; size.len()];
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin }.build().unwrap()
-}
+use springfit_mesh::mesh::{Mesh, Selection};
 
 /// Moves the points inside by up to this share of a cell.
 fn irregular(mut mesh: Mesh, size: &[f64], cells: &[usize], share: f64) -> Mesh {
-    let mut state = 7_u64;
+    let mut random = Random(7);
     for (i, x) in mesh.points.iter_mut().enumerate() {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        let by = random.next();
         let (size, cell) = (size[i % size.len()], size[i % size.len()] / cells[i % size.len()] as f64);
         if *x > 1e-9 && *x < size - 1e-9 {
-            *x += share * cell * ((state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
+            *x += share * cell * by;
         }
     }
     mesh
@@ -54,8 +48,8 @@ fn solved(mesh: &Mesh, material: &Material, traction: &[f64]) -> (Vec<f64>, f64)
 
 #[test]
 fn what_linear_cells_lack_of_the_energy_of_bending_is_estimated() {
-    let strip = |element: &str, cells: [usize; 2]| body(element, &[0.1, 0.01], &cells);
-    let beam = |element: &str, cells: [usize; 3]| body(element, &[0.1, 0.01, 0.01], &cells);
+    let strip = |element: &str, cells: [usize; 2]| grid(element, &[0.1, 0.01], &cells);
+    let beam = |element: &str, cells: [usize; 3]| grid(element, &[0.1, 0.01, 0.01], &cells);
     let mut bodies = Vec::new();
     for cells in [[14, 2], [20, 2], [27, 2], [30, 3], [40, 4]] {
         bodies.push((format!("tri3 {cells:?}"), strip("tri3", cells), 0.3));
@@ -92,7 +86,7 @@ fn nothing_lacks_where_strains_are_those_of_the_cells() {
         [("tri3", vec![4, 3]), ("quad4", vec![4, 3]), ("tet4", vec![2, 3, 2]), ("hex8", vec![2, 3, 2])]
     {
         let size = vec![1.0; cells.len()];
-        let mesh = irregular(body(element, &size, &cells), &size, &cells, 0.2);
+        let mesh = irregular(grid(element, &size, &cells), &size, &cells, 0.2);
         let d = mesh.dimension;
         let material = MaterialMap::from(Material::for_body(d, 1e6, 0.3, None, None).unwrap());
         let linear = |slopes: &[f64]| -> Vec<f64> {

@@ -1,27 +1,15 @@
 //! Bodies of several materials, by region and from place to place: against bars and beams in closed form, and cell by cell against the
 //! fit of that cell alone.
 
+use crate::kit::{outcome, outcome_in, refusal};
+use crate::shapes::bodies::grid;
 use springfit_bodies::model::{cell_means, finite_elements};
-use springfit_element::element::Element;
 use springfit_element::material::{BlockValues, CellMap, Hooke, Material, State};
 use springfit_element::springs::{Measure, Springs};
 use springfit_fit::fit::{Fit, Objective, element_errors, fit_cells, fit_element};
-use springfit_mesh::mesh::{BoxMesh, Mesh};
 use springfit_report::report::Report;
 use springfit_studies::study::{Outcome, Scene, run};
-use std::path::Path;
-use std::sync::Arc;
 use tempfile::TempDir;
-
-fn outcome(text: &str) -> Outcome {
-    let scene = Scene::parse(text, Path::new("scene.toml")).unwrap();
-    run(&scene, &mut |_| ()).unwrap()
-}
-
-fn refusal(text: &str, folder: &Path) -> String {
-    let scene = Scene::parse(text, &folder.join("scene.toml"));
-    scene.and_then(|scene| run(&scene, &mut |_| ())).unwrap_err().to_string()
-}
 
 /// The largest displacement along the last axis under the first load.
 fn end(outcome: &Outcome) -> f64 {
@@ -156,11 +144,6 @@ fn an_expression_is_that_of_the_middle_of_each_cell() {
     assert_close(outcome.masses.unwrap().iter().sum(), 1000.0 * (3.0 + 4.5), 1e-12);
 }
 
-fn grid(element: &str, cells: [usize; 3]) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    BoxMesh { element, size: vec![1.0, 1.0, 3.0], cells: cells.to_vec(), origin: vec![0.0; 3] }.build().unwrap()
-}
-
 /// Writes the columns x, y, z, E of these places, and gives the number there.
 fn table(places: impl Iterator<Item = Vec<f64>>, young: impl Fn(&[f64]) -> f64) -> String {
     let row = |x: Vec<f64>| format!("{:?},{:?},{:?},{:?}\n", x[0], x[1], x[2], young(&x));
@@ -174,7 +157,7 @@ fn data_of_files_are_those_of_an_expression() {
     let young = |x: &[f64]| 5e3 * (2.5 + 0.1 * x[0] - 0.2 * x[1] + 10.0 * x[2]);
     let text = "\"5e3*(2.5 + 0.1*x - 0.2*y + 10*z)\"";
     for element in ["tet4", "hex8", "tet10"] {
-        let mesh = grid(element, [2, 2, 3]);
+        let mesh = grid(element, &[1.0, 1.0, 3.0], &[2, 2, 3]);
         let points = || (0..mesh.point_count()).map(|p| mesh.point(p).to_vec());
         let middles = cell_means(&mesh, &mesh.points).concat();
         std::fs::write(folder.path().join("nodes.csv"), table(points(), young)).unwrap();
@@ -240,7 +223,7 @@ fn arrays_of_a_grid_are_read() {
 #[test]
 fn every_cell_is_fitted_to_its_own_moduli() {
     for name in ["hex8", "tet4"] {
-        let mut mesh = grid(name, [2, 2, 3]);
+        let mut mesh = grid(name, &[1.0, 1.0, 3.0], &[2, 2, 3]);
         mesh.points.iter_mut().enumerate().for_each(|(i, x)| *x += 0.02 * ((i * 7919 % 97) as f64 / 97.0 - 0.5));
         let block = &mesh.blocks[0];
         let (element, n) = (&block.element, block.element.nodes());
@@ -363,7 +346,7 @@ fn gravity_is_a_body_force_of_the_density() {
     }
     let without = bar("hex8", [1, 1, 1], &format!("[material]\n{base}"), EXACT)
         .replace("group = \"zmax\"\ntraction = [0, 0, 10.0]", gravity);
-    let found = refusal(&without, Path::new(""));
+    let found = refusal(&without);
     assert!(found.contains("material.density") && found.contains("load[0].gravity"), "{found}");
 }
 
@@ -424,7 +407,7 @@ fn wrong_materials_are_named() {
         if materials.starts_with("material =") {
             text = materials.clone() + &text.replace(&materials, "");
         }
-        let found = refusal(&text, folder.path());
+        let found = outcome_in(folder.path(), &text).unwrap_err().to_string();
         assert!(found.contains(place) && found.contains(words), "{materials}\n{found}\nexpected {place} {words}");
     }
 }
@@ -495,7 +478,7 @@ fn regions_have_laws_of_their_own() {
     assert_close(end(&outcome), low + 2.0 * stretch(200.0, 10.0) - 3.0, 1e-6);
     assert!(outcome.law.as_ref().is_some_and(|law| law.contains("Venant") && law.contains(", ")));
     let folder = TempDir::new().unwrap();
-    assert!(refusal(&bar("hex8", [1, 1, 3], &two, EXACT), folder.path()).contains("fit[0].objective"));
+    assert!(refusal(&bar("hex8", [1, 1, 3], &two, EXACT)).contains("fit[0].objective"));
 }
 
 fn both_with(young: &str) -> String {

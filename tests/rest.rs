@@ -1,7 +1,8 @@
 //! Fits whose springs pull at rest, against matrices formed here entry by entry, and the identity that makes some exact.
 
 use crate::fits::{Case, LARGE, case, cases, weights};
-use crate::shapes::{Random, distorted, materials};
+use crate::shapes::statics::dense;
+use crate::shapes::{Random, distorted, geometry, materials};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, Network, RestTension};
 use springfit_element::element::Element;
@@ -429,8 +430,7 @@ fn zero_rest_lengths_make_simplices_exact() {
                 let Moduli { mu, .. } = material.moduli();
                 for weight in weights() {
                     let (k, t) = subject.solve(&frobenius(weight, Rest::Zero)).unwrap();
-                    let mut geometry = springfit_element::stiffness::Geometry::new(&element.tabulation);
-                    geometry.set(&element.tabulation, &x).unwrap();
+                    let geometry = geometry(&element, &x);
                     let d = element.dimension();
                     for (s, &[a, b]) in springs.pairs().iter().enumerate() {
                         let mut expected = 0.0;
@@ -539,19 +539,9 @@ fn networks_have_the_tangent_of_their_cells() {
             let tension = RestTension::of(&network, &mesh.points);
             assert!(tension.unbalanced <= 1e-10, "{name}: {tension:?}");
             constant_forces += tension.steady;
-            let dense = |entries: springfit_bodies::model::Entries| {
-                let mut matrix = DMatrix::<f64>::zeros(size, size);
-                for entry in entries {
-                    matrix[(entry.row, entry.col)] += entry.val;
-                    if entry.row != entry.col {
-                        matrix[(entry.col, entry.row)] += entry.val;
-                    }
-                }
-                matrix
-            };
-            assert!((dense(network.stiffness(&mesh.points)) - &sum).norm() < 1e-9 * largest, "{name}");
+            assert!((dense(size, &network.stiffness(&mesh.points)) - &sum).norm() < 1e-9 * largest, "{name}");
             let at_rest = network.respond(&mesh.points).unwrap();
-            assert!((dense(at_rest.tangent) - &sum).norm() < 1e-9 * largest, "{name}");
+            assert!((dense(size, &at_rest.tangent) - &sum).norm() < 1e-9 * largest, "{name}");
             // The work along a way is the difference of the energies, by Simpson's rule: a way of a thousandth, to the fifth power.
             let mut random = Random(5);
             let way: Vec<f64> = mesh.points.iter().map(|_| 1e-4 * random.next()).collect();

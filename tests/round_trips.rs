@@ -1,9 +1,10 @@
 //! Random networks in each format of networks, read again by readers of this file that know the formats alone, to the last bit.
 
+use crate::kit;
 use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_report::report::{MeasureKind, NETWORK_FORMATS, NetworkFile, NetworkFormat, NetworkRecord, read_network};
-use springfit_studies::study::{Outcome, Scene, run};
+use springfit_studies::study::Outcome;
 use std::collections::HashMap;
 use std::fs;
 use std::io::Read;
@@ -24,7 +25,7 @@ fn outcome(element: &str, objective: &str, seed: u64) -> Outcome {
         1e4 * size(),
         1e3 * size()
     );
-    let mut outcome = run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    let mut outcome = kit::outcome(&text);
     let mut random = Random(seed ^ 0x9e37);
     let factors: Vec<f64> =
         (0..outcome.fits[0].network.len()).map(|_| random.next() * 10f64.powf(6.0 * random.next())).collect();

@@ -1,21 +1,22 @@
 //! The sampled fit: its limit for small shapes, its optimality, what it does for a body pulled by a third of its length.
 
+use crate::kit::{outcome, outcome_in};
 use crate::messages::reads;
+use crate::shapes::bodies::grid;
 
-use crate::shapes::{Random, distorted};
+use crate::shapes::{Random, distorted, geometry};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Action, Body, Elastic, Network, Support, nodal_forces};
 use springfit_bodies::solve::{Ending, Newton};
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Plane, State};
 use springfit_element::springs::{Force, Law, Springs};
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{
     Balance, CellFits, DeformationFamily, Fit, Higher, Norm, Objective, SampledFit, SampledFits, Sampling, Source,
     Weight, Weights, fit_cells, fit_sampled,
 };
-use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
-use springfit_studies::study::{Scene, displacement_error, run};
+use springfit_mesh::mesh::{BoxMesh, Selection};
+use springfit_studies::study::{Scene, displacement_error};
 use std::sync::Arc;
 
 fn every(element: &Element) -> Vec<String> {
@@ -54,8 +55,7 @@ fn small_shapes_give_the_fit_of_the_tangent() {
         let x = distorted(&element, &mut Random(4));
         let d = element.dimension();
         let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         let r = geometry.stiffness(material.moduli());
         let mut g = Vec::new();
         springs.gradients(&x, &geometry, &mut g);
@@ -248,8 +248,7 @@ fn springs_are_a_neo_hookean_simplex_exactly() {
             let found =
                 fit_sampled(&element, &springs, &x, &cells, &energy, material.state(), &fit, &mut |_| {}).unwrap();
             assert!(found.held_out[0] < 1e-7, "{name}: {}", found.held_out[0]);
-            let mut geometry = Geometry::new(&element.tabulation);
-            geometry.set(&element.tabulation, &x).unwrap();
+            let geometry = geometry(&element, &x);
             let (lambda, mu) = (0.3 / 1.3 / 0.4, 0.5 / 1.3);
             let gradient = |a: usize| &geometry.gradients[a * d..(a + 1) * d];
             let product = |[a, b]: [usize; 2]| gradient(a).iter().zip(gradient(b)).map(|(g, h)| g * h).sum::<f64>();
@@ -268,9 +267,7 @@ fn springs_are_a_neo_hookean_simplex_exactly() {
 fn sampled_springs_follow_large_deformations() {
     const LOADS: [[f64; 3]; 3] = [[0.0, 0.0, 0.26], [0.0, 0.05, 0.0], [0.02, 0.02, 0.18]];
     for (name, cells) in [("hex8", 3), ("tet4", 3)] {
-        let element = Arc::new(Element::load(name).unwrap());
-        let cube = BoxMesh { element, size: vec![1.0; 3], cells: vec![cells; 3], origin: vec![0.0; 3] };
-        let mesh: Mesh = cube.build().unwrap();
+        let mesh = grid(name, &[1.0; 3], &[cells; 3]);
         let block = &mesh.blocks[0];
         let material = Material::new(1.0, 0.3, State::Solid).unwrap();
         let energy = Energy::load("neo-hookean", material).unwrap();
@@ -399,9 +396,7 @@ fn shapes_of_a_list_that_are_left_out_are_counted() {
             "[mesh]\nbox = {{ element = \"quad4\", size = [1, 1], cells = [1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
              plane = \"strain\"\nthickness = 1\n[[fit]]\nobjective = \"sampled\"\nlaw = \"neo-hookean\"\n[fit.shapes]\n{shapes}\n"
         );
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, text).unwrap();
-        Scene::load(&path).and_then(|scene| run(&scene, &mut |_| {}))
+        outcome_in(folder.path(), &text)
     };
     for (keys, is_left_out) in [("count = 79", true), ("count = 80", false), ("", false)] {
         let outcome = ran(&format!("gradients = \"list.csv\"\n{keys}")).unwrap();
@@ -454,12 +449,11 @@ fn springs_are_named_once() {
 #[test]
 fn a_bound_that_the_smallest_optimum_satisfies_changes_nothing() {
     let constants = |nonnegative: bool| -> Vec<f64> {
-        let text = format!(
+        let outcome = outcome(&format!(
             "[mesh]\nbox = {{ element = \"hex8\", size = [0.01, 0.01, 0.01], cells = [1, 1, 1] }}\n[material]\nyoung = 10e3\npoisson = 0.2\n\
              law = \"neo-hookean\"\n[[fit]]\nobjective = \"sampled\"\nnonnegative = {nonnegative}\n\
              shapes = {{ count = 1, held_out = 5, families = [\"volumetric\"], perturbation = 0 }}\n"
-        );
-        let outcome = run(&Scene::parse(&text, std::path::Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+        ));
         assert_eq!(outcome.fits[0].deficient, 1);
         outcome.fits[0].network.lengths.iter().map(|spring| spring.constant).collect()
     };

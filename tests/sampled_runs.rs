@@ -1,5 +1,6 @@
 //! Sampled fits of scenes: shapes of other runs and of files, sets, errors by family, data as tables, and learning curves.
 
+use crate::kit::outcome;
 use springfit_element::material::{Energy, EnergyMap, Material, MaterialMap};
 use springfit_fit::fit::Spread;
 use springfit_mesh::mesh::NamedState;
@@ -251,11 +252,10 @@ fn cells_of_several_materials_have_their_places() {
 #[test]
 fn forces_without_bounds_are_told() {
     let shapes = "families = [\"volumetric\"], stretch = [0, 0.05], perturbation = 0, held_out = { families = [\"volumetric\", \"bending\"], stretch = [0.9, 1], count = 4 }";
-    let text = format!(
+    let outcome = outcome(&format!(
         "[mesh]\nbox = {{ element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] }}\n[material]\nyoung = 1e4\npoisson = 0.3\n\
          [[fit]]\nobjective = \"sampled\"\nlaw = \"neo-hookean\"\nforce = \"k*(exp(1000*s) - 1)\"\nshapes = {{ {shapes} }}\n"
-    );
-    let outcome = run(&Scene::parse(&text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap();
+    ));
     let found = outcome.fits[0].kind.sampled().unwrap();
     assert_eq!((found.infinite, found.held_out), (outcome.mesh.cell_count(), None));
     let notes = report::notes(&outcome);

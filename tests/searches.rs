@@ -1,10 +1,10 @@
 //! General searches that may switch springs off.
 
+use crate::shapes::geometry;
 use nalgebra::DMatrix;
 use springfit_element::element::Element;
 use springfit_element::material::{Material, Moduli};
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{Fit, Objective, Search, Solver, Topology, Weight, fit_element};
 
 const SEARCHES: [Search; 2] = [Search::ParticleSwarm, Search::SimulatedAnnealing];
@@ -40,8 +40,7 @@ impl Body {
         let springs = Springs::select(&element, None).unwrap();
         let x = vec![0.0, 0.0, 1.1, 0.1, 1.0, 0.9, -0.1, 1.0];
         let moduli = Material::for_body(2, 1.0, 0.3, None, None).unwrap().moduli();
-        let mut geometry = Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         let mut gradients = Vec::new();
         springs.gradients(&x, &geometry, &mut gradients);
         let stiffness = geometry.stiffness(moduli);

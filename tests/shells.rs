@@ -1,6 +1,7 @@
 //! Shells: the strains of surfaces in space on the domains of edges, with directors and without.
 
 use crate::shapes::Random;
+use crate::shapes::statics::product;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use springfit_bodies::model::{
     Body, Elastic, Entries, Network, Support, bending_springs, edge_springs, exact_network, finite_elements,
@@ -179,17 +180,6 @@ fn places(entries: &Entries) -> BTreeMap<(usize, usize), f64> {
         *all.entry((entry.row.max(entry.col), entry.row.min(entry.col))).or_insert(0.0) += entry.val;
     }
     all
-}
-
-fn product(entries: &Entries, u: &[f64]) -> Vec<f64> {
-    let mut f = vec![0.0; u.len()];
-    for (&(row, column), value) in &places(entries) {
-        f[row] += value * u[column];
-        if row != column {
-            f[column] += value * u[row];
-        }
-    }
-    f
 }
 
 fn largest(f: &[f64]) -> f64 {

@@ -1,6 +1,6 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
-use crate::shapes::{Random, distorted, elements, materials, text_with_angles, with_angles};
+use crate::shapes::{Random, distorted, elements, geometry, materials, text_with_angles, with_angles};
 use springfit_element::element::{Cell, Element, SHIPPED, SpringKind};
 use springfit_element::material::{Material, Plane};
 use springfit_element::springs::{Law, Measure, Springs};
@@ -263,8 +263,7 @@ fn selective_integration_does_not_lock() {
         let x = element.positions.clone();
         let u: Vec<f64> = x.chunks_exact(3).flat_map(|x| [x[0] * x[1], -x[0] * x[0] / 2.0, 0.0]).collect();
         let moduli = Material::for_body(3, 1.0, nu, None, None).unwrap().moduli();
-        let mut geometry = springfit_element::stiffness::Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &x).unwrap();
+        let geometry = geometry(&element, &x);
         let u = nalgebra::DVector::from_vec(u);
         (geometry.stiffness(moduli) * &u).dot(&u)
     };
@@ -274,8 +273,7 @@ fn selective_integration_does_not_lock() {
     // A uniform strain has the same energy in both.
     let moduli = Material::for_body(3, 1.0, 0.49, None, None).unwrap().moduli();
     let energy = |element: &Element| {
-        let mut geometry = springfit_element::stiffness::Geometry::new(&element.tabulation);
-        geometry.set(&element.tabulation, &element.positions).unwrap();
+        let geometry = geometry(&element, &element.positions);
         let u = nalgebra::DVector::from_column_slice(&element.positions);
         (geometry.stiffness(moduli) * &u).dot(&u)
     };

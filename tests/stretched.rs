@@ -1,6 +1,6 @@
 //! Whole-object fits at large deformation: derivatives in moduli, loads that stretch a body so far, and coarse networks for finer bodies.
 
-use crate::coarse::block;
+use crate::shapes::bodies::grid;
 use crate::whole::compare_with_differences;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rand::rngs::StdRng;
@@ -80,7 +80,7 @@ fn derivatives_in_moduli_are_those_of_differences_at_large_deformation() {
         ("tri3", stable, edges, VolumeSprings::Patches),
     ] {
         let d = if element == "tri3" { 2 } else { 3 };
-        let held = Held::new(block(element, &[2.0, 1.0, 1.0][..d], &[2, 1, 1][..d]), law, 0.3);
+        let held = Held::new(grid(element, &[2.0, 1.0, 1.0][..d], &[2, 1, 1][..d]), law, 0.3);
         let targets = held.targets(&held.made(0.3), 2);
         assert_eq!(targets.len(), 2);
         let fit = ExactFit { energy, shear, volume, large: true };
@@ -113,7 +113,7 @@ fn derivatives_in_moduli_are_those_of_differences_at_large_deformation() {
         }
     }
     // The small deformations of parts are not enough at large ones.
-    let held = Held::new(block("tet4", &[1.0; 3], &[1; 3]), "neo-hookean", 0.3);
+    let held = Held::new(grid("tet4", &[1.0; 3], &[1; 3]), "neo-hookean", 0.3);
     let parts = ModuliParts::new(&held.mesh, held.material, &ExactFit::default(), &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Body);
     assert!(Object::of_moduli(parts, unknowns, Some(Newton::default())).is_err());
@@ -122,7 +122,7 @@ fn derivatives_in_moduli_are_those_of_differences_at_large_deformation() {
 /// Moduli of two halves come back from how a network with others moved at a stretch of 30 %.
 #[test]
 fn moduli_come_back_at_large_deformation() {
-    let mut mesh = block("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
+    let mut mesh = grid("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
     let middle = |cell: &[usize]| cell.iter().map(|&p| mesh.point(p)[0]).sum::<f64>() / cell.len() as f64;
     let half: Vec<CellIndex> = mesh.blocks[0]
         .cells()
@@ -159,7 +159,7 @@ fn moduli_come_back_at_large_deformation() {
 /// that of the part that is stretched most.
 #[test]
 fn stretches_are_singular_values() {
-    let mesh = block("hex8", &[2.0, 1.0, 1.0], &[4, 1, 1]);
+    let mesh = grid("hex8", &[2.0, 1.0, 1.0], &[4, 1, 1]);
     let moved = |f: &Matrix3<f64>, least: f64| -> Vec<f64> {
         let at = |p: usize| {
             let x = nalgebra::Vector3::from_column_slice(mesh.point(p));
@@ -194,7 +194,7 @@ fn stretches_are_singular_values() {
 /// Each made load stretches the body as far as is said, in equilibrium, and is the same each time; a smaller stretch takes smaller forces.
 #[test]
 fn made_loads_stretch_the_body() {
-    let held = Held::new(block("hex8", &[2.0, 1.0, 1.0], &[4, 2, 2]), "stable-neo-hookean", 0.3);
+    let held = Held::new(grid("hex8", &[2.0, 1.0, 1.0], &[4, 2, 2]), "stable-neo-hookean", 0.3);
     let [large, small] = [0.3, 0.03].map(|stretch| held.made(stretch));
     assert!(large.loads.len() >= 8, "{:?} {:?}", large.out, large.back);
     assert_eq!(large, held.made(0.3));
@@ -219,7 +219,7 @@ fn made_loads_stretch_the_body() {
 /// A slender column gives way under a push far below a stretch of 30 %: such a load is drawn anew, and left out if no draw is a pull.
 #[test]
 fn loads_without_an_equilibrium_are_drawn_anew() {
-    let held = Held::new(block("hex8", &[8.0, 1.0, 1.0], &[8, 1, 1]), "stable-neo-hookean", 0.3);
+    let held = Held::new(grid("hex8", &[8.0, 1.0, 1.0], &[8, 1, 1]), "stable-neo-hookean", 0.3);
     let tip = held.mesh.groups["xmax"].points.clone();
     let along = |sign: f64, name: &str| {
         let mut forces = vec![0.0; held.mesh.points.len()];
@@ -245,7 +245,7 @@ fn drawn(folder: &Path, seed: u64, (element, cells): (&str, [usize; 3]), referen
     let poisson = random.random_range(0.25..0.45);
     let swell: [f64; 2] = std::array::from_fn(|_| random.random_range(-0.25..0.25));
     let bow: [f64; 2] = std::array::from_fn(|_| random.random_range(-0.3..0.3));
-    let mut mesh = block(element, &size, &cells);
+    let mut mesh = grid(element, &size, &cells);
     for point in mesh.points.chunks_exact_mut(3) {
         let s = point[0] / size[0];
         for k in 0..2 {

@@ -1,7 +1,8 @@
 //! `[sweep]` and `springfit sweep`: which studies a design has, and that their table is the same however it was made.
 
+use crate::kit::outcome;
 use serde_json::{Value, json};
-use springfit_studies::study::{InMemory, Scene, Sweep, run};
+use springfit_studies::study::{InMemory, Scene, Sweep};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -257,7 +258,7 @@ fn a_study_is_a_run_with_its_settings() {
         assert_eq!(both[0]["fits"], both[1]["fits"]);
     }
     let text = SCENE.replace("poisson = 0.3", "poisson = 0.31");
-    let outcome = run(&Scene::parse(&text, Path::new("s.toml")).unwrap(), &mut |_| ()).unwrap();
+    let outcome = outcome(&text);
     let table = read(folder.path(), "o/table.csv");
     let rms = outcome.fits[0].loads[0].error.unwrap().rms;
     assert!(table.contains(&format!(",{rms:?},")), "{rms} is not in {table}");

@@ -1,6 +1,6 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
-use crate::coarse::block;
+use crate::shapes::bodies::grid;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit_bodies::model::{Network, Support, exact_network, finite_elements, masses};
@@ -303,7 +303,7 @@ fn few_residuals_have_the_quantiles_of_student() {
 #[test]
 fn loads_of_rounding_errors_are_none() {
     let names = |size: f64| -> [Vec<String>; 2] {
-        let mesh = block("hex8", &[2.0 * size, size, size], &[4, 2, 2]);
+        let mesh = grid("hex8", &[2.0 * size, size, size], &[4, 2, 2]);
         let mut support = Support::free(&mesh);
         ["xmin", "xmax"].iter().for_each(|side| support.fix(&mesh.groups[*side].points, &[0, 1, 2], 3));
         let made = made_loads(&mesh, &support, 1.0);
@@ -321,7 +321,7 @@ fn loads_of_rounding_errors_are_none() {
 /// pressure.
 #[test]
 fn varied_loads_of_two_seeds_have_none_in_common() {
-    let mesh = block("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
+    let mesh = grid("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
     let mut support = Support::free(&mesh);
     support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
     let loads = |pressure, seed| varied_loads(&mesh, &support, &1.0.into(), pressure, (16, seed));

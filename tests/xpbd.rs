@@ -1,13 +1,13 @@
 //! The loops that are exported for a user's own engine: they come to rest where the theory of early ended sweeps says, and take no other file.
 
+use crate::kit::outcome;
 use springfit::export::{TARGETS, target_named, write_files};
 use springfit_bodies::engine::{Engine, Order, Setting, Sweep, Truncated, TruncatedModel};
 use springfit_bodies::model::Support;
 use springfit_foundation::error::ErrorKind;
 use springfit_report::report::{NetworkFile, NetworkRecord};
-use springfit_studies::study::{Outcome, Scene, run};
+use springfit_studies::study::Outcome;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
@@ -40,10 +40,6 @@ fn plane() -> String {
     let text = SCENE.replace("tet4", "tri3").replace("[1, 1, 1]", "[1, 1]").replace("[2, 2, 2]", "[4, 4]");
     let text = text.replace("zm", "ym").replace("[0.01, 0.02, -0.03]", "[0.01, 0.02]").replace(", \"free\"]", "]");
     text.replace("density", "plane = \"strain\"\ndensity")
-}
-
-fn outcome(text: &str) -> Outcome {
-    run(&Scene::parse(text, Path::new("scene.toml")).unwrap(), &mut |_| {}).unwrap()
 }
 
 fn record(outcome: &Outcome, engine: Option<Setting>) -> NetworkRecord {

@@ -1,16 +1,22 @@
 //! Bodies that tests share, and a writer of their meshes.
 
 use springfit_element::element::Element;
+use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Write;
 use std::sync::Arc;
 
+/// A box of cells of one element at the origin.
+pub fn boxed(element: &Arc<Element>, size: &[f64], cells: &[usize]) -> Result<Mesh> {
+    let origin = vec![0.0; cells.len()];
+    BoxMesh { element: element.clone(), size: size.to_vec(), cells: cells.to_vec(), origin }.build()
+}
+
 /// A box of cells at the origin.
 pub fn grid(name: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    let element = Arc::new(Element::load(name).unwrap());
-    BoxMesh { element, size: size.to_vec(), cells: cells.to_vec(), origin: vec![0.0; cells.len()] }.build().unwrap()
+    boxed(&Arc::new(Element::load(name).unwrap()), size, cells).unwrap()
 }
 
 /// A body whose points are moved by a map.

@@ -6,6 +6,9 @@ pub mod statics;
 use nalgebra::{DMatrix, DVector};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_element::material::{Material, Plane};
+use springfit_element::stiffness::Geometry;
+use springfit_mesh::mesh::{CellBlock, Mesh};
+use std::sync::Arc;
 
 /// A repeatable source of numbers in [-1, 1].
 pub struct Random(pub u64);
@@ -34,6 +37,25 @@ pub fn distorted(element: &Element, random: &mut Random) -> Vec<f64> {
         x.iter_mut().for_each(|x| *x += 0.05 * random.next());
         return x;
     }
+}
+
+/// A random shape whose Jacobian is positive at all points.
+pub fn valid(element: &Element, random: &mut Random) -> Vec<f64> {
+    let is_valid = |x: &Vec<f64>| Geometry::new(&element.tabulation).set(&element.tabulation, x).is_ok();
+    std::iter::repeat_with(|| distorted(element, random)).find(is_valid).unwrap()
+}
+
+/// The geometry of an element with its nodes at `x`.
+pub fn geometry(element: &Element, x: &[f64]) -> Geometry {
+    let mut geometry = Geometry::new(&element.tabulation);
+    geometry.set(&element.tabulation, x).unwrap();
+    geometry
+}
+
+/// A mesh of one cell.
+pub fn single(element: &Element, x: &[f64]) -> Mesh {
+    let block = CellBlock { element: Arc::new(element.clone()), connectivity: (0..element.nodes()).collect() };
+    Mesh::of_cells(element.space(), x.to_vec(), vec![block])
 }
 
 /// The file of a shipped element with springs on the angles between its edges at every corner beside its own.

@@ -1,10 +1,10 @@
 //! Bodies under loads, and what they do.
 
+use super::bodies::grid;
+use nalgebra::DMatrix;
 use springfit_bodies::model::{Entries, Support};
 use springfit_bodies::solve::System;
-use springfit_element::element::Element;
-use springfit_mesh::mesh::{BoxMesh, Mesh};
-use std::sync::Arc;
+use springfit_mesh::mesh::Mesh;
 
 /// The work of the load on the displacements that it causes.
 pub fn compliance(entries: &Entries, support: &Support, load: &[f64]) -> f64 {
@@ -17,11 +17,34 @@ pub fn compliance(entries: &Entries, support: &Support, load: &[f64]) -> f64 {
 
 /// Cook's membrane of n × n squares.
 pub fn membrane(element: &str, n: usize) -> Mesh {
-    let element = Arc::new(Element::load(element).unwrap());
-    let mut mesh = BoxMesh { element, size: vec![1.0; 2], cells: vec![n, n], origin: vec![0.0; 2] }.build().unwrap();
+    let mut mesh = grid(element, &[1.0; 2], &[n, n]);
     for x in mesh.points.chunks_exact_mut(2) {
         let (s, t) = (x[0], x[1]);
         (x[0], x[1]) = (48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s));
     }
     mesh
+}
+
+/// The symmetric matrix of entries, of which those beside the diagonal stand for two.
+pub fn dense(size: usize, entries: &Entries) -> DMatrix<f64> {
+    let mut matrix = DMatrix::zeros(size, size);
+    for entry in entries {
+        matrix[(entry.row, entry.col)] += entry.val;
+        if entry.row != entry.col {
+            matrix[(entry.col, entry.row)] += entry.val;
+        }
+    }
+    matrix
+}
+
+/// This matrix times a vector.
+pub fn product(entries: &Entries, u: &[f64]) -> Vec<f64> {
+    let mut f = vec![0.0; u.len()];
+    for entry in entries {
+        f[entry.row] += entry.val * u[entry.col];
+        if entry.row != entry.col {
+            f[entry.col] += entry.val * u[entry.row];
+        }
+    }
+    f
 }

@@ -1,12 +1,8 @@
 //! The 2-norm of symmetric matrices beside an eigensolver.
 
+use crate::shapes::Random;
 use nalgebra::DMatrix;
 use springfit_fit::fit::solvers::Extremes;
-
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
 
 fn norm(matrix: &DMatrix<f64>) -> f64 {
     let n = matrix.nrows();
@@ -15,14 +11,14 @@ fn norm(matrix: &DMatrix<f64>) -> f64 {
 
 #[test]
 fn the_norm_is_that_of_an_eigensolver() {
-    let mut state = 7;
+    let mut random = Random(7);
     for n in 1..=30 {
         for round in 0..20 {
-            let a = DMatrix::from_fn(n, n, |_, _| random(&mut state));
+            let a = DMatrix::from_fn(n, n, |_, _| random.next());
             let mut matrix = &a + a.transpose();
             if round % 4 == 1 {
                 // Few ranks, as springs have.
-                let v = DMatrix::from_fn(n, 1 + n / 4, |_, _| random(&mut state));
+                let v = DMatrix::from_fn(n, 1 + n / 4, |_, _| random.next());
                 matrix = &v * v.transpose() * 1e9;
             }
             if round % 4 == 2 {

@@ -1,18 +1,11 @@
 //! Fits in the 1-norm, the maximum norm and Huber's function reach their optimum, whatever the columns.
 
+use crate::shapes::Random;
 use nalgebra::{DMatrix, DVector};
 use springfit_fit::fit::Norm;
 use springfit_fit::fit::solvers::solve_norm;
 
 const NORMS: [Norm; 5] = [Norm::Two, Norm::One, Norm::Max, Norm::Huber { share: 0.1 }, Norm::Huber { share: 1.0 }];
-
-fn generator(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 struct Problem {
     a: DMatrix<f64>,
@@ -23,12 +16,12 @@ struct Problem {
 impl Problem {
     /// Equations of planted unknowns with noise; every seventh right-hand side is off by up to `outlier`.
     fn random(m: usize, n: usize, noise: f64, outlier: f64) -> Problem {
-        let mut random = generator((m * n) as u64);
-        let a = DMatrix::from_fn(m, n, |_, _| random());
-        let planted: Vec<f64> = (0..n).map(|_| random()).collect();
+        let mut random = Random((m * n) as u64);
+        let a = DMatrix::from_fn(m, n, |_, _| random.next());
+        let planted: Vec<f64> = (0..n).map(|_| random.next()).collect();
         let mut b = &a * DVector::from_column_slice(&planted);
-        b.iter_mut().for_each(|b| *b += noise * random());
-        b.iter_mut().step_by(7).for_each(|b| *b += outlier * random());
+        b.iter_mut().for_each(|b| *b += noise * random.next());
+        b.iter_mut().step_by(7).for_each(|b| *b += outlier * random.next());
         Problem { a, b, planted }
     }
 
@@ -238,8 +231,8 @@ fn the_best_polynomial_leaves_chebyshevs() {
 fn dependent_columns_do_not_fail() {
     let problem = Problem::random(500, 8, 0.3, 5.0);
     let (first, second) = (problem.a.column(0).into_owned(), problem.a.column(1).into_owned());
-    let mut random = generator(1);
-    let combination = DVector::from_fn(500, |i, _| (2.0 * first[i] - second[i]) * (1.0 + 1e-14 * random()));
+    let mut random = Random(1);
+    let combination = DVector::from_fn(500, |i, _| (2.0 * first[i] - second[i]) * (1.0 + 1e-14 * random.next()));
     for (norm, nonnegative) in NORMS.iter().flat_map(|&norm| [(norm, false), (norm, true)]) {
         let value = problem.value(&problem.solve(norm, nonnegative), norm);
         for added in [first.clone(), -&first, 0.0 * &first, combination.clone()] {
@@ -276,8 +269,8 @@ fn nearly_dependent_columns_reach_the_optimum() {
 #[test]
 fn the_rank_decides_what_can_be_reached() {
     let reference = Problem::random(200, 5, 0.3, 5.0);
-    let mut random = generator(3);
-    let mut a = &reference.a * DMatrix::from_fn(5, 12, |_, _| random());
+    let mut random = Random(3);
+    let mut a = &reference.a * DMatrix::from_fn(5, 12, |_, _| random.next());
     a.column_iter_mut().for_each(|mut column| _ = column.normalize_mut());
     let problem = Problem { a, b: reference.b.clone(), planted: vec![] };
     for norm in NORMS {

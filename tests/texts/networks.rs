@@ -2,21 +2,20 @@
 
 use super::hostile::{every, others, printable_lines};
 use super::readers::parsed_by_python;
+use crate::kit::outcome;
 use springfit::export::{Content, TARGETS};
 use springfit_foundation::text::printable;
 use springfit_mesh::mesh::vtk::{self, Array, Grid};
 use springfit_report::report::{NetworkFile, NetworkRecord, read_network};
-use springfit_studies::study::{Scene, run};
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
 use tempfile::TempDir;
 
 fn network() -> NetworkRecord {
     let text = "mesh = { box = { element = \"tet4\", size = [1, 1, 1], cells = [1, 1, 1] } }\n\
                 material = { young = 1e4, poisson = 0.3, density = 1e3 }\n\
                 fit = [{ objective = \"offdiag\", nonnegative = true }]\nfix = [{ group = \"zmin\" }]\n";
-    let outcome = run(&Scene::parse(text, Path::new("s.toml")).unwrap(), &mut |_| {}).unwrap();
+    let outcome = outcome(text);
     NetworkFile::of(&outcome, &outcome.fits[0]).record()
 }
 

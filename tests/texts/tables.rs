@@ -2,12 +2,11 @@
 
 use super::hostile::{every, others};
 use super::readers::{of_markdown, parts, printed};
-use springfit_element::element::Element;
+use crate::shapes::bodies::grid;
 use springfit_foundation::text::{csv, not_a_line, of_csv, printable};
-use springfit_mesh::mesh::{BoxMesh, Group};
+use springfit_mesh::mesh::Group;
 use springfit_report::report::{Cell, Column, Markup, Table};
 use springfit_studies::study::{DraftMaterial, DraftSource, DraftUnit, draft};
-use std::sync::Arc;
 
 fn table(text: &str) -> Table {
     let cell = |text: &str| Cell { text: text.into(), value: None, is_best: false };
@@ -83,8 +82,7 @@ fn no_text_is_a_formula_of_a_spreadsheet() {
 
 #[test]
 fn a_first_scene_has_each_text_in_its_place() {
-    let element = Arc::new(Element::load("tet4").unwrap());
-    let plain = BoxMesh { element, size: vec![1.0; 3], cells: vec![4, 1, 1], origin: vec![0.0; 3] }.build().unwrap();
+    let plain = grid("tet4", &[1.0; 3], &[4, 1, 1]);
     for text in every() {
         let mut mesh = plain.clone();
         let held = mesh.groups["xmin"].clone();
