@@ -1,12 +1,12 @@
 //! Meshes from arrays are those that they were taken from, and wrong arrays are errors.
 
+use crate::kit::place;
 use crate::shapes::Random;
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{BoxMesh, Gate, Group, Mesh, MeshArrays, MeshSource};
 use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 use std::sync::Arc;
 
 fn arrays_of(mesh: &Mesh) -> MeshArrays {
@@ -60,7 +60,7 @@ fn arrays_give_the_mesh_again() {
             assert_eq!(found, sorted(&known), "{name} {group}");
         }
     }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let folder = place("scenes/meshes");
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let mesh = Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap();

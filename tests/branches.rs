@@ -1,6 +1,6 @@
 //! Branches that yield, and branches in explicit steps: against independent integration, and against each other.
 
-use crate::kit::{outcome, refusal};
+use crate::kit::{outcome, place, refusal};
 use crate::messages::reads;
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
@@ -11,7 +11,6 @@ use springfit_element::material::{Material, MaterialMap, Relaxation, RelaxationT
 use springfit_fit::fit::ShearSprings;
 use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::MotionEnding;
-use std::path::Path;
 
 /// μ of the bodies in these tests, Pa: E = 10 kPa, ν = 0.3.
 const MU: f64 = 1e4 / 2.6;
@@ -437,7 +436,7 @@ fn wrong_yield_stresses_are_named() {
 /// A rule with a weight below zero would make energy in a branch.
 #[test]
 fn elements_with_negative_weights_do_not_relax() {
-    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("elements/quad4.toml")).unwrap();
+    let text = std::fs::read_to_string(place("elements/quad4.toml")).unwrap();
     let head = text.split("[quadrature]").next().unwrap();
     let rest = text.split("[quadrature]").nth(1).unwrap();
     let rest = &rest[rest.find("[[springs]]").unwrap()..];

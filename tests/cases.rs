@@ -1,16 +1,15 @@
 //! The errors e_rms and e_max of whole bodies are those of reference, and a run says which networks are not stable.
 
-use crate::kit::outcome;
+use crate::kit::{outcome, place};
 use springfit_bodies::solve::Standing;
 use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_fit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
 use springfit_studies::study::{Event, FitOutcome, NamedFit, Scene, compare_element, run};
-use std::path::Path;
 
 /// One fit of a scene in place of those it lists; `bulk` adds the optional groups.
 fn fitted(scene: &str, fit: Fit, bulk: bool) -> FitOutcome {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.toml"));
+    let path = place(format!("scenes/{scene}.toml"));
     let scene = Scene::load(&path).unwrap();
     let element = scene.build_mesh().unwrap().blocks[0].element.clone();
     let groups = bulk.then(|| element.springs.iter().map(|g| g.name.clone()).collect());
@@ -128,7 +127,7 @@ fn a_body_that_is_wholly_held_is_no_mechanism() {
 
 #[test]
 fn a_mechanism_has_no_displacement_but_names_its_points() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/square_quad.toml");
+    let path = place("scenes/square_quad.toml");
     let edges = NamedFit::new(Fit::new(Objective::Frobenius(Weight::None)), Some(vec!["edge".into()]));
     let scene = Scene::load(&path).unwrap().with_fits(vec![edges]);
     let outcome = run(&scene, &mut |_| {}).unwrap().fits.remove(0);
@@ -139,7 +138,7 @@ fn a_mechanism_has_no_displacement_but_names_its_points() {
 
 #[test]
 fn a_scene_without_loads_solves_nothing() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tissue_tri.toml");
+    let path = place("scenes/tissue_tri.toml");
     let scene = Scene::load(&path).unwrap().without_loads();
     let outcome =
         run(&scene, &mut |event| assert!(!matches!(event, Event::Stage { name: "finite elements", .. }))).unwrap();
@@ -150,7 +149,7 @@ fn a_scene_without_loads_solves_nothing() {
 /// Fits that are put in place of those of a scene are all run, however many the scene had.
 #[test]
 fn every_fit_that_a_scene_is_given_has_an_outcome() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tissue_tri.toml");
+    let path = place("scenes/tissue_tri.toml");
     let scene = Scene::load(&path).unwrap();
     assert!(scene.fits().iter().all(|fit| fit.entry().is_some()));
     let given = scene.fits().len() + 3;
@@ -168,7 +167,7 @@ fn every_fit_that_a_scene_is_given_has_an_outcome() {
 /// An error about a fit that is from no file names the fit.
 #[test]
 fn a_fit_from_no_file_is_named_in_errors() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/tissue_tri.toml");
+    let path = place("scenes/tissue_tri.toml");
     let fit = NamedFit::new(Fit::new(Objective::Frobenius(Weight::None)), Some(vec!["no such group".into()]));
     let name = fit.name.clone();
     let error = run(&Scene::load(&path).unwrap().with_fits(vec![fit]), &mut |_| {}).unwrap_err();

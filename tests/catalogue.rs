@@ -1,5 +1,6 @@
 //! The shipped elements in meshes that Gmsh, meshio and VTK wrote: node orders, contents, and surfaces and curves in space.
 
+use crate::kit::place;
 use springfit_bodies::model::{Network, finite_elements, masses};
 use springfit_element::element::{Quadrature, SHIPPED, Tabulation};
 use springfit_element::material::Material;
@@ -7,10 +8,10 @@ use springfit_element::springs::Springs;
 use springfit_element::stiffness::each_cell;
 use springfit_fit::fit::{Balance, Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
 use springfit_mesh::mesh::{Mesh, MeshSource};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")
+    place("tests/meshes")
 }
 
 fn mesh(file: &str) -> Mesh {

@@ -1,12 +1,12 @@
 //! Every shipped element and example passes its proof; files that are wrong in one way fail in that one.
 
+use crate::kit::place;
 use springfit_element::element::Element;
 use springfit_studies::study::{Mark, inspect};
-use std::path::Path;
 use std::process::Command;
 
 fn folder(name: &str) -> Vec<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let folder = place(name);
     springfit_foundation::file::files_in(&folder, "toml")
         .unwrap()
         .iter()

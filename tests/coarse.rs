@@ -2,7 +2,8 @@
 
 use crate::kit::{outcome, refusal};
 use crate::shapes::bodies::grid;
-use springfit_bodies::model::{Entries, Support, finite_elements};
+use crate::shapes::statics::support_at;
+use springfit_bodies::model::{Entries, finite_elements};
 use springfit_bodies::solve::System;
 use springfit_element::material::{Material, State};
 use springfit_identify::whole::{Pressure, varied_loads};
@@ -154,8 +155,7 @@ fn loads_that_a_fit_has_made_worse_are_listed() {
         let mesh = &outcome.mesh;
         let fine = mesh.refined().unwrap().refined().unwrap();
         let held = |mesh: &Mesh| {
-            let mut support = Support::free(mesh);
-            support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
+            let support = support_at(mesh, &mesh.groups["xmin"].points);
             support
         };
         // The seed of the fit is 2010.

@@ -1,5 +1,6 @@
 //! The command line as a whole: help, completions, manual pages, schemas, JSON, the width of tables, and what is written where.
 
+use crate::kit::{holding, json};
 use serde_json::Value;
 use springfit_element::element::SHIPPED;
 use springfit_fit::fit::published::Method;
@@ -36,8 +37,7 @@ fn printed(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Str
 }
 
 fn folder_with_scene() -> TempDir {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("s.toml"), SQUARE).unwrap();
+    let folder = holding("s.toml", SQUARE);
     folder
 }
 
@@ -256,7 +256,7 @@ fn json_is_one_document() {
             .unwrap_or_else(|e| panic!("{arguments:?}: {e}: {}", text(&output.stderr)))
     };
     let report = document(&["run", "s.toml", "--json", "--out", "o"]);
-    let file: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("o/report.json")).unwrap()).unwrap();
+    let file = json(&folder.path().join("o/report.json"));
     let names =
         |report: &Value| report["fits"].as_array().unwrap().iter().map(|f| f["name"].clone()).collect::<Vec<_>>();
     assert_eq!((names(&report), &report["version"]), (names(&file), &file["version"]));

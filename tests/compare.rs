@@ -1,7 +1,7 @@
 //! `[compare]` and `springfit compare`: which cases and fits there are, what files say of them, and what is refused.
 
-use crate::kit::{prints, said, springfit};
-use serde_json::{Value, json};
+use crate::kit::{holding, json, prints, said, springfit};
+use serde_json::json;
 use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_element::springs::Springs;
@@ -29,8 +29,7 @@ fn comparing(text: &str) -> springfit_foundation::error::Result<Comparing> {
 }
 
 fn folder_with(text: &str) -> TempDir {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("c.toml"), text).unwrap();
+    let folder = holding("c.toml", text);
     folder
 }
 
@@ -153,7 +152,7 @@ fn a_file_has_its_files_and_goes_on() {
     }
     let latex = fs::read_to_string(out.join("tables.tex")).unwrap();
     assert!(latex.contains("\\multicolumn{3}{c}{tri3}") && latex.contains("\\cmidrule") && latex.contains("\\textbf{"));
-    let summary: Value = serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let summary = json(&out.join("summary.json"));
     let pair = |first: &str, second: &str, quantity: &str| {
         let pairs = summary["pairs"].as_array().unwrap().clone();
         pairs.into_iter().find(|p| p["first"] == first && p["second"] == second && p["quantity"] == quantity).unwrap()

@@ -1,5 +1,6 @@
 //! Functions that are condensed in each cell: Wilson's modes and bubbles, against hand-made matrices, bending and the patch test.
 
+use crate::kit::place;
 use crate::shapes::{Random, distorted, geometry};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use springfit_element::element::Element;
@@ -10,14 +11,13 @@ use springfit_fit::fit::{
     fit_exact, plain,
 };
 use springfit_studies::study::{StabilityRow, Verdict, stability};
-use std::path::Path;
 use std::process::Command;
 
 const MODULI: Moduli = Moduli { lambda: 1.7, mu: 0.6 };
 const NAMES: [&str; 3] = ["quad4_wilson", "quad8_bubble", "hex8_wilson"];
 
 fn example(name: &str) -> Element {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/elements/{name}.toml"));
+    let path = place(format!("examples/elements/{name}.toml"));
     Element::load(path.to_str().unwrap()).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Meshes are refined without loss, and limits are those of sequences that have one.
 
-use crate::kit::springfit;
+use crate::kit::{place, springfit};
 use crate::messages::reads;
 use crate::shapes::{Random, elements};
 use nalgebra::DMatrix;
@@ -439,7 +439,7 @@ fn limits_are_those_of_the_sequence() {
 #[test]
 fn the_program_writes_its_table_and_plot() {
     let folder = TempDir::new().unwrap();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/specimen_tri.toml");
+    let path = place("scenes/specimen_tri.toml");
     let output = springfit(folder.path(), &["converge", path.to_str().unwrap(), "--levels", "3"]);
     assert!(output.status.success(), "{output:?}");
     let text = String::from_utf8(output.stdout).unwrap();
@@ -584,9 +584,7 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
 /// structured block, which do not converge.
 #[test]
 fn the_figures_of_the_page_on_exact_networks() {
-    let load = |name: &str| {
-        Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/converge/{name}.toml"))).unwrap()
-    };
+    let load = |name: &str| Scene::load(&place(format!("scenes/converge/{name}.toml"))).unwrap();
     let near =
         |found: Option<f64>, printed: f64| assert!((found.unwrap() - printed).abs() < 0.06, "{found:?} {printed}");
     let study = converge_to(&load("cantilever_tet"), &load("cantilever_truth"), Some(3), &mut |_| {}).unwrap();

@@ -9,12 +9,12 @@ mod meshes;
 mod scene;
 mod vtk;
 
+use crate::kit::place;
 use std::fs;
 use std::panic::catch_unwind;
-use std::path::Path;
 
 fn replay(target: &str, check: fn(&[u8])) {
-    let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz");
+    let fuzz = place("fuzz");
     if !fuzz.is_dir() {
         // A published package has no corpus.
         return;

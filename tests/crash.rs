@@ -61,7 +61,7 @@ impl Case {
         write("long.toml", format!("{BODY}{SLOW}"));
         write("moved.toml", format!("{BODY}{SLOW}{}", MOTION.replace("0.01", "200").replace("5e-3", "200")));
         write("index.toml", INDEX.into());
-        let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cube_tet.msh");
+        let mesh = crate::kit::place("scenes/meshes/cube_tet.msh");
         fs::copy(mesh, folder.path().join("cube.msh")).unwrap();
         fs::create_dir(folder.path().join("out")).unwrap();
         let command = command.replace("MESH", "cube.msh --scale 0.01 --young 10kPa --poisson 0.3");

@@ -1,5 +1,6 @@
 //! Digits that ill-conditioned problems keep: contrast, bounded and tied constants on flat shapes, springs on functions.
 
+use crate::kit::place;
 use crate::shapes::{Random, distorted};
 use springfit_bodies::dynamics::{LinearSolver, Motion, Options, Simulation};
 use springfit_bodies::model::{LengthSpring, Network, Support};
@@ -15,7 +16,6 @@ use springfit_foundation::error::ErrorKind;
 use springfit_foundation::scalar::{DoubleDouble, Real};
 use springfit_foundation::symbolic::{Differentiable, Jet, Scope};
 use springfit_studies::study::{Family, StabilityRow, Verdict, stability};
-use std::path::Path;
 
 /// Springs in a row of constants 1 and `ratio` alternately, pulled at the end: what is left, and the error of the end's way, which is
 /// `Σ 1/k`.
@@ -167,7 +167,7 @@ fn tied_constants_agree_with_twice_the_digits() {
 #[test]
 fn coupled_springs_keep_their_digits() {
     let own = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/elements").join(name);
+        let path = place("examples/elements").join(name);
         Element::load(path.to_str().unwrap()).unwrap()
     };
     for name in ["tri3_coupled.toml", "tet4_coupled.toml"] {

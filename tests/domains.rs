@@ -3,7 +3,7 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{compliance, membrane, product};
+use crate::shapes::statics::{compliance, membrane, product, support_at};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{
     Elastic, Entries, Lumping, Network, Support, edge_springs, finite_elements, lumped_masses, patch_springs,
@@ -231,11 +231,9 @@ fn forces_and_tangents_are_derivatives() {
 }
 
 fn held(mesh: &Mesh) -> (Support, Vec<bool>) {
-    let d = mesh.dimension;
     let held: Vec<bool> = (0..mesh.point_count()).map(|p| mesh.point(p)[0] == 0.0).collect();
     let points: Vec<usize> = (0..held.len()).filter(|p| held[*p]).collect();
-    let mut support = Support::free(mesh);
-    support.fix(&points, &(0..d).collect::<Vec<_>>(), d);
+    let support = support_at(mesh, &points);
     (support, held)
 }
 

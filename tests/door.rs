@@ -1,6 +1,7 @@
 //! The public functions of the fits, called with what is wrong: they return errors and do not panic, and no constant that they
 //! return is infinite or not a number.
 
+use crate::shapes::Random;
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Moduli, State};
 use springfit_element::springs::{Force, Springs};
@@ -248,14 +249,5 @@ fn hostile_samplings_do_not_panic() {
             });
             assert_finite(&what, found.map(|found| found.fits.constants));
         }
-    }
-}
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as usize % count
     }
 }

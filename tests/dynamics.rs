@@ -3,7 +3,7 @@
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
 use crate::shapes::single;
-use crate::shapes::statics::{dense, product};
+use crate::shapes::statics::{dense, product, support_at};
 use springfit_bodies::dynamics::largest_square;
 use springfit_bodies::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome,
@@ -380,8 +380,7 @@ fn implicit_euler_bears_any_stiffness() {
             network.others.clear();
             network.lengths.iter_mut().for_each(|s| s.constant *= constant / largest);
             let masses = masses(&mesh, 1000.0, 1.0);
-            let mut support = Support::free(&mesh);
-            support.fix(&mesh.groups["zmax"].points, &[0, 1, 2], 3);
+            let support = support_at(&mesh, &mesh.groups["zmax"].points);
             let drive = Drive::default().gravity(&[0.0, 0.0, -9.81]);
             let motion = Motion { support, drive, ..Motion::free(&network, &mesh.points, &masses) };
             let options = Options { step: 0.1, iterations, solver, ..Options::default() };
@@ -425,8 +424,7 @@ fn one_factor_gives_the_motion_of_many() {
     let masses = masses(&mesh, 1000.0, 1.0);
     let Response { force, tangent, .. } = network.respond(&mesh.points).unwrap();
     let again = Linearized { points: mesh.points.clone(), force, tangent };
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.groups["zmin"].points);
     let top = mesh.groups["zmax"].points[4];
     for integrator in IMPLICIT {
         let drive = Drive::default().displacement(3 * top, Curve::new(|t| 1e-3 * (20.0 * t).sin()));
@@ -461,8 +459,7 @@ fn one_factor_gives_the_motion_of_many() {
 fn conjugate_gradients_give_the_motion_of_the_factor() {
     let (mesh, network) = dome(5, 5e-3);
     let masses = masses(&mesh, 1000.0, 5e-4);
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["rim"].points[1..], &[0, 1, 2], 3);
+    let mut support = support_at(&mesh, &mesh.groups["rim"].points[1..]);
     support.fix(&[mesh.groups["rim"].points[0], 3], &[2], 3);
     let dampers = Dampers::of_ratio(&network, &mesh.points, &masses, &support, 0.1).unwrap();
     let damping = Damping { mass: 0.5, stiffness: 1e-4, dampers: Some(dampers) };
@@ -522,8 +519,7 @@ fn incomplete_factors_leave_few_iterations() {
     for (rings, most) in [(13, 10), (33, 15)] {
         let (mesh, network) = dome(rings, 5e-3 * rings as f64 / 13.5);
         let masses = masses(&mesh, 1000.0, 5e-4);
-        let mut support = Support::free(&mesh);
-        support.fix(&mesh.groups["rim"].points, &[0, 1, 2], 3);
+        let mut support = support_at(&mesh, &mesh.groups["rim"].points);
         support.fix(&mesh.groups["middle"].points, &[0, 1, 2], 3);
         let poke = Curve::new(|t| -5e-4 * (1.0 - (6.0 * t).cos()));
         let drive = Drive::default().displacement(3 * mesh.groups["middle"].points[0] + 2, poke);
@@ -585,8 +581,7 @@ fn buckled_springs_are_borne_by_each_solver() {
 fn newmark_balances_a_linear_model() {
     let (mesh, network) = cube("hex8", 2);
     let masses = masses(&mesh, 1000.0, 1.0);
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.groups["zmin"].points);
     let dampers = Dampers::of_ratio(&network, &mesh.points, &masses, &support, 0.05).unwrap();
     let damping = Damping { mass: 0.5, stiffness: 1e-4, dampers: Some(dampers) };
     let pull = scattered(mesh.points.len(), 1e-3);
@@ -605,8 +600,7 @@ fn newmark_balances_a_linear_model() {
 fn prescribed_motion_is_followed() {
     let (mesh, network) = cube("tet4", 1);
     let masses = masses(&mesh, 1000.0, 1.0);
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
+    let mut support = support_at(&mesh, &mesh.groups["zmin"].points);
     support.prescribed[2] = Some(1e-4);
     let dof = 3 * mesh.groups["zmax"].points[0] + 2;
     let curve = Curve::parse("0.002*sin(7*t)^2").unwrap();
@@ -634,8 +628,7 @@ fn prescribed_motion_is_followed() {
 fn bodies_swing_with_their_lowest_frequency() {
     let (mesh, network) = cube("hex8", 3);
     let masses = masses(&mesh, 1000.0, 1.0);
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.groups["zmin"].points);
     let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
     let modes = lowest_modes(&system, &system.factorize().unwrap().unwrap(), &masses, 3, 3).unwrap();
     for (shape, square) in modes.shapes.iter().zip(&modes.squares) {
@@ -831,8 +824,7 @@ fn bodies_of_finite_elements_move() {
         }
     }
     // Driven through its own bottom a body has no response: the state stays.
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["zmin"].points, &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.groups["zmin"].points);
     let top = 3 * mesh.groups["zmax"].points[0] + 2;
     let drive = Drive::default().displacement(top, Curve::new(|t| if t > 0.02 { -0.1 } else { 0.0 }));
     let motion = Motion { support, drive, ..Motion::free(&body, &mesh.points, &masses) };

@@ -1,5 +1,6 @@
 //! Errors for programs: their kind, their place and their source.
 
+use crate::kit::place;
 use springfit_element::element::Element;
 use springfit_foundation::error::{Error, ErrorKind, Result};
 use springfit_foundation::symbolic::Scope;
@@ -47,7 +48,7 @@ fn each_fault_has_its_kind() {
         cells: vec![n; 3],
         origin: vec![0.0; 3],
     };
-    let element = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("elements/tet4.toml")).unwrap();
+    let element = std::fs::read_to_string(place("elements/tet4.toml")).unwrap();
     let named = |from: &str, to: &str| failed(Element::parse(&element.replace(from, to)));
     let unknown = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 999 0 1\n";
     for (kind, error) in [

@@ -2,7 +2,7 @@
 //! alike on any number of threads.
 
 use crate::dynamics::{cube, scattered};
-use crate::shapes::statics::dense;
+use crate::shapes::statics::{dense, support_at};
 use springfit_bodies::dynamics::{
     Curve, Damping, Drive, Integrator, Motion, MotionState, Options, Simulation, StepOutcome,
 };
@@ -120,8 +120,7 @@ fn bodies_far_from_the_origin_move_alike() {
         let (mesh, network) = cube(element, 3);
         let masses = lumped_masses(&mesh, 1000.0, 1.0, Lumping::Hrz);
         let held: Vec<usize> = (0..mesh.point_count()).filter(|p| mesh.points[p * 3] == 0.0).collect();
-        let mut support = Support::free(&mesh);
-        support.fix(&held, &[0, 1, 2], 3);
+        let support = support_at(&mesh, &held);
         let prepared = network.prepared_in::<f32>();
         for account in [false, true] {
             let moved = |far: f64| {

@@ -1,6 +1,6 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
-use crate::kit::outcome;
+use crate::kit::{holding, outcome, springfit, told};
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
 use springfit_bodies::engine::{Engine, Setting};
 use springfit_bodies::model::Elastic;
@@ -9,7 +9,7 @@ use springfit_report::report::{Division, NetworkFile, NetworkRecord, Parts};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::sync::LazyLock;
 use tempfile::TempDir;
 
 const SCENE: &str = "
@@ -41,6 +41,14 @@ fn networks(text: &str) -> BTreeMap<String, NetworkRecord> {
     outcome.fits.iter().map(|fit| (fit.fit.name.clone(), NetworkFile::of(&outcome, fit).record())).collect()
 }
 
+/// The networks of the scene, which are the same for every test.
+static NETWORKS: LazyLock<BTreeMap<String, NetworkRecord>> = LazyLock::new(|| networks(SCENE));
+
+/// Its network of springs on lengths alone.
+fn classical() -> NetworkRecord {
+    NETWORKS["classical"].clone()
+}
+
 fn texts(target: &str, network: &NetworkRecord) -> BTreeMap<&'static str, Vec<u8>> {
     let files = target_named(target).unwrap().files(network, None).unwrap();
     let bytes = |content| match content {
@@ -52,10 +60,9 @@ fn texts(target: &str, network: &NetworkRecord) -> BTreeMap<&'static str, Vec<u8
 
 #[test]
 fn each_program_takes_the_fits_that_it_holds_and_names_one_for_the_others() {
-    let networks = networks(SCENE);
-    let negative = networks["free"].springs.iter().any(|spring| spring.constant < 0.0);
+    let negative = NETWORKS["free"].springs.iter().any(|spring| spring.constant < 0.0);
     for target in &TARGETS {
-        for (name, network) in &networks {
+        for (name, network) in &*NETWORKS {
             let held = match (target.name, name.as_str()) {
                 ("vtu", _) => true,
                 (_, "patches") => false,
@@ -89,8 +96,7 @@ fn a_network_that_lacks_something_is_refused() {
         target_named(target).unwrap().files(network, gravity).err().unwrap().to_string()
     };
     assert!(error("newton", &light["exact"], None).contains("masses: expected a mass of each point, found none; give"));
-    let all = networks(SCENE);
-    assert!(error("newton", &all["exact"], Some(&[0.0, 1.0])).contains("--gravity: expected 3 numbers"));
+    assert!(error("newton", &NETWORKS["exact"], Some(&[0.0, 1.0])).contains("--gravity: expected 3 numbers"));
     let sliding = networks(&SCENE.replace("group = \"zmin\"", "group = \"zmin\"\naxes = [\"z\"]"));
     assert!(error("mujoco", &sliding["classical"], None).contains("held in all directions"));
     assert!(target_named("lammps").unwrap().files(&sliding["classical"], None).is_ok());
@@ -112,8 +118,7 @@ fn a_network_that_lacks_something_is_refused() {
 
 #[test]
 fn lammps_has_half_the_constant_of_each_spring() {
-    let networks = networks(SCENE);
-    let network = &networks["classical"];
+    let network = &NETWORKS["classical"];
     let files = texts("lammps", network);
     let data = String::from_utf8(files["network.data"].clone()).unwrap();
     let section = |name: &str| -> Vec<Vec<f64>> {
@@ -137,8 +142,7 @@ fn lammps_has_half_the_constant_of_each_spring() {
 /// The grammar of SOFA's loader: `mass` has ten words after its name, the second of which is `s` or `v`, `lspg` six, and both count from 1.
 #[test]
 fn sofa_has_held_points_as_negative_masses() {
-    let networks = networks(SCENE);
-    let network = &networks["classical"];
+    let network = &NETWORKS["classical"];
     let text = String::from_utf8(texts("sofa", network)["network.xs3"].clone()).unwrap();
     let lines = |name: &str| -> Vec<Vec<f64>> {
         let own = text.lines().filter_map(|line| line.strip_prefix(&format!("{name} ")));
@@ -178,7 +182,7 @@ fn damping_that_a_program_lacks_is_named() {
 
 #[test]
 fn phystwin_has_the_gravity_of_its_own_and_no_other() {
-    let network = &networks(SCENE)["classical"];
+    let network = &NETWORKS["classical"];
     let files = |gravity: &[f64]| target_named("phystwin").unwrap().files(network, Some(gravity));
     assert!(files(&[0.0, 0.0, -9.8]).is_ok() && files(&[0.0, 0.0, 9.8]).is_ok());
     for gravity in [[0.0, 0.0, -1.0], [0.0, -9.8, 0.0], [0.0; 3]] {
@@ -188,8 +192,8 @@ fn phystwin_has_the_gravity_of_its_own_and_no_other() {
 }
 
 fn program(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap();
-    (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
+    let output = springfit(folder, arguments);
+    (output.status.code(), told(&output))
 }
 
 #[test]
@@ -230,9 +234,8 @@ fn a_scene_and_its_network_give_the_same_files_and_a_refusal_leaves_none() {
 /// The rule by which bodies come to rest is in one file, and put into each script that imports it.
 #[test]
 fn scripts_stand_alone() {
-    let networks = networks(SCENE);
     for target in ["mujoco", "newton", "blender"] {
-        let script = String::from_utf8(texts(target, &networks["exact"])["run.py"].clone()).unwrap();
+        let script = String::from_utf8(texts(target, &NETWORKS["exact"])["run.py"].clone()).unwrap();
         assert_eq!(script.matches("def settle(").count(), 1, "{target}");
         assert!(!script.contains("import settle"), "{target}");
     }
@@ -241,7 +244,7 @@ fn scripts_stand_alone() {
 /// Also of targets that only pass gravity on.
 #[test]
 fn gravity_has_the_dimension_of_the_network() {
-    let network = &networks(SCENE)["classical"];
+    let network = &NETWORKS["classical"];
     for target in &TARGETS {
         let error = target.files(network, Some(&[0.0, -9.81])).err().unwrap().to_string();
         assert_eq!(error, "--gravity: expected 3 numbers in m/s², found 2", "{}", target.name);
@@ -279,7 +282,7 @@ fn lammps_holds_any_number_of_points_with_three_groups() {
 /// Numbers that are infinite in single precision are refused by name, for every program.
 #[test]
 fn numbers_that_a_program_cannot_hold_are_named() {
-    let network = &networks(SCENE)["classical"];
+    let network = &NETWORKS["classical"];
     let changed = |change: fn(&mut NetworkRecord)| {
         let mut network = network.clone();
         change(&mut network);
@@ -331,7 +334,7 @@ fn numbers_that_a_program_cannot_hold_are_named() {
 /// A compliance is the inverse of a constant.
 #[test]
 fn jolt_has_no_edge_without_force() {
-    let mut network = networks(SCENE).remove("classical").unwrap();
+    let mut network = classical();
     let count = network.springs.len();
     (network.springs[0].constant, network.springs[1].constant) = (0.0, 1e-45);
     let text = String::from_utf8(texts("jolt", &network)["network.json"].clone()).unwrap();
@@ -342,7 +345,7 @@ fn jolt_has_no_edge_without_force() {
 /// Constants that belong to a setting go with it, in Jolt with the order of a sweep; others move at many substeps.
 #[test]
 fn jolt_has_the_setting_of_the_fit() {
-    let network = networks(SCENE).remove("classical").unwrap();
+    let network = classical();
     let body = |engine: Option<Setting>| -> serde_json::Value {
         let network = NetworkRecord { engine, ..network.clone() };
         serde_json::from_slice(&texts("jolt", &network)["network.json"]).unwrap()
@@ -365,7 +368,7 @@ fn jolt_has_the_setting_of_the_fit() {
 /// In Newton's VBD points of a colour move at once: two ends of a spring differ. Its other arrays stay as they are.
 #[test]
 fn newton_has_the_setting_and_the_colours_of_the_fit() {
-    let network = networks(SCENE).remove("classical").unwrap();
+    let network = classical();
     let bytes = |engine: Option<Setting>| {
         texts("newton", &NetworkRecord { engine, ..network.clone() }).remove("network.npz").unwrap()
     };
@@ -398,7 +401,7 @@ fn newton_has_the_setting_and_the_colours_of_the_fit() {
 fn settings_that_an_engine_lacks_are_refused() {
     for (engine, target) in [(Engine::Jolt, "jolt"), (Engine::NewtonVbd, "newton")] {
         let engine = Some(Setting { relaxation: 1.5, ..Setting::usual(engine) });
-        let network = NetworkRecord { engine, ..networks(SCENE).remove("classical").unwrap() };
+        let network = NetworkRecord { engine, ..classical() };
         let error = target_named(target).unwrap().files(&network, None).err().unwrap();
         assert_eq!(error.key(), Some("engine.relaxation"), "{error}");
     }
@@ -427,7 +430,7 @@ fn arrays_have_the_gravity_of_the_help() {
     let plane = SCENE.replace("tet4", "tri3").replace("[1, 1, 1]", "[1, 1]").replace("[2, 2, 2]", "[2, 2]");
     let plane = plane.replace("zmin", "ymin").replace("density", "plane = \"strain\"\ndensity");
     let plane = networks(plane.split("[[fit]]\nname = \"patches\"").next().unwrap());
-    let mut moved = networks(SCENE).remove("exact").unwrap();
+    let mut moved = NETWORKS["exact"].clone();
     let of = |target: &str, network: &NetworkRecord, gravity: Option<&[f64]>| {
         let files = target_named(target).unwrap().files(network, gravity).unwrap();
         let bytes =
@@ -469,7 +472,7 @@ fn arrays_have_the_loads_by_name() {
         assert!(u[0] == -0.1 * x[1] && u[1] == 0.1 * x[0] && u[2].is_nan(), "{x:?} {u:?}");
     }
     // Without loads the arrays are there, and empty.
-    let bytes = &texts("npz", &networks(SCENE)["exact"])["network.npz"];
+    let bytes = &texts("npz", &NETWORKS["exact"])["network.npz"];
     assert!(array(bytes, "load_names").0.contains("'shape': (0,)") && reals(bytes, "load_forces").is_empty());
 }
 
@@ -517,8 +520,7 @@ fn a_network_that_locks_is_told() {
         assert!(told("exact").contains(words), "{target}: {}", told("exact"));
         assert!(!told("patches").contains("cells lock"), "{target}: {}", told("patches"));
     }
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("s.toml"), SCENE.replace("0.3", "0.49")).unwrap();
+    let folder = holding("s.toml", SCENE.replace("0.3", "0.49"));
     for arguments in ["export s.toml --to npz", "run s.toml --out out", "export out/exact.json --to newton --out n"] {
         let (code, said) = program(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
         assert_eq!(code, Some(0), "{said}");
@@ -547,8 +549,7 @@ fn springs_by_their_parts_are_the_network() {
 #[test]
 fn scripts_begin_with_what_is_told() {
     let text = SCENE.replace("1e4", "2e5") + "[[load]]\nname = \"push\"\ngroup = \"zmax\"\ntraction = [0, 0, -1e5]\n";
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("s.toml"), text.as_bytes()).unwrap();
+    let folder = holding("s.toml", text.as_bytes());
     for target in ["mujoco", "newton"] {
         let (code, printed) = program(folder.path(), &["export", "s.toml", "--to", target, "--out", target]);
         assert_eq!(code, Some(0), "{printed}");
@@ -637,53 +638,46 @@ fn springs_on_hexahedra_are_divided_into_those_of_tetrahedra() {
     // Springs at the quadrature points of a hexahedron are no volumes of tetrahedra.
     let cells = Division::of(&all["cells"]).unwrap().unwrap();
     assert!(Parts::of(&cells.network).is_err());
-    for (name, mut network) in all.into_iter().filter(|(name, _)| name == "bulk") {
-        // Bent faces; springs that pull at rest as well.
-        network.points.iter_mut().flatten().for_each(|x| *x += 0.04 * random.next());
-        let division = Division::of(&network).unwrap().expect("it has volume springs");
-        assert_eq!(division.hexahedra.len(), 16, "{name}");
-        let parts = Parts::of(&division.network).unwrap();
-        assert_eq!(parts.contents.len(), 160, "{name}");
-        let lengths = network.springs.len() - 16;
-        assert_eq!(parts.lengths.len(), lengths, "{name}");
-        let rest: Vec<f64> = network.points.concat();
-        let model = Parts { lengths: Vec::new(), ..parts }.network(3);
-        let whole = |x: &[f64]| -> f64 {
-            let of = |&place: &usize| {
-                let spring = &network.springs[place];
-                let own: Vec<f64> = spring.points.iter().flat_map(|&p| x[3 * p..3 * p + 3].to_vec()).collect();
-                0.5 * spring.constant
-                    * (division.measures[spring.measure].as_ref().unwrap().value(&own, 3) - spring.rest).powi(2)
-            };
-            division.hexahedra.iter().map(of).sum()
+    let mut network = all["bulk"].clone();
+    // Bent faces; springs that pull at rest as well.
+    network.points.iter_mut().flatten().for_each(|x| *x += 0.04 * random.next());
+    let division = Division::of(&network).unwrap().expect("it has volume springs");
+    assert_eq!(division.hexahedra.len(), 16);
+    let parts = Parts::of(&division.network).unwrap();
+    assert_eq!(parts.contents.len(), 160);
+    let lengths = network.springs.len() - 16;
+    assert_eq!(parts.lengths.len(), lengths);
+    let rest: Vec<f64> = network.points.concat();
+    let model = Parts { lengths: Vec::new(), ..parts }.network(3);
+    let whole = |x: &[f64]| -> f64 {
+        let of = |&place: &usize| {
+            let spring = &network.springs[place];
+            let own: Vec<f64> = spring.points.iter().flat_map(|&p| x[3 * p..3 * p + 3].to_vec()).collect();
+            0.5 * spring.constant
+                * (division.measures[spring.measure].as_ref().unwrap().value(&own, 3) - spring.rest).powi(2)
         };
-        for growth in [0.9, 1.0, 1.2] {
-            let x: Vec<f64> = rest.iter().map(|x| growth * x).collect();
-            let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
-            assert!((own - other).abs() < 1e-12 * other.abs().max(1e-6), "{name} {growth}: {own} {other}");
-        }
-        for _ in 0..10 {
-            let x: Vec<f64> = rest.iter().map(|x| x + 0.2 * random.next()).collect();
-            let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
-            assert!(own > other * (1.0 - 1e-12), "{name}: {own} {other}");
-        }
+        division.hexahedra.iter().map(of).sum()
+    };
+    for growth in [0.9, 1.0, 1.2] {
+        let x: Vec<f64> = rest.iter().map(|x| growth * x).collect();
+        let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
+        assert!((own - other).abs() < 1e-12 * other.abs().max(1e-6), "{growth}: {own} {other}");
+    }
+    for _ in 0..10 {
+        let x: Vec<f64> = rest.iter().map(|x| x + 0.2 * random.next()).collect();
+        let [own, other] = [model.energy(&x).unwrap(), whole(&x)];
+        assert!(own > other * (1.0 - 1e-12), "{own} {other}");
     }
 }
 
 /// Programs that hold volumes of tetrahedra take the networks of voxels, and the export says how far the divided one is from it.
 #[test]
 fn networks_of_voxels_reach_an_engine() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("v.toml"), VOXELS).unwrap();
-    let export = |to: &str, fit: &str| {
-        let arguments = ["export", "v.toml", "--to", to, "--fit", fit, "--out", to];
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(&folder).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-        (output.status.code(), said)
-    };
-    for (to, fit) in [("newton", "bulk"), ("blender", "bulk"), ("jolt", "bulk"), ("xpbd", "bulk"), ("npz", "bulk")] {
-        let (code, said) = export(to, fit);
+    let folder = holding("v.toml", VOXELS);
+    let export =
+        |to: &str, fit: &str| program(folder.path(), &["export", "v.toml", "--to", to, "--fit", fit, "--out", to]);
+    for to in ["newton", "blender", "jolt", "xpbd", "npz"] {
+        let (code, said) = export(to, "bulk");
         assert_eq!(code, Some(0), "{to}: {said}");
         assert!(said.contains("the volume springs of 16 hexahedra are written as 160 of tetrahedra"), "{said}");
         assert!(

@@ -1,19 +1,22 @@
 //! Reads displacements of a mesh's points from tables and grids: whole, in part, cut short and wrong.
 
+use crate::damage::damaged;
+use crate::kit::place;
 use crate::messages::reads;
+use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_foundation::error::ErrorKind;
 use springfit_mesh::mesh::vtk::{Array, Grid, write};
 use springfit_mesh::mesh::{Annotations, Field, Format, Mesh, MeshSource, NumberOrigin, SourceBlock};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 const MESHES: [&str; 3] = ["cube_tet", "specimen_hex", "tissue_quad"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn scene_mesh(name: &str) -> Mesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/meshes/{name}.msh"));
+    let path = place(format!("scenes/meshes/{name}.msh"));
     Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap()
 }
 
@@ -392,11 +395,7 @@ fn no_file_cut_short_or_damaged_makes_the_reader_panic() {
     write(&files.path("u.vtu"), &grid).unwrap();
     fs::write(files.path("u.vtk"), legacy(&grid)).unwrap();
     fs::write(files.path("u.csv"), table(&mesh, &values, &order, true, ",", "u")).unwrap();
-    let mut state = 1_u64;
-    let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random(1);
     for name in ["u.vtu", "u.vtk", "u.csv"] {
         let whole = fs::read(files.path(name)).unwrap();
         assert_eq!(Field::read(&files.path(name), &mesh, 1.0).unwrap().displacements, values);
@@ -407,16 +406,7 @@ fn no_file_cut_short_or_damaged_makes_the_reader_panic() {
             assert!(name != "u.vtu" || read.is_err(), "cut to {length} bytes");
         }
         for round in 0..300 {
-            let mut bytes = whole.clone();
-            for _ in 0..1 + round % 3 {
-                let at = random(bytes.len());
-                match random(4) {
-                    0 => bytes[at] = random(256) as u8,
-                    1 => bytes[at] = b"0123456789 -.e\"<>=,\n#"[random(21)],
-                    2 => drop(bytes.remove(at)),
-                    _ => bytes.insert(at, b'9'),
-                }
-            }
+            let bytes = damaged(&whole, round, &mut random);
             fs::write(&path, bytes).unwrap();
             if let Ok(field) = Field::read(&path, &mesh, 1.0) {
                 assert_eq!(field.displacements.len(), mesh.points.len());

@@ -1,11 +1,10 @@
 //! Closed surfaces that are filled with cells.
 
-use crate::kit::outcome;
+use crate::kit::{outcome, place};
 use springfit_bodies::model::{Action, nodal_forces};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
 use springfit_report::report::{Report, notes_beside_summary};
-use std::path::Path;
 use std::sync::Arc;
 
 fn element(name: &str) -> Arc<Element> {
@@ -23,7 +22,7 @@ fn filled(mesh: &Mesh) -> &Filled {
 }
 
 fn egg() -> MeshSource {
-    MeshSource::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl")).unwrap()
+    MeshSource::read(&place("tests/meshes/egg.stl")).unwrap()
 }
 
 /// The sides of a box as quadrangles of an OBJ file with normals outwards, or inwards; `before` points are before it.
@@ -206,7 +205,7 @@ fn centres_on_the_surface_are_decided_alike() {
 /// The area of steps is larger than that of an egg whatever the size of cells; what a fill found is in the notes of the report.
 #[test]
 fn tractions_on_steps_and_what_a_fill_found_are_notes() {
-    let egg = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl");
+    let egg = place("tests/meshes/egg.stl");
     let scene = |rest: &str| {
         outcome(&format!(
             "[mesh]\nfill = {{ surface = {egg:?}, {rest} }}\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n\

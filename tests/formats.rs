@@ -1,13 +1,16 @@
 //! Meshes that Gmsh, meshio, trimesh, VTK and TetGen have written (`meshes/formats.py`), in the formats of other programs,
 //! beside the same meshes in the formats of Gmsh; and damage to them.
 
+use crate::damage::{assert_sound, damaged};
+use crate::kit::place;
+use crate::shapes::Random;
 use springfit_bodies::model::content;
 use springfit_element::element::{Quadrature, Tabulation};
 use springfit_element::stiffness::each_cell;
 use springfit_mesh::mesh::{MESH_FORMATS, Mesh, MeshSource, NumberOrigin, listed_endings};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const SOLIDS: [&str; 18] = [
     "bar.inp",
@@ -33,7 +36,7 @@ const EGGS: [&str; 7] =
     ["egg.off", "egg.obj", "egg.ply", "egg_ascii.ply", "egg_big_endian.ply", "egg.stl", "egg_ascii.stl"];
 
 fn path(file: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(file)
+    place("tests/meshes").join(file)
 }
 
 fn mesh(file: &str) -> Mesh {
@@ -328,7 +331,7 @@ fn faults_of_surfaces_name_the_line() {
 fn endings_are_those_of_the_table() {
     let endings: BTreeSet<&str> = MESH_FORMATS.iter().flat_map(|format| format.endings).copied().collect();
     assert_eq!(endings.len(), MESH_FORMATS.iter().map(|format| format.endings.len()).sum::<usize>());
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/src/reference/meshes.md")).unwrap();
+    let page = fs::read_to_string(place("docs/src/reference/meshes.md")).unwrap();
     for ending in endings {
         assert!(listed_endings().contains(&format!(".{ending}")));
         assert!(page.contains(&format!("`.{ending}`")), "{ending} is not on the page of meshes");
@@ -338,43 +341,16 @@ fn endings_are_those_of_the_table() {
     }
 }
 
-fn assert_sound(mesh: &MeshSource) {
-    for block in &mesh.blocks {
-        assert!(block.dimension <= 3 && block.nodes_per_cell > 0 && !block.connectivity.is_empty());
-        assert_eq!(block.connectivity.len() % block.nodes_per_cell, 0);
-        assert!(block.connectivity.iter().all(|&node| node < mesh.points.len()));
-    }
-}
-
 #[test]
 fn no_damaged_file_makes_a_reader_panic() {
-    let mut state = 7_u64;
-    let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random(7);
     let whole = |file: &&str| (fs::read(path(file)).unwrap(), file.rsplit('.').next().unwrap().to_string());
     let mut files: Vec<_> = SOLIDS.iter().chain(&EGGS).map(whole).collect();
     files.push((format!("{PART}{ASSEMBLY}").into_bytes(), "inp".into()));
     files.retain(|(bytes, _)| bytes.len() < 9000);
     for (whole, ending) in &files {
         for round in 0..400 {
-            let mut bytes = whole.clone();
-            bytes.truncate(if round % 4 == 0 { random(whole.len()) + 1 } else { whole.len() });
-            for _ in 0..1 + round % 3 {
-                let at = random(bytes.len());
-                match random(6) {
-                    0 => bytes[at] = random(256) as u8,
-                    1 => bytes[at] = b"0123456789 -.,$\"<>=*+\n"[random(22)],
-                    2 => bytes[at] ^= 1 << random(8),
-                    3 if bytes.len() > 1 => drop(bytes.remove(at)),
-                    4 => bytes.insert(at, b'9'),
-                    _ => {
-                        let end = (at + random(16)).min(bytes.len());
-                        bytes[at..end].fill(255);
-                    }
-                }
-            }
+            let bytes = damaged(whole, round, &mut random);
             match parse(&bytes, ending) {
                 Ok(mesh) => assert_sound(&mesh),
                 Err(error) => assert_eq!(error.to_string().lines().count(), 1),

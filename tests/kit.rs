@@ -2,8 +2,27 @@
 
 use springfit_foundation::error::Result;
 use springfit_studies::study::{Outcome, Scene, run};
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A folder of its own that has a file.
+pub fn holding(name: &str, content: impl AsRef<[u8]>) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join(name), content).unwrap();
+    folder
+}
+
+/// What a file has in JSON.
+pub fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A file or a folder of the repository.
+pub fn place(path: impl AsRef<Path>) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
 
 /// Runs `springfit ARGUMENTS…` in a folder.
 pub fn springfit(folder: &Path, arguments: &[&str]) -> Output {
@@ -13,6 +32,11 @@ pub fn springfit(folder: &Path, arguments: &[&str]) -> Output {
 /// What it said on standard error.
 pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// What it said on both of its streams.
+pub fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &said(output)
 }
 
 /// What it prints where it succeeds.

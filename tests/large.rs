@@ -1,16 +1,16 @@
 //! Scenes whose material has a law: both models at large deformation, and fits to sampled forces.
 
+use crate::kit::place;
 use springfit_bodies::solve::Newton;
 use springfit_element::element::Element;
 use springfit_element::material::{Material, Plane};
 use springfit_report::report;
 use springfit_studies::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
-use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
 fn scene(name: &str) -> Scene {
-    Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"))).unwrap()
+    Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
 }
 
 /// A bar of tetrahedra in a folder of its own, with these fits.

@@ -25,7 +25,6 @@ fn difference(a: &Outcome, b: &Outcome) -> f64 {
 /// The exact network of a body whose moduli, parameters and fibres vary is the body.
 #[test]
 fn exact_networks_follow_the_fields() {
-    let folder = TempDir::new().unwrap();
     let moduli = "young = \"1e3*(1 + 2*z + x)\"\npoisson = \"0.25 + 0.1*y\"\n";
     let fibres = "fibre = [\"cos(z)\", \"sin(z)\", 0.5]\nparameters = { stiffness = \"0.3 + 0.4*x\", growth = 0.5 }\n";
     for law in

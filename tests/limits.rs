@@ -1,5 +1,6 @@
 //! What is too large is refused before it is tried, and outputs that cannot be written before the work.
 
+use crate::kit::{holding, place};
 use springfit_bodies::model::Network;
 use springfit_foundation::error::ErrorKind;
 use springfit_report::report::{NetworkFile, network_csv, network_json, open_scene_outputs};
@@ -62,8 +63,7 @@ fn what_does_not_fit_into_memory_is_refused_with_its_figures() {
 #[cfg(target_os = "linux")]
 #[test]
 fn the_figure_of_a_refusal_is_the_least_that_would_do() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("scene.toml"), scene(30, "", "")).unwrap();
+    let folder = holding("scene.toml", scene(30, "", ""));
     let limit = "export RAYON_NUM_THREADS=1; ulimit -v 280000";
     let found = program(folder.path(), limit, &["run", "scene.toml", "--out", "out"]);
     let words = ["the stiffness with the levels of its multigrid takes 0.", "a factor does not fit either"];
@@ -171,7 +171,7 @@ fn networks_are_written_record_by_record() {
 #[cfg(unix)]
 #[test]
 fn no_output_replaces_an_input() {
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/tet10.vtu");
+    let mesh = place("tests/meshes/tet10.vtu");
     let folder = TempDir::new().unwrap();
     let at = |name: &str| folder.path().join(name);
     fs::copy(mesh, at("mesh.vtu")).unwrap();

@@ -1,8 +1,8 @@
 //! Near the incompressible: volume springs on cells and patches answer where finite elements lock.
 
-use crate::kit::outcome;
+use crate::kit::{outcome, place};
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{compliance, membrane};
+use crate::shapes::statics::{compliance, membrane, support_at};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{
     Entries, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs, smoothed_pressure,
@@ -16,10 +16,8 @@ use std::path::Path;
 
 /// Held where `test` is true of the place.
 fn held(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> (Support, Vec<bool>) {
-    let d = mesh.dimension;
     let points: Vec<usize> = (0..mesh.point_count()).filter(|p| test(mesh.point(*p))).collect();
-    let mut support = Support::free(mesh);
-    support.fix(&points, &(0..d).collect::<Vec<_>>(), d);
+    let support = support_at(mesh, &points);
     (support, (0..mesh.point_count()).map(|p| points.contains(&p)).collect())
 }
 
@@ -346,7 +344,7 @@ fn a_fit_on_patches_is_told_what_is_held() {
         assert!(output.status.success(), "{said}");
         said
     };
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cube_tet.msh");
+    let mesh = place("scenes/meshes/cube_tet.msh");
     let group = "fixed";
     let text = format!(
         "mesh = {{ file = {mesh:?}, scale = \"cm\" }}\nmaterial = {{ young = 1e4, poisson = 0.49 }}\n\

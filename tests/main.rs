@@ -18,6 +18,7 @@ mod costs;
 mod covariance;
 mod crash;
 mod curved_cells;
+mod damage;
 mod deck_generation;
 mod derive;
 mod digits;

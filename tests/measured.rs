@@ -1,7 +1,7 @@
 //! Networks of anyone as materials: lattices against published closed forms, exact networks against their material, files of other programs
 //! against what was written, matrices against elements.
 
-use crate::kit::{self, prints};
+use crate::kit::{self, holding, place, prints};
 use crate::shapes::elements;
 use nalgebra::DMatrix;
 use springfit_element::element::Element;
@@ -97,7 +97,7 @@ fn exact_networks_are_the_material_they_came_from() {
     let meshes =
         [("cube_tet.msh", "0.3"), ("specimen_hex.msh", "0.45"), ("tissue_quad.msh", "0.3"), ("tissue_tri.msh", "0.2")];
     for (mesh, poisson) in meshes {
-        let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes").join(mesh);
+        let mesh = place("scenes/meshes").join(mesh);
         let name = format!("{}.json", mesh.file_stem().unwrap().to_string_lossy());
         let arguments = [
             "fit",
@@ -447,8 +447,7 @@ fn flexes_of_mujoco_are_networks_of_their_edges() {
 /// Springs whose rest lengths are not those of the shape are told first.
 #[test]
 fn springs_that_pull_at_rest_are_told_first() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("p.csv"), "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n").unwrap();
+    let folder = holding("p.csv", "x,y,z\n0,0,0\n1,0,0\n0,1,0\n0,0,1\n");
     fs::write(folder.path().join("s.csv"), "i,j,k,rest\n0,1,5,0.9\n0,2,5,1\n0,3,5,1\n1,2,5,1.4142135623730951\n1,3,5,1.4142135623730951\n2,3,5,1.4142135623730951\n").unwrap();
     let text = prints(folder.path(), &["measure", "s.csv", "--points", "p.csv", "--hull"]);
     let second = text.lines().nth(1).unwrap();

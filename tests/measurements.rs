@@ -1,5 +1,6 @@
 //! Moduli of regions from measured displacements: with noise, on part of the points, and from a finer world than the network.
 
+use crate::kit::holding;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit_element::material::{Material, State};
@@ -70,8 +71,7 @@ struct World {
 
 impl World {
     fn new(size: usize) -> World {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("world.inp"), block(size)).unwrap();
+        let folder = holding("world.inp", block(size));
         let mut text = SCENE.replace("MESH", "world.inp").replace("REFERENCE", "");
         text = text.replace("[material]", "[[material]]\ngroup = \"lower\"");
         let upper = format!("[[material]]\ngroup = \"upper\"\nyoung = {:?}\npoisson = 0.3\n", 1e4 * TRUTH[1]);

@@ -1,5 +1,8 @@
 //! Reads one bar of hexahedra and tetrahedra from every kind of mesh file, whole, cut short and damaged.
 
+use crate::damage::{assert_sound, damaged};
+use crate::kit::place;
+use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_mesh::mesh::vtk::{Array, Grid, write};
 use springfit_mesh::mesh::{Field, Format, Mesh, MeshSource, SourceBlock, gmsh, vtk};
@@ -42,7 +45,7 @@ const PIECES: [&str; 3] = ["pieces_raw_zlib.vtu", "empty_inline_zlib.vtu", "empt
 const PARAMETRIC_CUBES: [&str; 2] = ["cube_parametric_22.msh", "cube_parametric_41.msh"];
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes")
+    place("tests/meshes")
 }
 
 fn all_files() -> impl Iterator<Item = &'static str> {
@@ -74,15 +77,6 @@ fn sorted_cells(mesh: &MeshSource) -> Vec<(usize, Vec<usize>, Vec<String>)> {
     let mut cells: Vec<_> = mesh.blocks.iter().flat_map(cells_of).collect();
     cells.sort();
     cells
-}
-
-/// What the rest of the program relies on.
-fn assert_sound(mesh: &MeshSource) {
-    for block in &mesh.blocks {
-        assert!(block.dimension <= 3 && block.nodes_per_cell > 0 && !block.connectivity.is_empty());
-        assert_eq!(block.connectivity.len() % block.nodes_per_cell, 0);
-        assert!(block.connectivity.iter().all(|&node| node < mesh.points.len()));
-    }
 }
 
 /// Whether the points are the same to the digits that every file has.
@@ -157,7 +151,7 @@ fn parametric_coordinates_are_passed_over() {
 
 #[test]
 fn every_mesh_of_the_scenes_reads() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let folder = place("scenes/meshes");
     let mut count = 0;
     for entry in fs::read_dir(folder).unwrap() {
         let mesh = MeshSource::read(&entry.unwrap().path()).unwrap();
@@ -201,29 +195,11 @@ fn no_file_cut_short_is_read_without_a_word() {
 
 #[test]
 fn no_damaged_file_makes_the_reader_panic() {
-    let mut state = 1_u64;
-    let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random(1);
     for file in all_files() {
         let whole = bytes_of(file);
         for round in 0..600 {
-            let mut bytes = whole.clone();
-            for _ in 0..1 + round % 3 {
-                let at = random(bytes.len());
-                match random(6) {
-                    0 => bytes[at] = random(256) as u8,
-                    1 => bytes[at] = b"0123456789 -.$\"<>=\n"[random(19)],
-                    2 => bytes[at] ^= 1 << random(8),
-                    3 => drop(bytes.remove(at)),
-                    4 => bytes.insert(at, b'9'),
-                    _ => {
-                        let end = (at + random(16)).min(bytes.len());
-                        bytes[at..end].fill(255);
-                    }
-                }
-            }
+            let bytes = damaged(&whole, round, &mut random);
             if let Ok(mesh) = parse(file, &bytes) {
                 assert_sound(&mesh);
             }

@@ -1,7 +1,9 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
+use crate::kit::place;
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 use nalgebra::DMatrix;
 use springfit_bodies::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
 use springfit_bodies::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
@@ -10,7 +12,6 @@ use springfit_element::material::Material;
 use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use springfit_studies::study::Scene;
 use std::f64::consts::PI;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A model held somewhere.
@@ -43,8 +44,7 @@ impl Model {
     fn body(mesh: &Mesh, poisson: f64) -> Model {
         let material = Material::for_body(3, 1.0, poisson, None, None).unwrap();
         let held: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
-        let mut support = Support::free(mesh);
-        support.fix(&held, &[0, 1, 2], 3);
+        let support = support_at(mesh, &held);
         Model::new(&finite_elements(mesh, material.moduli()), &support, masses(mesh, 1.0, 1.0), 3)
     }
 
@@ -242,8 +242,7 @@ fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
         }
         let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
         let held: Vec<usize> = (0..mesh.point_count()).filter(|&p| mesh.point(p)[0] == 0.0).collect();
-        let mut support = Support::free(&mesh);
-        support.fix(&held, &(0..d).collect::<Vec<_>>(), d);
+        let support = support_at(&mesh, &held);
         let lumped = springfit_bodies::model::lumped_masses(&mesh, 2.0, 1.0, springfit_bodies::model::Lumping::Hrz);
         let model = Model::new(&finite_elements(&mesh, material.moduli()), &support, lumped.clone(), d);
         let consistent = ConsistentMasses::of_mesh(&mesh, 2.0, 1.0).unwrap();
@@ -322,12 +321,11 @@ fn slender_bars_pass() {
 #[test]
 fn modes_of_a_mesh_are_those_of_dense_matrices() {
     for (name, held) in [("cube_tet", "fixed"), ("cube_hex", "zmin")] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"));
+        let path = place(format!("scenes/{name}.toml"));
         let scene = Scene::load(&path).unwrap();
         let mesh = scene.build_mesh().unwrap();
         let material = scene.material(3).unwrap();
-        let mut support = Support::free(&mesh);
-        support.fix(&Selection::Group(held.into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
+        let support = support_at(&mesh, &Selection::Group(held.into()).points(&mesh).unwrap());
         let entries = finite_elements(&mesh, material.moduli());
         let model = Model::new(&entries, &support, masses(&mesh, 1000.0, 1.0), 3);
         let modes = model.modes(10);

@@ -1,13 +1,13 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
-use crate::kit::{said, springfit};
+use crate::kit::{json, place, said, springfit};
 use crate::messages::reads;
 use springfit_mesh::mesh::MeshSource;
 use springfit_report::report;
 use springfit_studies::study::{Event, ModelMotion, MotionEnding, Outcome, Scene, run, stages};
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// A block of 2 cm that hangs by nothing or by its lower side; motion to be filled in.
@@ -155,7 +155,7 @@ frequencies = 3
 
 #[test]
 fn a_disc_is_the_membrane_of_1607_springs() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/membrane.toml");
+    let path = place("scenes/membrane.toml");
     let scene = Scene::load(&path).unwrap();
     let mesh = scene.build_mesh().unwrap();
     assert_eq!((mesh.point_count(), mesh.cell_count(), mesh.dimension), (558, 1050, 3));
@@ -215,7 +215,7 @@ fn a_motion_is_written_for_paraview_and_over_time() {
         assert!(rows.len() == 7 && rows.iter().all(|row| row.len() == rows[0].len()));
         assert_eq!(rows[6][0], "0.05");
     }
-    let json: serde_json::Value = serde_json::from_str(&fs::read_to_string(out.join("report.json")).unwrap()).unwrap();
+    let json = json(&out.join("report.json"));
     assert_eq!(json["motion_options"]["integrator"], "newmark");
     assert_eq!(json["motion"][1]["name"], "springs");
     assert_eq!(json["motion"][1]["ended"], "complete");
@@ -556,7 +556,7 @@ fn a_force_may_end_with_the_motion() {
 /// A network with negative springs is reported with its rate of growth. A motion whose linear step is too long for it is not begun, and the others are.
 #[test]
 fn an_indefinite_network_is_told() {
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cylinder_hex.msh");
+    let mesh = place("scenes/meshes/cylinder_hex.msh");
     let text = format!(
         "[mesh]\nfile = {mesh:?}\nscale = 0.01\n[material]\nyoung = 10e3\npoisson = 0.3\ndensity = 1000\n[[fit]]\n\
          objective = \"modal\"\nhigher = 0.316\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\ngroup = \"fixed\"\n[output]\n\
@@ -591,7 +591,7 @@ fn an_indefinite_network_is_told() {
 /// not errors of the fit.
 #[test]
 fn of_an_indefinite_network_no_error_is_that_of_the_fit() {
-    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/cylinder_hex.msh");
+    let mesh = place("scenes/meshes/cylinder_hex.msh");
     let outcome = outcome(&format!(
         "[mesh]\nfile = {mesh:?}\nscale = 0.01\n[material]\nyoung = 10e3\npoisson = 0.3\ndensity = 1000\n[[fit]]\n\
          objective = \"modal\"\nhigher = 0.316\n[[fit]]\nobjective = \"offdiag\"\n[[fix]]\ngroup = \"fixed\"\n\

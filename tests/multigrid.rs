@@ -1,6 +1,7 @@
 //! Conjugate gradients with multigrid answer as a factor does, for bodies and for networks of every standing.
 
-use crate::kit::outcome;
+use crate::kit::{outcome, place};
+use crate::shapes::statics::support_at;
 use springfit_bodies::model::{BlockStiffness, Support, finite_elements};
 use springfit_bodies::solve::{Levels, Standing, StaticMethod, StaticSolver, System};
 use springfit_foundation::error::ErrorKind;
@@ -46,7 +47,7 @@ fn supports(scene: &Scene, mesh: &Mesh) -> Support {
 fn shipped_scenes_have_the_same_answers() {
     let mut loads = 0;
     for name in ["cube_hex", "cube_tet", "square_quad", "tissue_quad", "tissue_tri", "specimen_quad", "cylinder_tet"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"));
+        let path = place(format!("scenes/{name}.toml"));
         let text = fs::read_to_string(&path).unwrap();
         let [factor, levels] = both(&text, &path);
         let scene = scene(&text, &path, "method = \"multigrid\"");
@@ -195,8 +196,7 @@ fn levels_show_the_motion_that_meets_no_resistance() {
     let scene = Scene::parse(&format!("{BOX}[[fit]]\nobjective = \"modal\"\n"), Path::new("scene.toml")).unwrap();
     let outcome = run(&scene, &mut |_| ()).unwrap();
     let mesh = &outcome.mesh;
-    let mut support = Support::free(mesh);
-    support.fix(&[0], &[0, 1, 2], 3);
+    let support = support_at(mesh, &[0]);
     let stiffness = BlockStiffness::of_body(mesh, outcome.material.moduli(), 1, 1).unwrap();
     let motion = match Levels::new(stiffness.clone(), &mesh.points, &support).unwrap() {
         Err(motion) => motion,

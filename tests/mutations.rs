@@ -1,7 +1,9 @@
 //! Meshes that random changes have spoilt: each fault is an error, or is counted by its name. No sound mesh has one.
 
+use crate::kit::place;
 use crate::shapes::Random;
-use springfit_bodies::model::{Support, unheld_bodies};
+use crate::shapes::statics::support_at;
+use springfit_bodies::model::unheld_bodies;
 use springfit_element::element::{Cell, Element, SHIPPED, Side};
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{
@@ -9,7 +11,6 @@ use springfit_mesh::mesh::{
 };
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Of each kind.
@@ -70,7 +71,7 @@ fn sound() -> Vec<(String, MeshSource)> {
         }
     }
     assert!(all.len() > 10, "{}", all.len());
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let folder = place("scenes/meshes");
     let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     // A sheet has no side that is outside.
@@ -205,8 +206,7 @@ fn pieces_without_support_are_found() {
         push(&mut source, block, copy);
         let mesh = resolve(&source, Below::Warn).unwrap();
         let d = mesh.dimension;
-        let mut support = Support::free(&mesh);
-        support.fix(&(0..whole.point_count()).collect::<Vec<_>>(), &(0..d).collect::<Vec<_>>(), d);
+        let support = support_at(&mesh, &(0..whole.point_count()).collect::<Vec<_>>());
         assert_eq!((mesh.quality.pieces, flood(&mesh)), (Some(2), 2), "{name}");
         let unheld = unheld_bodies(&mesh, &support);
         assert_eq!(unheld.len(), 1, "{name}");

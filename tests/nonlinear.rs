@@ -1,6 +1,7 @@
 //! Large deformation: forces and tangents of elements, Newton's method on both models.
 
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 use crate::shapes::{Random, distorted, elements, geometry};
 use nalgebra::Matrix3;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
@@ -162,9 +163,7 @@ fn a_deformed_cube_carries_the_stress_of_its_energy() {
 
 fn pulled(mesh: &Mesh, traction: f64) -> (Support, Vec<f64>) {
     let d = mesh.dimension;
-    let mut support = Support::free(mesh);
-    let all: Vec<usize> = (0..d).collect();
-    support.fix(&Selection::Group("xmin".into()).points(mesh).unwrap(), &all, d);
+    let support = support_at(mesh, &Selection::Group("xmin".into()).points(mesh).unwrap());
     let mut pull = vec![0.0; d];
     pull[0] = traction;
     let forces = nodal_forces(mesh, &Selection::Group("xmax".into()), &Action::traction(&pull), 1.0).unwrap();

@@ -1,8 +1,10 @@
 //! The nearest network without negative springs to an exact one.
 
+use crate::kit::place;
+use crate::shapes::statics::support_at;
 use crate::shapes::{Random, bodies};
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Elastic, LengthSpring, Network, Support};
+use springfit_bodies::model::{Elastic, LengthSpring, Network};
 use springfit_bodies::solve::System;
 use springfit_element::material::Material;
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
@@ -12,7 +14,6 @@ use springfit_mesh::mesh::{Mesh, MeshSource};
 use springfit_numerics::dense::least_squares;
 use springfit_studies::study::{FittedKind, Scene, run};
 use std::collections::HashMap;
-use std::path::Path;
 
 const EXACT: ExactFit = ExactFit {
     energy: ExactEnergy::StableNeoHookean,
@@ -23,7 +24,7 @@ const EXACT: ExactFit = ExactFit {
 
 /// A mesh of tetrahedra made by gmsh.
 fn gmsh(name: &str) -> Mesh {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/meshes/{name}.msh"));
+    let path = place(format!("scenes/meshes/{name}.msh"));
     Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 0.01).unwrap()
 }
 
@@ -79,8 +80,7 @@ fn compliance(mesh: &Mesh, network: &Network, axis: usize) -> f64 {
         let near = move |z: &f64| (z - height).abs() < 1e-6 * (high - low);
         heights().enumerate().filter(move |(_, z)| near(z)).map(|(p, _)| p)
     };
-    let mut support = Support::free(mesh);
-    support.fix(&at(low).collect::<Vec<_>>(), &(0..d).collect::<Vec<_>>(), d);
+    let support = support_at(mesh, &at(low).collect::<Vec<_>>());
     let mut load = vec![0.0; mesh.points.len()];
     at(high).for_each(|p| load[p * d + axis] = 1.0);
     let system = System::new(&network.stiffness(&mesh.points), &support).unwrap();
@@ -292,7 +292,7 @@ fn scene(fit: &str) -> springfit_foundation::error::Result<Scene> {
         "[mesh]\nfile = \"cylinder_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1e4\npoisson = 0.3\n[[fit]]\n\
          objective = \"exact\"\n{fit}\n[[fix]]\ngroup = \"fixed\"\n[[load]]\ngroup = \"load\"\ntraction = [1000, 0, 1000]\n"
     );
-    Scene::parse(&text, &Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/scene.toml"))
+    Scene::parse(&text, &place("scenes/meshes/scene.toml"))
 }
 
 /// A scene has the network, its notes and a stable answer.
@@ -317,7 +317,7 @@ fn the_nearest_network_is_the_material() {
             "[mesh]\nfile = \"scenes/meshes/cube_tet.msh\"\nscale = 0.01\n[material]\nyoung = 1e4\npoisson = 0.45\n[[fit]]\n\
              objective = \"exact\"\nvolume = \"{volume}\"\nnonnegative = true\n"
         );
-        let scene = Scene::parse(&text, &Path::new(env!("CARGO_MANIFEST_DIR")).join("scene.toml")).unwrap();
+        let scene = Scene::parse(&text, &place("scene.toml")).unwrap();
         let found = run(&scene, &mut |_| {}).unwrap().fits.remove(0).as_material;
         println!("{volume}: {:.4} off, E = {:?}", found.distance, found.young);
         // Samples have parts of the tensions that balance: a per cent or so is left of a network that is exact as a whole.

@@ -1,6 +1,7 @@
 //! The numbers that a file gives its nodes, in every export of a network, and what a report says of what was not looked for.
 
 use crate::kit;
+use crate::kit::place;
 use crate::shapes::Random;
 use serde_json::Value;
 use springfit_bodies::model::Network;
@@ -9,7 +10,6 @@ use springfit_report::report::{NetworkFile, Report, network_csv, network_grid, n
 use springfit_studies::study::Outcome;
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 use tempfile::TempDir;
 
 /// A square of two triangles with a node between that no cell has.
@@ -103,7 +103,7 @@ fn exports_have_the_numbers_of_the_file() {
 #[test]
 fn nodes_without_a_cell_do_not_renumber_springs() {
     let folder = TempDir::new().unwrap();
-    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/square_tri.msh");
+    let original = place("scenes/meshes/square_tri.msh");
     let source = MeshSource::read(&original).unwrap();
     let mut random = Random(6);
     let of_nodes = |extra: bool, random: &mut Random| {

@@ -1,6 +1,6 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
-use crate::kit::outcome;
+use crate::kit::{outcome, place};
 use springfit_bodies::model::LengthSpring;
 use springfit_report::report::page::{PageRecord, page_html};
 use springfit_report::report::{Report, open_scene_outputs, write_outputs};
@@ -38,7 +38,7 @@ const LOAD: &str = "[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\ntract
 
 #[test]
 fn the_page_of_a_cube_is_below_5_mb_and_holds_its_report() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cube_tet.toml");
+    let path = place("scenes/cube_tet.toml");
     let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
     let page = page(&outcome);
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
@@ -87,7 +87,7 @@ fn no_text_of_a_file_is_read_as_html() {
 /// The script sets texts of nodes alone: nothing that reads HTML.
 #[test]
 fn no_script_writes_html() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates/page/assets");
+    let folder = place("crates/page/assets");
     // A published package has no other packages in its folder.
     let Ok(files) = std::fs::read_dir(folder) else { return };
     for file in files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "js")) {

@@ -1,5 +1,6 @@
 //! The experiments of the paper, run again by one command, and the published methods and gauges that they need of scenes.
 
+use crate::kit::place;
 use crate::messages::reads;
 use springfit_foundation::error::Error;
 use springfit_report::report;
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/paper")
+    place("scenes/paper")
 }
 
 fn quiet(_: Event) {}

@@ -1,7 +1,7 @@
 //! Sheets that bend: springs on directors are the plate of Morley, on any mesh.
 
 use crate::shapes::Random;
-use crate::shapes::statics::product;
+use crate::shapes::statics::{product, support_at};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use springfit_bodies::model::{
     BendingSprings, Body, Elastic, Network, Support, bending_springs, displaced, exact_network, finite_elements,
@@ -257,8 +257,7 @@ fn hinged(mesh: &Mesh, poisson: f64) -> Network {
 fn middle_of(mesh: &Mesh, entries: &springfit_bodies::model::Entries, is_clamped: bool) -> f64 {
     let on_rim = |p: usize| mesh.point(p)[..2].iter().any(|x| *x < 1e-9 || *x > 1.0 - 1e-9);
     let held: Vec<usize> = (0..mesh.node_count()).filter(|&p| on_rim(p)).collect();
-    let mut support = Support::free(mesh);
-    support.fix(&held, &[0, 1, 2], 3);
+    let mut support = support_at(mesh, &held);
     if is_clamped {
         // A clamped edge lies on the rim, and has both its ends there.
         let of_rim: Vec<usize> =
@@ -359,8 +358,7 @@ fn a_moment_on_an_edge_bends_a_strip() {
         let on = |x: f64| -> Vec<usize> {
             (0..mesh.node_count()).filter(|&p| (mesh.point(p)[0] - x).abs() < 1e-9).collect()
         };
-        let mut support = Support::free(&mesh);
-        support.fix(&mesh.with_directors_of(&on(0.0)), &[0, 1, 2], 3);
+        let support = support_at(&mesh, &mesh.with_directors_of(&on(0.0)));
         let system = System::new(&finite_elements(&mesh, material.moduli()), &support).unwrap();
         let factor = system.cholesky().unwrap().unwrap();
         let solved = |moment: [f64; 3]| system.solve(&factor, &mesh.couples(&on(length), moment).unwrap()).0;
@@ -391,8 +389,7 @@ fn a_cantilever_bends_as_the_elastica() {
             let laws = (energy, material.state()).into();
             let body = Body::new(&mesh, &laws);
             let held: Vec<usize> = (0..mesh.node_count()).filter(|&p| mesh.point(p)[0] < 1e-9).collect();
-            let mut support = Support::free(&mesh);
-            support.fix(&mesh.with_directors_of(&held), &[0, 1, 2], 3);
+            let support = support_at(&mesh, &mesh.with_directors_of(&held));
             let ends: Vec<usize> = (0..mesh.node_count()).filter(|&p| mesh.point(p)[0] > 1.0 - 1e-9).collect();
             let mut force = vec![0.0; mesh.points.len()];
             ends.iter().for_each(|p| force[3 * p + 2] = 10.0 * width / ends.len() as f64);
@@ -574,8 +571,7 @@ fn hinges_need_no_directors() {
     let (mesh, ends) = leaves();
     let network = hinged(&mesh, 0.3);
     let clamped: Vec<usize> = ends[..5].to_vec();
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.with_directors_of(&clamped), &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.with_directors_of(&clamped));
     let mut whole = NetworkFile::bare(&mesh, &network).record();
     whole.held = (0..mesh.point_count())
         .filter(|&p| support.is_fixed(3 * p))

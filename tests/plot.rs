@@ -1,5 +1,6 @@
 //! Figures and tables for a paper, from the folder of a run.
 
+use crate::kit::{json, place};
 use springfit_report::report::{
     Axis, CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder,
     Series, Shape, Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
@@ -9,7 +10,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 fn scene(name: &str, settings: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    let path = place("scenes").join(name);
     Scene::parse(&(std::fs::read_to_string(&path).unwrap() + settings), &path).unwrap()
 }
 
@@ -194,7 +195,7 @@ traction = [1.0, 0]
 fn a_report_without_objectives_of_steps_is_read() {
     let run = folder_of(&Scene::parse(FEW_STAGES, Path::new("scene.toml")).unwrap());
     let path = run.path().join("report.json");
-    let mut report: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    let mut report = json(&path);
     let stages = report["fits"][0]["whole"]["curve"].as_array_mut().unwrap();
     assert!(!stages.is_empty());
     for stage in stages {

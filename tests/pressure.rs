@@ -1,7 +1,8 @@
 //! Pressures on faces, at rest and on faces that move; and cavities that are filled to a given volume.
 
-use crate::kit::{outcome, refusal};
+use crate::kit::{json, outcome, refusal};
 use crate::shapes::bodies::{grid, mapped, patch, sphere};
+use crate::shapes::statics::support_at;
 use crate::shapes::{Random, distorted, elements, single};
 use springfit_bodies::model::{
     Action, Body, Cavity, Component, Elastic, PressedFaces, Support, displaced, finite_elements, nodal_forces,
@@ -261,8 +262,7 @@ fn a_pressure_without_a_potential_is_followed() {
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
     let laws = (Energy::load("neo-hookean", material).unwrap(), State::Solid).into();
     let body = Body::new(&mesh, &laws);
-    let mut support = Support::free(&mesh);
-    support.fix(&Selection::Group("xmin".into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
+    let support = support_at(&mesh, &Selection::Group("xmin".into()).points(&mesh).unwrap());
     let faces = pressed(&mesh, &Selection::Group("zmax".into()), 8.0);
     let forces = faces.forces(&mesh.points);
     let applied = Applied { forces: &forces, pressed: Some(&faces) };
@@ -462,8 +462,7 @@ fn a_tube_ends_in_planes() {
         let (inner, uniform) = (at(&inner), CellMap::Uniform(1.0));
         let at_end = |k: f64, p: &usize| mesh.point(*p)[2] == shift + k;
         let ends = |k: f64| (0..mesh.point_count()).filter(|p| at_end(k, p)).collect::<Vec<_>>();
-        let mut support = Support::free(&mesh);
-        support.fix(&ends(0.0), &[0, 1, 2], 3);
+        let mut support = support_at(&mesh, &ends(0.0));
         let open = |support: &Support| Cavity::new(&mesh, &inner, 3.0, &uniform, support).unwrap_err().to_string();
         assert!(open(&support).contains("8 edges that only one side has"), "{}", open(&support));
         support.fix(&ends(2.0), &[2], 3);
@@ -713,8 +712,7 @@ fn a_scene_fills_a_cavity() {
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("Pressure in the cavity under filled: ") && said.contains("Pa, after "), "{said}");
     assert!(said.contains("(finite elements); ") && said.contains("(exact)."), "{said}");
-    let report = std::fs::read_to_string(folder.path().join("out/report.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    let report = json(&folder.path().join("out/report.json"));
     let followed = &report["loads_followed"][0];
     assert!(followed["pressure"].as_f64().unwrap() < followed["pressure_passed"].as_f64().unwrap(), "{followed}");
     let (code, said) = run(&scene("30").replace(", law = \"neo-hookean\"", "").replace("newton = { steps = 8 }\n", ""));

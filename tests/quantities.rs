@@ -1,6 +1,6 @@
 //! Quantities with units, and what is assumed of a body that an input does not describe.
 
-use crate::kit::{said, springfit};
+use crate::kit::{holding, json, said, springfit};
 use springfit_foundation::quantity::Quantity;
 use springfit_foundation::symbolic::Scope;
 use std::fs;
@@ -49,8 +49,7 @@ fn a_unit_is_a_power_of_ten() {
 /// Every option that takes a quantity takes the units that its key takes in a scene, and the same network comes out.
 #[test]
 fn options_and_keys_take_the_same_units() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("roof.msh"), ROOF).unwrap();
+    let folder = holding("roof.msh", ROOF);
     let fit = |young: &str, scale: &str, thickness: &str, density: &str, name: &str| {
         let options = ["fit", "roof.msh", "--young", young, "--poisson", "0.3", "--scale", scale];
         let more = ["--thickness", thickness, "--density", density, "--objective", "offdiag", "-o", name];
@@ -75,8 +74,7 @@ fn options_and_keys_take_the_same_units() {
 /// A surface in space is a membrane of some thickness; a plane body without one is a metre thick, and a note says so.
 #[test]
 fn a_thickness_is_not_assumed_in_silence() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("roof.msh"), ROOF).unwrap();
+    let folder = holding("roof.msh", ROOF);
     fs::write(folder.path().join("flat.msh"), ROOF.replace("100 50", "100 0")).unwrap();
     let fit = |mesh: &str, more: &[&str]| {
         let options = ["fit", mesh, "--young", "1kPa", "--poisson", "0.3", "--objective", "offdiag", "-o", "k.csv"];
@@ -134,8 +132,7 @@ fn loads_have_units() {
     let report = |text: String| {
         let output = run(text);
         assert!(output.status.success(), "{}", said(&output));
-        let report = fs::read_to_string(folder.path().join("out/load/report.json")).unwrap();
-        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let report = json(&folder.path().join("out/load/report.json"));
         let moved = |record: &serde_json::Value| record["largest_displacement"].as_f64().unwrap();
         let fit = report["fits"][0]["loads"].as_array().unwrap().iter().map(moved).collect::<Vec<_>>();
         (fit, report["motion"].as_array().unwrap().iter().map(moved).collect::<Vec<_>>())
@@ -263,8 +260,7 @@ fn a_fill_takes_a_length_with_a_unit() {
 /// A body of a hundred metres, or of a hundredth of a millimetre, whose unit nobody has stated has a note wherever a mesh is read.
 #[test]
 fn a_forgotten_unit_is_told() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("roof.msh"), ROOF).unwrap();
+    let folder = holding("roof.msh", ROOF);
     let constants = ["--young", "1kPa", "--poisson", "0.3", "--thickness", "1 mm", "--objective", "offdiag", "-o"];
     let said = |first: &[&str], scale: Option<&str>| {
         let scale = scale.map_or(Vec::new(), |scale| vec!["--scale", scale]);

@@ -1,6 +1,6 @@
 //! What a comparison says, found again from its raw values by other means.
 
-use crate::kit::{prints, said, springfit};
+use crate::kit::{holding, json, prints, said, springfit};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -59,12 +59,11 @@ fn sign_test(wins: usize, count: usize) -> f64 {
 /// told apart from the bootstrap by order statistics: of 100 figures the 40th and the 61st hold the median in 95 % of samples.
 #[test]
 fn every_error_has_the_figures_of_its_raw_values() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("c.toml"), NORMS).unwrap();
+    let folder = holding("c.toml", NORMS);
     let printed = prints(folder.path(), &["compare", "c.toml"]);
     let out = folder.path().join("out/compare-c");
     let raw = raw(&out);
-    let summary: Value = serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let summary = json(&out.join("summary.json"));
     let fits = ["frobenius", "offdiag", "spectral"];
     for quantity in ["frobenius", "spectral"] {
         for (element, fit) in ["tet4", "hex8"].into_iter().flat_map(|e| fits.map(|f| (e, f))) {
@@ -157,8 +156,7 @@ traction = [1, 0]
 /// A network for an engine is a method of a comparison: its errors are those in the engine, and a simulated second is that of its steps.
 #[test]
 fn a_network_for_an_engine_is_a_method() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("bar.toml"), BAR).unwrap();
+    let folder = holding("bar.toml", BAR);
     let fit = "[[compare.fit]]\nobjective = \"offdiag\"\nsprings = \"all + volume\"\nnonnegative = true\n";
     let engine =
         "name = \"moved\"\nengine = [{ method = \"xpbd\", substeps = 40 }, { method = \"xpbd\", substeps = 400 }]\n";
@@ -166,7 +164,7 @@ fn a_network_for_an_engine_is_a_method() {
     fs::write(folder.path().join("c.toml"), &text).unwrap();
     prints(folder.path(), &["compare", "c.toml"]);
     let out = folder.path().join("out/compare-c");
-    let summary: Value = serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let summary = json(&out.join("summary.json"));
     let methods = summary["cases"][0]["methods"].as_array().unwrap();
     assert_eq!(methods.len(), 4);
     let second = |place: usize| methods[place]["times"]["simulated-second"]["median"].as_f64().unwrap();

@@ -3,7 +3,8 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
-use springfit_bodies::model::{Action, Support, finite_elements, lacking_energy, nodal_forces};
+use crate::shapes::statics::support_at;
+use springfit_bodies::model::{Action, finite_elements, lacking_energy, nodal_forces};
 use springfit_bodies::solve::System;
 use springfit_element::material::{Material, MaterialMap};
 use springfit_mesh::mesh::{Mesh, Selection};
@@ -34,9 +35,7 @@ fn ring(mut mesh: Mesh, length: f64, radius: f64) -> Mesh {
 /// The displacements under a traction on one end of a body that is held at the other, and the work of the forces.
 fn solved(mesh: &Mesh, material: &Material, traction: &[f64]) -> (Vec<f64>, f64) {
     let entries = finite_elements(mesh, material.moduli());
-    let mut support = Support::free(mesh);
-    let all: Vec<usize> = (0..mesh.dimension).collect();
-    support.fix(&mesh.groups["xmin"].points, &all, mesh.dimension);
+    let support = support_at(mesh, &mesh.groups["xmin"].points);
     let end = Selection::Group("xmax".into());
     let forces = nodal_forces(mesh, &end, &Action::traction(traction), 1.0).unwrap();
     let system = System::new(&entries, &support).unwrap().placed(&mesh.points, mesh.dimension);

@@ -477,7 +477,6 @@ fn regions_have_laws_of_their_own() {
     }
     assert_close(end(&outcome), low + 2.0 * stretch(200.0, 10.0) - 3.0, 1e-6);
     assert!(outcome.law.as_ref().is_some_and(|law| law.contains("Venant") && law.contains(", ")));
-    let folder = TempDir::new().unwrap();
     assert!(refusal(&bar("hex8", [1, 1, 3], &two, EXACT)).contains("fit[0].objective"));
 }
 

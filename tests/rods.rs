@@ -1,9 +1,10 @@
 //! Rods that bend: springs on joints are the beam of Euler and Bernoulli, in any frame.
 
 use crate::shapes::Random;
+use crate::shapes::statics::support_at;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 use springfit_bodies::model::{
-    Action, BendingSprings, Body, Component, Elastic, Network, Support, bending_springs, displaced, exact_network,
+    Action, BendingSprings, Body, Component, Elastic, Network, bending_springs, displaced, exact_network,
     finite_elements, lumped_masses, nodal_forces,
 };
 use springfit_bodies::solve::{Ending, Newton, System, lowest_modes};
@@ -55,15 +56,13 @@ fn network(mesh: &Mesh, springs: BendingSprings) -> Network {
 
 /// The equations of a network whose first node is clamped.
 fn clamped(network: &Network, mesh: &Mesh) -> System {
-    let mut support = Support::free(mesh);
-    support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+    let support = support_at(mesh, &mesh.with_directors_of(&[0]));
     System::new(&network.stiffness(&mesh.points), &support).unwrap()
 }
 
 /// The displacements of the nodes under forces (N) and moments (N·m) at nodes, with these nodes held and clamped.
 fn solved(mesh: &Mesh, clamped: &[usize], loads: &[(usize, [f64; 3], [f64; 3])]) -> Vec<f64> {
-    let mut support = Support::free(mesh);
-    support.fix(&mesh.with_directors_of(clamped), &[0, 1, 2], 3);
+    let support = support_at(mesh, &mesh.with_directors_of(clamped));
     let mut load = vec![0.0; mesh.points.len()];
     for (node, force, moment) in loads {
         (0..3).for_each(|k| load[3 * node + k] += force[k]);
@@ -79,8 +78,7 @@ fn solved(mesh: &Mesh, clamped: &[usize], loads: &[(usize, [f64; 3], [f64; 3])])
 
 /// The displacements of the nodes under a force per volume, N/m³, with these nodes clamped.
 fn sagged(mesh: &Mesh, clamped: &[usize], body: [&str; 3]) -> Vec<f64> {
-    let mut support = Support::free(mesh);
-    support.fix(&mesh.with_directors_of(clamped), &[0, 1, 2], 3);
+    let support = support_at(mesh, &mesh.with_directors_of(clamped));
     let scope = Scope::of_place(3);
     let body = body.map(|text| Component::Varying(scope.expression(text).unwrap())).to_vec();
     let load = nodal_forces(mesh, &Selection::Everything, &Action::Body(body), AREA).unwrap();
@@ -290,8 +288,7 @@ fn a_cantilever_bends_as_the_elastica() {
             let mesh = line(&(0..=n).map(|i| [i as f64 / n as f64, 0.0, 0.0]).collect::<Vec<_>>());
             let laws = (Energy::load("stable-neo-hookean", material()).unwrap(), material().state()).into();
             let body = Body::new(&mesh, &laws);
-            let mut support = Support::free(&mesh);
-            support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+            let support = support_at(&mesh, &mesh.with_directors_of(&[0]));
             let mut force = vec![0.0; mesh.points.len()];
             force[3 * n + 2] = 10.0 * stiffness()[1];
             let newton = Newton { steps: 40, ..Newton::default() };
@@ -308,8 +305,7 @@ fn a_cantilever_bends_as_the_elastica() {
 fn rods_vibrate_as_beams() {
     let (n, length, density) = (32, 1.0, 1e3);
     let mesh = line(&(0..=n).map(|i| [length * i as f64 / n as f64, 0.0, 0.0]).collect::<Vec<_>>());
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.with_directors_of(&[0]), &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.with_directors_of(&[0]));
     let masses = lumped_masses(&mesh, density, AREA, Default::default());
     let total: f64 = masses.iter().sum();
     assert!((total / (density * AREA * length) - 1.0).abs() < 1e-12, "{total}");

@@ -3,10 +3,11 @@
 use crate::kit::{outcome, outcome_in};
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 
 use crate::shapes::{Random, distorted, geometry};
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Action, Body, Elastic, Network, Support, nodal_forces};
+use springfit_bodies::model::{Action, Body, Elastic, Network, nodal_forces};
 use springfit_bodies::solve::{Ending, Newton};
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Plane, State};
@@ -271,8 +272,7 @@ fn sampled_springs_follow_large_deformations() {
         let block = &mesh.blocks[0];
         let material = Material::new(1.0, 0.3, State::Solid).unwrap();
         let energy = Energy::load("neo-hookean", material).unwrap();
-        let mut support = Support::free(&mesh);
-        support.fix(&Selection::Group("zmin".into()).points(&mesh).unwrap(), &[0, 1, 2], 3);
+        let support = support_at(&mesh, &Selection::Group("zmin".into()).points(&mesh).unwrap());
         let newton = Newton { steps: 2, ..Newton::default() };
         let solve = |model: &dyn Elastic, load: &[f64; 3]| {
             let action = Action::traction(load);

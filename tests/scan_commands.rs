@@ -1,7 +1,7 @@
 //! Scans on the command line and in scenes: what is refused, what is told, and the number of points.
 
 use crate::fills::brick;
-use crate::kit::{said, springfit};
+use crate::kit::{said, springfit, told};
 use crate::scans::{Triangle, blob, box_with_dent, ring, source, sphere, unwelded};
 use crate::shapes::Random;
 use springfit_element::element::{Element, SHIPPED};
@@ -167,7 +167,7 @@ fn a_surface_that_is_not_welded_is_told() {
     let said = |words: &[&str]| {
         let output = springfit(folder.path(), words);
         assert!(output.status.success(), "{}", said(&output));
-        String::from_utf8_lossy(&output.stdout).into_owned() + &said(&output)
+        told(&output)
     };
     let fit =
         |name: &str| said(&["fit", name, "--young", "1", "--poisson", "0.3", "--thickness", "1mm", "-o", "x.json"]);

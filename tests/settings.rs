@@ -1,13 +1,12 @@
 //! `--set`: values of a scene's keys that are given on the command line.
 
-use crate::kit::{said, springfit};
+use crate::kit::{holding, said, springfit};
 use springfit_bodies::model::Network;
 use springfit_foundation::error::{Error, Result};
 use springfit_mesh::mesh::Mesh;
 use springfit_report::report::network_csv;
 use springfit_studies::study::{Scene, Setting, run};
 use std::path::Path;
-use tempfile::TempDir;
 
 const SCENE: &str = r#"[mesh]
 box = { element = "quad4", size = [1, 1], cells = [2, 2] }
@@ -137,8 +136,7 @@ fn a_fault_beside_a_setting_keeps_its_line() {
 /// Each command that reads a scene takes the option; elements have no keys to set.
 #[test]
 fn every_command_that_reads_a_scene_takes_settings() {
-    let folder = TempDir::new().unwrap();
-    std::fs::write(folder.path().join("s.toml"), SCENE).unwrap();
+    let folder = holding("s.toml", SCENE);
     for command in [
         &["run", "s.toml"][..],
         &["run", "s.toml", "--explain"],

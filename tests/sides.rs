@@ -4,7 +4,6 @@ use crate::shapes::Random;
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{BoxMesh, CellIndex, Mesh, MeshSource, Selection, SideIndex};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The sides of each set of points, in the order of the cells.
@@ -55,7 +54,7 @@ fn sides_of_one_cell_are_the_boundary() {
 
 #[test]
 fn sides_of_groups_are_the_first_of_their_points() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes");
+    let folder = crate::kit::place("scenes/meshes");
     let mut tested = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

@@ -1,5 +1,6 @@
 //! Newton's method under loads of any size: the rounding of the internal forces is no end of it.
 
+use crate::shapes::statics::support_at;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
 use springfit_bodies::solve::{Ending, Equilibrium, Newton, System};
 use springfit_element::element::Element;
@@ -18,9 +19,7 @@ fn block(name: &str, origin: f64) -> Mesh {
 /// Held at one side, pulled at the other and along it by 1 Pa.
 fn pulled(mesh: &Mesh) -> (Support, Vec<f64>) {
     let d = mesh.dimension;
-    let mut support = Support::free(mesh);
-    let all: Vec<usize> = (0..d).collect();
-    support.fix(&Selection::Group("xmin".into()).points(mesh).unwrap(), &all, d);
+    let support = support_at(mesh, &Selection::Group("xmin".into()).points(mesh).unwrap());
     let mut traction = vec![0.3; d];
     traction[0] = 1.0;
     let forces = nodal_forces(mesh, &Selection::Group("xmax".into()), &Action::traction(&traction), 1.0).unwrap();

@@ -1,11 +1,11 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
+use crate::kit::place;
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
 use springfit_studies::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
-use std::path::Path;
 use std::sync::Arc;
 
 fn fill(
@@ -83,7 +83,7 @@ fn organ() -> MeshSource {
 }
 
 fn egg() -> MeshSource {
-    MeshSource::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl")).unwrap()
+    MeshSource::read(&place("tests/meshes/egg.stl")).unwrap()
 }
 
 /// Points, edges and sides of the boundary; each edge has two sides.
@@ -222,8 +222,7 @@ fn what_a_smooth_boundary_cannot_have_is_refused() {
 fn a_scene_fills_a_surface_smoothly() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
-    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/egg.stl"), folder.path().join("egg.stl"))
-        .unwrap();
+    std::fs::copy(place("tests/meshes/egg.stl"), folder.path().join("egg.stl")).unwrap();
     let text = |boundary: &str| {
         format!(
             "mesh = {{ fill = {{ surface = \"egg.stl\", cell = 0.5, element = \"tet4\", boundary = \"{boundary}\" }} }}\n\

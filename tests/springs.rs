@@ -1,5 +1,6 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
+use crate::kit::place;
 use crate::shapes::{Random, distorted, elements, geometry, materials, text_with_angles, with_angles};
 use springfit_element::element::{Cell, Element, SHIPPED, SpringKind};
 use springfit_element::material::{Material, Plane};
@@ -7,11 +8,10 @@ use springfit_element::springs::{Law, Measure, Springs};
 use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Search, Solver, Weight, element_errors, fit_cells,
 };
-use std::path::Path;
 use std::sync::Arc;
 
 fn example(name: &str) -> Element {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/elements/{name}.toml"));
+    let path = place(format!("examples/elements/{name}.toml"));
     Element::load(path.to_str().unwrap()).unwrap()
 }
 
@@ -283,7 +283,7 @@ fn selective_integration_does_not_lock() {
 /// A measure that nothing moves, or that has a kink where the body rests, is an error with the cell's name, not a number.
 #[test]
 fn measures_without_a_gradient_are_told() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/elements/tri3_coupled.toml");
+    let path = place("examples/elements/tri3_coupled.toml");
     let text = std::fs::read_to_string(path).unwrap();
     let formula = "abs((x1 - x0)*(y2 - y0) - (x2 - x0)*(y1 - y0))/sqrt((x1 - x0)^2 + (y1 - y0)^2)";
     assert!(text.contains(formula));

@@ -1,6 +1,6 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
-use crate::kit::{said, springfit};
+use crate::kit::{holding, said, springfit};
 use crate::messages::reads;
 use crate::shapes::{elements, with_angles};
 use springfit_element::element::Element;
@@ -259,8 +259,7 @@ fn misfits_are_counted() {
 
 #[test]
 fn a_scene_names_its_gate() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("m.msh"), mesh(&[1e-7])).unwrap();
+    let folder = holding("m.msh", mesh(&[1e-7]));
     let scene = |quality: &str| {
         let text = format!(
             "[mesh]\nfile = \"m.msh\"\n{quality}\n[material]\nyoung = 10e3\npoisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n"

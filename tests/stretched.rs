@@ -1,6 +1,7 @@
 //! Whole-object fits at large deformation: derivatives in moduli, loads that stretch a body so far, and coarse networks for finer bodies.
 
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 use crate::whole::compare_with_differences;
 use nalgebra::{DMatrix, DVector, Matrix3};
 use rand::rngs::StdRng;
@@ -33,8 +34,7 @@ impl Held {
         let state = if mesh.dimension == 3 { State::Solid } else { State::PlaneStrain { thickness: 1.0 } };
         let material = Material::new(1e4, poisson, state).unwrap();
         let laws = EnergyMap::from((Energy::load(law, material).unwrap(), state));
-        let mut support = Support::free(&mesh);
-        support.fix(&mesh.groups["xmin"].points, &(0..mesh.dimension).collect::<Vec<_>>(), mesh.dimension);
+        let support = support_at(&mesh, &mesh.groups["xmin"].points);
         Held { mesh, material, laws, support }
     }
 

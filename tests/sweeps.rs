@@ -1,12 +1,12 @@
 //! `[sweep]` and `springfit sweep`: which studies a design has, and that their table is the same however it was made.
 
-use crate::kit::outcome;
+use crate::kit::{self, holding, outcome};
 use serde_json::{Value, json};
 use springfit_studies::study::{InMemory, Scene, Sweep};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 use tempfile::TempDir;
 
 const SCENE: &str = r#"[mesh]
@@ -41,13 +41,11 @@ fn values(table: &str) -> Value {
 }
 
 fn springfit(folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
-    command.args(arguments.split_whitespace()).current_dir(folder).output().unwrap()
+    kit::springfit(folder, &arguments.split_whitespace().collect::<Vec<_>>())
 }
 
 fn folder_with(table: &str) -> TempDir {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("s.toml"), format!("{SCENE}{table}")).unwrap();
+    let folder = holding("s.toml", format!("{SCENE}{table}"));
     folder
 }
 

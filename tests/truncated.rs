@@ -1,5 +1,6 @@
 //! Networks in engines that end their sweeps early, against loops that make the steps one after the other.
 
+use crate::kit::holding;
 use crate::shapes::Random;
 use crate::shapes::bodies::{grid, mapped};
 use springfit_bodies::engine::{
@@ -365,8 +366,7 @@ fn scene(of_fit: &str, material: &str) -> String {
 }
 
 fn run(text: &str, words: &[&str]) -> (Option<i32>, String, String) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    let folder = holding("s.toml", text);
     let output = Command::new(env!("CARGO_BIN_EXE_springfit"))
         .args(["run", "s.toml"])
         .args(words)

@@ -1,10 +1,9 @@
 //! Tables that commands typeset, in the languages of papers and of pages.
 
-use crate::kit::{said, springfit};
-use std::path::Path;
+use crate::kit::{place, said, springfit};
 
 fn root(path: &str) -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path).display().to_string()
+    place(path).display().to_string()
 }
 
 /// Cells of a line, without separators that belong to a cell.

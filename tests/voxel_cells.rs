@@ -1,9 +1,9 @@
 //! Voxels that are divided into tetrahedra.
 
+use crate::kit::place;
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{CellIndex, Mesh, MeshSource, Selection, VoxelMesh};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 use std::sync::Arc;
 use tempfile::TempDir;
@@ -13,7 +13,7 @@ fn element(name: &str) -> Arc<Element> {
 }
 
 fn labels(file: &str) -> MeshSource {
-    MeshSource::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(file)).unwrap()
+    MeshSource::read(&place("tests/meshes").join(file)).unwrap()
 }
 
 /// `(b − a)·((c − a) × (d − a))/6`, without its sign.
@@ -85,8 +85,7 @@ fn hexahedra_that_are_no_voxels_are_refused() {
 #[test]
 fn the_program_divides_voxels_and_writes_the_key_into_the_scene() {
     let folder = TempDir::new().unwrap();
-    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes/labels.npy"), folder.path().join("labels.npy"))
-        .unwrap();
+    fs::copy(place("tests/meshes/labels.npy"), folder.path().join("labels.npy")).unwrap();
     let run = |words: &[&str]| {
         let output =
             Command::new(env!("CARGO_BIN_EXE_springfit")).args(words).current_dir(folder.path()).output().unwrap();

@@ -1,12 +1,14 @@
 //! Voxels, lattices of points and polygons: files that NumPy and VTK have written (`meshes/grids.py`), arrays of any shape, and faults.
 
+use crate::damage::damaged;
+use crate::kit::place;
+use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 fn read(file: &str) -> MeshSource {
-    MeshSource::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(file)).unwrap()
+    MeshSource::read(&place("tests/meshes").join(file)).unwrap()
 }
 
 fn mesh(source: &MeshSource) -> Mesh {
@@ -226,31 +228,15 @@ proptest! {
 /// Cut, changed and lengthened: a fault is one line, and what is accepted is sound.
 #[test]
 fn no_damaged_file_of_any_format_makes_a_reader_panic() {
-    let mut state = 11_u64;
-    let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/formats");
+    let mut random = Random(11);
+    let folder = place("fuzz/corpus/formats");
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     files.sort();
     for path in files {
         let whole = std::fs::read(&path).unwrap();
         for round in 0..60 {
-            let mut bytes = whole.clone();
-            for _ in 0..1 + round % 3 {
-                let at = random(bytes.len());
-                match random(4) {
-                    0 => bytes[at] = b"0123456789-.e <>\"\n\xff\0"[random(20)],
-                    1 => bytes.truncate(at.max(1)),
-                    2 => drop(bytes.splice(at..at, *b"99")),
-                    _ => drop(bytes.drain(at..(at + random(9)).min(bytes.len()))),
-                }
-                if bytes.is_empty() {
-                    break;
-                }
-            }
+            let bytes = damaged(&whole, round, &mut random);
             let found = std::panic::catch_unwind(|| crate::corpora::formats::check(&bytes));
             assert!(found.is_ok(), "{}: {bytes:?}", path.display());
         }

@@ -1,6 +1,8 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
+use crate::kit::place;
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit_bodies::model::{Network, Support, exact_network, finite_elements, masses};
@@ -16,12 +18,11 @@ use springfit_identify::whole::{
 use springfit_mesh::mesh::{CellIndex, Group, Mesh, vtk};
 use springfit_report::report;
 use springfit_studies::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
-use std::path::Path;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;
 
 fn load(name: &str) -> Scene {
-    Scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"))).unwrap()
+    Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
 }
 
 /// A scene of that text in a folder of its own.
@@ -44,9 +45,7 @@ impl Body {
     fn new(scene: &Scene, held: &str) -> Body {
         let mesh = scene.build_mesh().unwrap();
         let material = scene.material(mesh.cell_dimension()).unwrap();
-        let mut support = Support::free(&mesh);
-        let directions: Vec<usize> = (0..mesh.dimension).collect();
-        support.fix(&mesh.groups[held].points, &directions, mesh.dimension);
+        let support = support_at(&mesh, &mesh.groups[held].points);
         Body { mesh, material, support }
     }
 
@@ -322,8 +321,7 @@ fn loads_of_rounding_errors_are_none() {
 #[test]
 fn varied_loads_of_two_seeds_have_none_in_common() {
     let mesh = grid("tet4", &[2.0, 1.0, 1.0], &[4, 2, 2]);
-    let mut support = Support::free(&mesh);
-    support.fix(&mesh.groups["xmin"].points, &[0, 1, 2], 3);
+    let support = support_at(&mesh, &mesh.groups["xmin"].points);
     let loads = |pressure, seed| varied_loads(&mesh, &support, &1.0.into(), pressure, (16, seed));
     let (fitted, own) = (loads(Pressure::Uniform, 1), loads(Pressure::Varying, 1));
     assert_eq!(fitted[1..], own[1..]);

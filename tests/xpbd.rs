@@ -1,6 +1,6 @@
 //! The loops that are exported for a user's own engine: they come to rest where the theory of early ended sweeps says, and take no other file.
 
-use crate::kit::outcome;
+use crate::kit::{json, outcome};
 use springfit::export::{TARGETS, target_named, write_files};
 use springfit_bodies::engine::{Engine, Order, Setting, Sweep, Truncated, TruncatedModel};
 use springfit_bodies::model::Support;
@@ -211,8 +211,7 @@ fn constraints_are_in_the_order_of_a_sweep() {
     let outcome = outcome(SCENE);
     for setting in settings() {
         let folder = written(&record(&outcome, Some(setting)));
-        let text = fs::read_to_string(folder.path().join("network.json")).unwrap();
-        let body: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let body = json(&folder.path().join("network.json"));
         let all = body["constraints"].as_array().unwrap();
         assert_eq!(all.len(), outcome.fits[0].network.len());
         let mut of_colour = std::collections::BTreeSet::new();

@@ -14,20 +14,20 @@ fn shape_functions() {
     let shape = "\"xi\" }";
     let mut refusals = Refusals::default();
     refusals.expect_of_elements(&[
-        (shape, "\"2*xi\" }", "own.toml: nodes[1].shape", "is 2 at nodes[1], expected 1"),
-        (shape, "\"xi - eta\" }", "own.toml: nodes[1].shape", "is -1 at nodes[2], expected 0"),
-        (shape, "\"sin(xi)\" }", "own.toml: nodes[1].shape", "is 0.8414709848078965 at nodes[1], expected 1"),
-        (shape, "\"xi/(xi*eta)\" }", "own.toml: nodes[1].shape", "is NaN at nodes[0], expected 0"),
-        (shape, "\"xi^2\" }", "own.toml: nodes", "sum to 1, found 1 -2.500e-1 at [0.500, 0.335, 0.154]"),
-        ("at = [0, 0, 1]", "at = [0, 1, 0]", "own.toml: nodes[2].shape", "is 1 at nodes[3], expected 0"),
-        ("at = [0, 0, 1]", "at = [0, 1]", "own.toml: nodes[3].at", "3 coordinates, found 2"),
-        ("at = [0, 0, 1]", "at = [0, 0, nan]", "own.toml:11: nodes[3].at[2]", "found nan"),
-        (COORDINATES, "[\"xi\", \"eta\"]", "own.toml: coordinates", "found 2"),
-        (COORDINATES, "[\"xi\", \"eta\", \"xi\"]", "own.toml: coordinates[2]", "found \"xi\""),
-        (COORDINATES, "[\"xi\", \"eta\", \"1\"]", "own.toml: coordinates[2]", "found \"1\""),
-        ("name        = \"tet4\"", "name = \"\"", "own.toml:2: name", "found \"\""),
-        ("group = \"edge\"", "group = \"a,b\"", "own.toml:19: springs[0].group", "found \"a,b\""),
-        ("\"tetrahedron\" ", "\"prism\" ", "own.toml:4: cell", "\"prism\""),
+        (shape, "\"2*xi\" }", "nodes[1].shape", "is 2 at nodes[1], expected 1"),
+        (shape, "\"xi - eta\" }", "nodes[1].shape", "is -1 at nodes[2], expected 0"),
+        (shape, "\"sin(xi)\" }", "nodes[1].shape", "is 0.8414709848078965 at nodes[1], expected 1"),
+        (shape, "\"xi/(xi*eta)\" }", "nodes[1].shape", "is NaN at nodes[0], expected 0"),
+        (shape, "\"xi^2\" }", "nodes", "sum to 1, found 1 -2.500e-1 at [0.500, 0.335, 0.154]"),
+        ("at = [0, 0, 1]", "at = [0, 1, 0]", "nodes[2].shape", "is 1 at nodes[3], expected 0"),
+        ("at = [0, 0, 1]", "at = [0, 1]", "nodes[3].at", "3 coordinates, found 2"),
+        ("at = [0, 0, 1]", "at = [0, 0, nan]", "11: nodes[3].at[2]", "found nan"),
+        (COORDINATES, "[\"xi\", \"eta\"]", "coordinates", "found 2"),
+        (COORDINATES, "[\"xi\", \"eta\", \"xi\"]", "coordinates[2]", "found \"xi\""),
+        (COORDINATES, "[\"xi\", \"eta\", \"1\"]", "coordinates[2]", "found \"1\""),
+        ("name        = \"tet4\"", "name = \"\"", "2: name", "found \"\""),
+        ("group = \"edge\"", "group = \"a,b\"", "19: springs[0].group", "found \"a,b\""),
+        ("\"tetrahedron\" ", "\"prism\" ", "4: cell", "\"prism\""),
     ]);
     // The sum is still one, but ξ is not reproduced.
     let first = "\"1 - xi - eta - zeta\"";
@@ -47,16 +47,16 @@ fn quadrature() {
     let lopsided = "rule = \"explicit\"\npoints = [[0.2, 0.25, 0.25]]\nweights = [\"1/6\"]";
     let gauss = "rule = \"gauss-legendre\"\npoints = 2";
     refuses_elements(&[
-        (RULE, &light, "own.toml: quadrature.weights", "content 0.16666666666666666, found 0.2"),
-        (RULE, &two, "own.toml: quadrature.weights", "1 points, found 2"),
-        (RULE, flat, "own.toml: quadrature.points[0]", "3 coordinates, found 2"),
-        (RULE, outside, "own.toml: quadrature.points[0]", "a point in the cell, found [0.5, 0.5, 0.25]"),
-        (RULE, lopsided, "own.toml: quadrature.points", "integrals of the coordinates are"),
-        (RULE, "rule = \"explicit\"\npoints = []\nweights = []", "own.toml: quadrature.points", "found none"),
-        ("degree = 1", "degree = 0", "own.toml: quadrature.degree", "1 to 32, found 0"),
-        ("degree = 1", "degree = 33", "own.toml: quadrature.degree", "1 to 32, found 33"),
-        (RULE, gauss, "own.toml: quadrature.rule", "found \"gauss-legendre\""),
-        ("\"simplex\"", "\"simpson\"", "own.toml:15: quadrature.rule", "\"simpson\""),
+        (RULE, &light, "quadrature.weights", "content 0.16666666666666666, found 0.2"),
+        (RULE, &two, "quadrature.weights", "1 points, found 2"),
+        (RULE, flat, "quadrature.points[0]", "3 coordinates, found 2"),
+        (RULE, outside, "quadrature.points[0]", "a point in the cell, found [0.5, 0.5, 0.25]"),
+        (RULE, lopsided, "quadrature.points", "integrals of the coordinates are"),
+        (RULE, "rule = \"explicit\"\npoints = []\nweights = []", "quadrature.points", "found none"),
+        ("degree = 1", "degree = 0", "quadrature.degree", "1 to 32, found 0"),
+        ("degree = 1", "degree = 33", "quadrature.degree", "1 to 32, found 33"),
+        (RULE, gauss, "quadrature.rule", "found \"gauss-legendre\""),
+        ("\"simplex\"", "\"simpson\"", "15: quadrature.rule", "\"simpson\""),
     ]);
 }
 
@@ -67,33 +67,33 @@ fn springs() {
     let crossed = "kind = \"coupling\"\nnodes = [[0, 1, 1, 0]]";
     let turned = "kind = \"angle\"\nnodes = [[0, 1, 2], [2, 1, 0]]";
     refuses_elements(&[
-        (LAST_PAIR, "[2, 4]]", "own.toml: springs[0].nodes[5]", "below 4, found [2, 4]"),
-        (LAST_PAIR, "[2, 2]]", "own.toml: springs[0].nodes[5]", "found [2, 2]"),
-        (LAST_PAIR, "[1, 0]]", "own.toml: springs[0].nodes[5]", "the pair [1, 0]"),
-        (LAST_PAIR, "[2]]", "own.toml: springs[0].nodes[5]", "two nodes, found 1"),
-        (LAST_PAIR, "[2, 3, 1]]", "own.toml: springs[0].nodes[5]", "two nodes, found 3"),
-        (pairs, "", "own.toml: springs[0].nodes", "found none"),
-        ("\"bulk\"", "\"edge\"", "own.toml: springs[1].group", "found \"edge\" again"),
-        ("\"volume\"", "\"area\"", "own.toml: springs[1].kind", "found \"area\""),
-        ("\"volume\"", "\"mass\"", "own.toml:25: springs[1].kind", "\"mass\""),
-        ("\"volume\"", "\"angle\"", "own.toml: springs[1].nodes", "found none"),
-        (LENGTH, "kind = \"length\"\nmeasure = \"x0\"", "own.toml: springs[0].measure", "found with \"length\""),
-        (LENGTH, "kind = \"measure\"", "own.toml: springs[0].measure", "found none"),
-        (LENGTH, measured, "own.toml: springs[0].measure", "found the name \"x2\" in \"x0 - x2\""),
-        (LENGTH, "kind = \"angle\"", "own.toml: springs[0].nodes[0]", "three nodes, found 2"),
-        (LENGTH, "kind = \"area\"", "own.toml: springs[0].nodes[0]", "three to eight nodes, found 2"),
-        (LENGTH, "kind = \"length\"\nclass = \"all\"", "own.toml:21: springs[0].class", "\"all\""),
-        (VOLUME, crossed, "own.toml: springs[1].nodes[0]", "found [0, 1, 1, 0]"),
-        (VOLUME, turned, "own.toml: springs[1].nodes[1]", "the list [2, 1, 0]"),
-        (VOLUME, "kind = \"length\"\nnodes = \"complete\"", "own.toml: springs[1].nodes", "found none"),
-        (VOLUME, "kind = \"area\"\nnodes = \"complete\"", "own.toml: springs[1].nodes", "found \"complete\""),
+        (LAST_PAIR, "[2, 4]]", "springs[0].nodes[5]", "below 4, found [2, 4]"),
+        (LAST_PAIR, "[2, 2]]", "springs[0].nodes[5]", "found [2, 2]"),
+        (LAST_PAIR, "[1, 0]]", "springs[0].nodes[5]", "the pair [1, 0]"),
+        (LAST_PAIR, "[2]]", "springs[0].nodes[5]", "two nodes, found 1"),
+        (LAST_PAIR, "[2, 3, 1]]", "springs[0].nodes[5]", "two nodes, found 3"),
+        (pairs, "", "springs[0].nodes", "found none"),
+        ("\"bulk\"", "\"edge\"", "springs[1].group", "found \"edge\" again"),
+        ("\"volume\"", "\"area\"", "springs[1].kind", "found \"area\""),
+        ("\"volume\"", "\"mass\"", "25: springs[1].kind", "\"mass\""),
+        ("\"volume\"", "\"angle\"", "springs[1].nodes", "found none"),
+        (LENGTH, "kind = \"length\"\nmeasure = \"x0\"", "springs[0].measure", "found with \"length\""),
+        (LENGTH, "kind = \"measure\"", "springs[0].measure", "found none"),
+        (LENGTH, measured, "springs[0].measure", "found the name \"x2\" in \"x0 - x2\""),
+        (LENGTH, "kind = \"angle\"", "springs[0].nodes[0]", "three nodes, found 2"),
+        (LENGTH, "kind = \"area\"", "springs[0].nodes[0]", "three to eight nodes, found 2"),
+        (LENGTH, "kind = \"length\"\nclass = \"all\"", "21: springs[0].class", "\"all\""),
+        (VOLUME, crossed, "springs[1].nodes[0]", "found [0, 1, 1, 0]"),
+        (VOLUME, turned, "springs[1].nodes[1]", "the list [2, 1, 0]"),
+        (VOLUME, "kind = \"length\"\nnodes = \"complete\"", "springs[1].nodes", "found none"),
+        (VOLUME, "kind = \"area\"\nnodes = \"complete\"", "springs[1].nodes", "found \"complete\""),
     ]);
 }
 
 #[test]
 fn formats() {
     let order = "{ type = 4, order = [0, 1, 2, 4] }";
-    refuses_elements(&[("{ type = 4 }", order, "own.toml: formats.gmsh.order", "0 to 3 once, found [0, 1, 2, 4]")]);
+    refuses_elements(&[("{ type = 4 }", order, "formats.gmsh.order", "0 to 3 once, found [0, 1, 2, 4]")]);
 }
 
 #[test]

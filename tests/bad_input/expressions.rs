@@ -46,11 +46,11 @@ fn expressions() {
     }
     let nodes = "nodes = [\n";
     refusals.expect_of_elements(&[
-        (SHAPE, "\"xi < 1\" }", "own.toml: nodes[1].shape", "found the condition \"xi < 1\""),
-        (SHAPE, "\"true\" }", "own.toml: nodes[1].shape", "found the name \"true\""),
-        (nodes, "let = { xi = \"1\" }\nnodes = [\n", "own.toml: let.xi", "found \"xi\""),
-        (nodes, "let = { a = \"a\" }\nnodes = [\n", "own.toml: let.a", "found the name \"a\" in \"a\""),
-        (nodes, "let = { a = 1 }\nnodes = [\n", "own.toml: let.a", "found integer"),
+        (SHAPE, "\"xi < 1\" }", "nodes[1].shape", "found the condition \"xi < 1\""),
+        (SHAPE, "\"true\" }", "nodes[1].shape", "found the name \"true\""),
+        (nodes, "let = { xi = \"1\" }\nnodes = [\n", "let.xi", "found \"xi\""),
+        (nodes, "let = { a = \"a\" }\nnodes = [\n", "let.a", "found the name \"a\" in \"a\""),
+        (nodes, "let = { a = 1 }\nnodes = [\n", "let.a", "found integer"),
     ]);
     refusals.finish();
 }
@@ -74,8 +74,8 @@ fn numbers_without_bound() {
     let squares = format!("let = {{ a0 = \"1234567890\", {} }}\nnodes = [\n", squares.join(", "));
     let power = "\"(((2^256)^256)^256)^256*xi\" }";
     refuses_elements(&[
-        (SHAPE, power, "own.toml: nodes[1].shape", "at most 1000 digits"),
-        ("nodes = [\n", &squares, "own.toml: let.a7", "at most 1000 digits in \"a6*a6\""),
+        (SHAPE, power, "nodes[1].shape", "at most 1000 digits"),
+        ("nodes = [\n", &squares, "let.a7", "at most 1000 digits in \"a6*a6\""),
     ]);
 }
 
@@ -85,8 +85,8 @@ fn expressions_without_bound() {
     let sums = format!("let = {{ a0 = \"xi\", {} }}\nnodes = [\n", sums.join(", "));
     let ramps = format!("\"{}xi{}\" }}", "ramp(".repeat(40), ")".repeat(40));
     refuses_elements(&[
-        ("nodes = [\n", &sums, "own.toml: let.a2", "at most 2000 terms and factors"),
-        (SHAPE, &ramps, "own.toml: nodes[1].shape", "at most 2000 terms and factors"),
+        ("nodes = [\n", &sums, "let.a2", "at most 2000 terms and factors"),
+        (SHAPE, &ramps, "nodes[1].shape", "at most 2000 terms and factors"),
     ]);
 }
 

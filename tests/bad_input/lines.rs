@@ -1,16 +1,16 @@
 //! The line of a fault: every value of a scene is changed to others, and every error about it has the line of its key or of a table
 //! around it.
 
+use crate::kit::place;
 use springfit_foundation::error::ErrorKind;
 use springfit_studies::study::{Forecast, Scene};
-use std::path::Path;
 
 /// Values of other types, and one that is out of every range.
 const VALUES: [&str; 5] = ["\"zzz\"", "-1e40", "[]", "true", "{ a = 1 }"];
 
 #[test]
 fn every_error_of_a_scene_has_a_line() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let folder = place("scenes");
     let (mut errors, mut wrong) = (0, Vec::new());
     for name in ["square_quad", "cube_hex_large", "cube_hex_motion", "cube_hex_whole", "specimen_tri", "cantilever"] {
         let path = match name {

@@ -3,7 +3,6 @@
 use super::inputs::{CUBE_NODES, FROM_FILES, TETRAHEDRON, UNIT_NODES, edited, msh, unit_mesh};
 use super::refusals::Refusals;
 use std::fs;
-use std::path::Path;
 
 const WEDGE_NODES: [&str; 6] = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "1 0 1", "0 1 1"];
 
@@ -91,7 +90,7 @@ fn truncated_meshes() {
         ("bar_42_ascii.vtk", "", "ends inside CELLS: expected 16 cells, found 7"),
         ("bar_binary.vtk", "", "ends inside CELLS: expected 66 numbers, found 19"),
     ] {
-        let whole = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(file)).unwrap();
+        let whole = fs::read(crate::kit::place("tests/meshes").join(file)).unwrap();
         let (scene, half) = (scene_of(file), &whole[..whole.len() / 2]);
         let files: [(&str, &[u8]); 2] = [("scene.toml", scene.as_bytes()), (file, half)];
         refusals.expect(&files, &["run", "scene.toml"], &format!("{file}{place}"), words);
@@ -109,8 +108,7 @@ fn bodies_of_a_hundred_kilometres_whose_unit_is_missing() {
     assert_ne!(scene, filled);
     let words = "expected the length of a mesh unit, such as mm, for a body longer than 100 km, found 1 m, and a body of 120 km";
     for scene in [scene, filled] {
-        let files: [(&str, &[u8]); 2] = [("scene.toml", scene.as_bytes()), ("mesh.obj", brick.as_bytes())];
-        refusals.expect(&files, &["run", "scene.toml"], "scene.toml: mesh.scale", words);
+        refusals.expect_with(&scene, &[("mesh.obj", &brick)], "scene.toml: mesh.scale", words);
     }
     let files: [(&str, &[u8]); 1] = [("mesh.obj", brick.as_bytes())];
     refusals.expect(&files, &["groups", "mesh.obj"], "mesh.obj: --scale", words);
@@ -128,22 +126,16 @@ fn contents_of_another_kind() {
         ("mesh.vtu", "", "found none"),
         ("mesh.vtu", "<svg/>\n", "found <svg>"),
     ] {
-        let scene = scene_of(name);
-        let files: [(&str, &[u8]); 2] = [("scene.toml", scene.as_bytes()), (name, content.as_bytes())];
         let place = match content {
             "" if name == "mesh.vtu" => "mesh.vtu: VTKFile",
             "" => name,
             _ => "mesh.vtu:1: VTKFile",
         };
-        refusals.expect(&files, &["run", "scene.toml"], place, words);
+        refusals.expect_with(&scene_of(name), &[(name, content)], place, words);
     }
     let scene = edited(FROM_FILES, "mesh.msh", "mesh.vtk");
-    refusals.expect(
-        &[("scene.toml", scene.as_bytes()), ("own.toml", TETRAHEDRON.as_bytes()), ("mesh.vtk", b"# vtk Data")],
-        &["run", "scene.toml"],
-        "mesh.vtk:1",
-        "found \"# vtk Data\"",
-    );
+    let others = [("own.toml", TETRAHEDRON), ("mesh.vtk", "# vtk Data")];
+    refusals.expect_with(&scene, &others, "mesh.vtk:1", "found \"# vtk Data\"");
     refusals.finish();
 }
 

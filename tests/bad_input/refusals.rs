@@ -13,7 +13,7 @@ use tempfile::TempDir;
 /// Far beyond what a refusal takes.
 const LONGEST: Duration = Duration::from_secs(20);
 
-/// A text of a scene or an element and what it is changed to; the place that is named; words of the problem, or none.
+/// A text of a scene or an element and what it is changed to; the place in its file that is named; words of the problem, or none.
 pub type Edit<'a> = (&'a str, &'a str, &'a str, &'a str);
 
 /// What a run left behind.
@@ -108,15 +108,21 @@ impl Refusals {
         }
     }
 
+    /// The run of a scene beside other files.
+    pub fn expect_with(&mut self, scene: &str, others: &[(&str, &str)], place: &str, words: &str) {
+        let others = others.iter().map(|(name, text)| (*name, text.as_bytes()));
+        let files: Vec<(&str, &[u8])> = [("scene.toml", scene.as_bytes())].into_iter().chain(others).collect();
+        self.expect(&files, &["run", "scene.toml"], place, words);
+    }
+
+    /// The run of a scene alone, whose `place` is named.
     pub fn expect_of_scene(&mut self, scene: &str, place: &str, words: &str) {
-        self.expect(&[("scene.toml", scene.as_bytes())], &["run", "scene.toml"], place, words);
+        self.expect_with(scene, &[], &place_in("scene.toml", place), words);
     }
 
     /// The scene `FROM_FILES` with this element and this mesh.
     pub fn expect_of_files(&mut self, element: &str, mesh: &str, place: &str, words: &str) {
-        let files: [(&str, &[u8]); 3] =
-            [("scene.toml", FROM_FILES.as_bytes()), ("own.toml", element.as_bytes()), ("mesh.msh", mesh.as_bytes())];
-        self.expect(&files, &["run", "scene.toml"], place, words);
+        self.expect_with(FROM_FILES, &[("own.toml", element), ("mesh.msh", mesh)], place, words);
     }
 
     pub fn expect_of_edits(&mut self, scene: &str, edits: &[Edit]) {
@@ -127,7 +133,7 @@ impl Refusals {
 
     pub fn expect_of_elements(&mut self, edits: &[Edit]) {
         for (from, to, place, words) in edits {
-            self.expect_of_files(&edited(TETRAHEDRON, from, to), &unit_mesh(), place, words);
+            self.expect_of_files(&edited(TETRAHEDRON, from, to), &unit_mesh(), &place_in("own.toml", place), words);
         }
     }
 
@@ -136,9 +142,26 @@ impl Refusals {
     }
 }
 
+/// A place of a file: its key, its line, or both.
+fn place_in(file: &str, place: &str) -> String {
+    let blank = if place.starts_with(|c: char| c.is_ascii_digit()) { "" } else { " " };
+    format!("{file}:{blank}{place}")
+}
+
 pub fn refuses_edits(scene: &str, edits: &[Edit]) {
     let mut refusals = Refusals::default();
     refusals.expect_of_edits(scene, edits);
+    refusals.finish();
+}
+
+/// Texts that one part of a scene is changed to, each with the key that is named and words of the problem. `…` stands for the text and for the key in
+/// `part`'s change and place.
+pub fn refuses_values(scene: &str, part: &str, change: &str, place: &str, values: &[(&str, &str, &str)]) {
+    let mut refusals = Refusals::default();
+    for (value, key, words) in values {
+        let scene = edited(scene, part, &change.replace('…', value));
+        refusals.expect_of_scene(&scene, &place.replace('…', key), words);
+    }
     refusals.finish();
 }
 

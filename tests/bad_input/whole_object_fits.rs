@@ -1,7 +1,7 @@
 //! Fits of a whole object under loads.
 
 use super::inputs::{BRICK, PLATE, edited};
-use super::refusals::Refusals;
+use super::refusals::{Refusals, refuses_edits, refuses_values};
 
 const FIT: &str = "objective = \"modal\"";
 const WHOLE: &str = "objective = \"whole\"";
@@ -44,19 +44,14 @@ const OPTIONS: [(&str, &str, &str); 32] = [
 
 #[test]
 fn options_of_whole_object_fits() {
-    let mut refusals = Refusals::default();
-    for (options, key, words) in OPTIONS {
-        let scene = edited(BRICK, FIT, &format!("{WHOLE}\n{options}"));
-        refusals.expect_of_scene(&scene, &format!("scene.toml: fit[0].{key}"), words);
-    }
-    refusals.expect_of_edits(
+    refuses_values(BRICK, FIT, &format!("{WHOLE}\n…"), "fit[0].…", &OPTIONS);
+    refuses_edits(
         BRICK,
         &[
-            (FIT, &format!("{FIT}\nfrequencies = 3"), "scene.toml: fit[0].frequencies", "found with \"modal\""),
-            (FIT, &format!("{FIT}\nloads = [\"load 1\"]"), "scene.toml: fit[0].loads", "found with \"modal\""),
+            (FIT, &format!("{FIT}\nfrequencies = 3"), "fit[0].frequencies", "found with \"modal\""),
+            (FIT, &format!("{FIT}\nloads = [\"load 1\"]"), "fit[0].loads", "found with \"modal\""),
         ],
     );
-    refusals.finish();
 }
 
 #[test]
@@ -65,14 +60,14 @@ fn whole_objects() {
     let cubes = edited(BRICK, "tet4", "hex8");
     refusals.expect_of_scene(
         &edited(&cubes, FIT, &format!("{WHOLE}\nstart = \"exact\"\nshear = \"edges\"")),
-        "scene.toml: fit[0].shear",
+        "fit[0].shear",
         "found \"edges\" with hex8",
     );
     let whole = edited(BRICK, FIT, WHOLE);
     // No equilibrium is found in one iteration, under no load.
     refusals.expect_of_scene(
         &edited(&whole, "poisson = 0.3", "poisson = 0.3\nlaw = \"neo-hookean\"\n[newton]\niterations = 1"),
-        "scene.toml: fit[0].stretch",
+        "fit[0].stretch",
         "has an equilibrium at half of the stretch 0.3, found none of",
     );
     let exact = edited(&whole, WHOLE, &format!("{WHOLE}\nstart = \"exact\""));
@@ -81,7 +76,7 @@ fn whole_objects() {
         ("fibre", "a law without fibres, where moduli are unknown, found \"fibre\""),
     ] {
         let scene = edited(&exact, "poisson = 0.3", &format!("poisson = 0.3\nlaw = \"{law}\""));
-        refusals.expect_of_scene(&scene, "scene.toml: fit[0].start", words);
+        refusals.expect_of_scene(&scene, "fit[0].start", words);
     }
     let plate = edited(
         PLATE,
@@ -90,7 +85,7 @@ fn whole_objects() {
     );
     refusals.expect_of_scene(
         &edited(&plate, "plane = \"strain\"", "plane = \"stress\"\nlaw = \"stable-neo-hookean\""),
-        "scene.toml: fit[0].unknowns",
+        "fit[0].unknowns",
         "not linear in them, found plane stress",
     );
     let lost = edited(
@@ -100,28 +95,28 @@ fn whole_objects() {
     );
     refusals.expect_of_scene(
         &lost,
-        "scene.toml: reference",
+        "reference",
         "loads under which the finer body has an equilibrium, found \"load 1\", lost at",
     );
     let free = edited(&whole, "[[fix]]\ngroup = \"zmin\"\n", "");
     let held = "[[load]]\nwhere = \"z < 0.1\"\ndisplacement = [0, 0, 0]";
     let by_load = edited(&free, "[[load]]\ngroup = \"zmax\"\ntraction = [0, 0, 1]", held);
-    refusals.expect_of_scene(&by_load, "scene.toml: fit[0].loads", "6 rigid motions");
+    refusals.expect_of_scene(&by_load, "fit[0].loads", "6 rigid motions");
     let still = edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 0]");
     refusals.expect_of_scene(
         &edited(&still, WHOLE, "objective = \"whole\"\nloads = [\"load 1\"]"),
-        "scene.toml: fit[0].loads",
+        "fit[0].loads",
         "found \"load 1\"",
     );
     refusals.expect_of_scene(
         &edited(&whole, "traction = [0, 0, 1]", "traction = [0, 0, 1]\nname = \"made\""),
-        "scene.toml: load[0].name",
+        "load[0].name",
         "found \"made\"",
     );
     let counted = edited(&whole, "poisson = 0.3", "poisson = 0.3\ndensity = 1000");
     refusals.expect_of_scene(
         &edited(&counted, WHOLE, "objective = \"whole\"\nfrequencies = 13"),
-        "scene.toml: fit[0].frequencies",
+        "fit[0].frequencies",
         "at most 12, the free degrees of freedom, found 13",
     );
     refusals.finish();

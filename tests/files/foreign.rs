@@ -1,6 +1,7 @@
 //! Files of others in the folder of a command stay as they are.
 
 use super::{files, said, scenes, springfit};
+use crate::shapes::Random;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -18,18 +19,8 @@ const CONTENTS: [&str; 6] = [
     "\0\0\u{1}",
 ];
 
-/// Numbers that are the same in each run of the test.
-struct Draw(u64);
-
-impl Draw {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as usize % count
-    }
-}
-
 /// A file, a link or a folder of another program.
-fn put(path: &Path, draw: &mut Draw) {
+fn put(path: &Path, draw: &mut Random) {
     if path.symlink_metadata().is_ok() || path.ancestors().skip(1).any(|above| above.is_symlink() || above.is_file()) {
         return;
     }
@@ -79,7 +70,7 @@ fn files_of_others_stay_in(count: usize, seed: u64) {
         })
         .collect();
     fs::write(folder.join("kept.txt"), "beyond a link").unwrap();
-    let (mut draw, mut refused, mut done) = (Draw(seed), 0, 0);
+    let (mut draw, mut refused, mut done) = (Random(seed), 0, 0);
     for number in 0..count {
         let which = number % commands.len();
         _ = fs::remove_dir_all(&out);

@@ -1,8 +1,8 @@
 //! Files as people have them: a name stands for what it names, nothing vanishes without a word, and what nobody needs is no reason to refuse.
 
 use super::springfit;
+use crate::kit::outcome_in;
 use springfit_mesh::mesh::{Mesh, MeshSource, Selection};
-use springfit_studies::study::{Scene, run};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -53,8 +53,7 @@ fn largest(folder: &Path, file: &str, text: &str, conditions: &str) -> (f64, Vec
     let scene = format!(
         "[mesh]\nfile = \"{file}\"\n[material]\nyoung = 1000\npoisson = 0\n[[fit]]\nobjective = \"exact\"\n{conditions}"
     );
-    let scene = Scene::parse(&scene, &folder.join("s.toml")).unwrap();
-    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let outcome = outcome_in(folder, &scene).unwrap();
     let u = &outcome.loads[0].fem;
     let d = outcome.mesh.dimension;
     let size = |u: &[f64]| u.iter().map(|x| x * x).sum::<f64>().sqrt();

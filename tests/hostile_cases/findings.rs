@@ -1,6 +1,6 @@
 //! What users found to be answered wrongly in silence.
 
-use crate::kit::{prints, refused, said, springfit};
+use crate::kit::{self, json, prints, refused, said, springfit};
 use std::fs;
 use tempfile::TempDir;
 
@@ -30,8 +30,7 @@ fn gravity_on_a_part_is_exported_as_forces() {
             bar("tet4", [0.06, 0.02, 0.02], [6, 2, 2], &(gravity(part) + pull)).replace("objective = \"exact\"", held);
         let folder = folder_with(&[("s.toml", text)]);
         prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-        let text = fs::read_to_string(folder.path().join("out/k.json")).unwrap();
-        let network: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let network = json(&folder.path().join("out/k.json"));
         let loads = network["loads"].as_array().unwrap();
         assert_eq!([&loads[0], &loads[2]].map(|load| load["gravity"].is_null()), [!is_whole; 2], "{part}");
         let sum = |load: &serde_json::Value| -> f64 {
@@ -99,7 +98,7 @@ fn a_modulus_that_nothing_shows_is_not_found() {
     assert!(told.contains("displacements below the size of the body, 0.1 m") && told.contains("0.75 m"), "{told}");
     fs::write(folder.path().join("u.csv"), times(0.3)).unwrap();
     let large = springfit(folder.path(), &["calibrate", "pulled.toml"]);
-    let told = String::from_utf8_lossy(&large.stdout).into_owned() + &said(&large);
+    let told = kit::told(&large);
     assert!(told.contains("linear theory"), "{told}");
 }
 
@@ -129,8 +128,7 @@ fn large_cells_of_a_bent_body_are_too_stiff_whatever_their_number_across() {
     ] {
         let folder = folder_with(&[("s.toml", text)]);
         let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
-        let report = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
-        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let report = json(&folder.path().join("out/report.json"));
         let is_told = report["finite_elements_verdict"] == "too stiff";
         assert_eq!(is_told, is_long, "{name}: {}", said(&output));
         assert_eq!(
@@ -145,8 +143,7 @@ fn large_cells_of_a_bent_body_are_too_stiff_whatever_their_number_across() {
             let scene = fs::read_to_string(folder.path().join("s.toml")).unwrap().replace("\"cells\"", "\"quadratic\"");
             fs::write(folder.path().join("s.toml"), scene).unwrap();
             prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-            let report = fs::read_to_string(folder.path().join("out/report.json")).unwrap();
-            let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+            let report = json(&folder.path().join("out/report.json"));
             let right = report["measured"][0]["largest"].as_f64().unwrap();
             assert!(right > 1.15 * moved, "{name}: {moved} {right}");
         }
@@ -218,8 +215,7 @@ fn large_triangles_of_a_sheet_are_told() {
         let folder = folder_with(&[("plate.obj", points + &faces), ("s.toml", text)]);
         let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
         assert!(output.status.success(), "{}", said(&output));
-        let report: serde_json::Value =
-            serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap();
+        let report = json(&folder.path().join("out/report.json"));
         let found = report["fits"][0]["loads"][0]["largest_displacement"].as_f64().unwrap();
         let off = 100.0 * (found / truth - 1.0).abs();
         let note = said(&output).lines().find(|line| line.contains("too large")).map(str::to_string);
@@ -297,8 +293,7 @@ fn a_body_is_moved_as_a_whole_at_large_deformation() {
             .replace("group = \"xmin\"\n[[load]]", "group = \"xmin\"\naxes = [\"y\", \"z\"]\n[[load]]");
         let folder = folder_with(&[("s.toml", text)]);
         prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-        let report: serde_json::Value =
-            serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap();
+        let report = json(&folder.path().join("out/report.json"));
         let fit = &report["fits"][0];
         assert_eq!(fit["status"], "converged", "{fit}");
         let largest = fit["loads"][0]["largest_displacement"].as_f64().unwrap();
@@ -340,7 +335,7 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
     let run = |text: String| -> serde_json::Value {
         let folder = folder_with(&[("s.toml", text)]);
         prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-        serde_json::from_str(&fs::read_to_string(folder.path().join("out/report.json")).unwrap()).unwrap()
+        json(&folder.path().join("out/report.json"))
     };
     let frobenius = "[[fit]]\nobjective = \"frobenius\"\n";
     let isotropic = run(text("[material]\nyoung = 1e4\npoisson = 0.4999\n", frobenius));

@@ -1,6 +1,8 @@
 //! Small inputs that were once answered wrongly: each stands for a kind, which a test of its subject proves.
 
-use springfit_studies::study::{Scene, Standard, run};
+use crate::kit;
+use crate::kit::{holding, outcome};
+use springfit_studies::study::Standard;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -14,9 +16,8 @@ const SQUARE: &str = "mesh = { box = { element = \"quad4\", size = [1, 1], cells
                       material = { young = 1e4, poisson = 0.3, thickness = 1 }\nfit = [{ objective = \"exact\" }]\n";
 
 fn springfit(folder: &Path, arguments: &str) -> (Output, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_springfit"));
-    let output = command.args(arguments.split(' ')).current_dir(folder).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let output = kit::springfit(folder, &arguments.split(' ').collect::<Vec<_>>());
+    let said = kit::said(&output);
     (output, said)
 }
 
@@ -99,8 +100,7 @@ fn notes_have_one_blank_between_words() {
 #[test]
 #[cfg(target_os = "linux")]
 fn too_little_memory_ends_in_words() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("s.toml"), SQUARE).unwrap();
+    let folder = holding("s.toml", SQUARE);
     let mut tried = 0;
     for megabytes in 40..80 {
         let within = |arguments: &str| {
@@ -150,8 +150,7 @@ traction = [0, 10, 0]
 #[test]
 fn elements_that_lock_are_no_measure() {
     let errors = |reference: &str| {
-        let scene = Scene::parse(&(LOCKING.to_string() + reference), Path::new("bar.toml")).unwrap();
-        let outcome = run(&scene, &mut |_| {}).unwrap();
+        let outcome = outcome(&(LOCKING.to_string() + reference));
         let tips = outcome.fits.iter().map(|fit| fit.loads[0].error.unwrap().tip).collect::<Vec<f64>>();
         (tips, outcome.loads[0].measured.clone())
     };
@@ -217,9 +216,7 @@ fn a_bent_bar_of_one_cell_across_is_compared_with_quadratic_elements() {
              fit = [{{ objective = \"exact\" }}]\nfix = [{{ group = \"xmin\" }}]\nload = [{{ name = \"load\", group = \"xmax\", traction = {traction} }}]\n{more}"
         )
     };
-    let solved = |element: &str, traction: &str, more: &str| {
-        run(&Scene::parse(&text(element, traction, more), Path::new("bar.toml")).unwrap(), &mut |_| {}).unwrap()
-    };
+    let solved = |element: &str, traction: &str, more: &str| outcome(&text(element, traction, more));
     for element in ["tet4", "hex8"] {
         let bent = solved(element, "[0, 0, 1]", "");
         let measured = bent.loads[0].measured.as_ref().unwrap();
@@ -269,13 +266,11 @@ fn errors_without_a_reference_are_not_known() {
 /// A load that moves the body by twice its size is refused as a result in the first line.
 #[test]
 fn what_is_far_beyond_the_linear_theory_is_not_trusted() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("s.toml"),
+    let folder = holding(
+        "s.toml",
         SQUARE.to_string()
             + "fix = [{ group = \"xmin\" }]\nload = [{ name = \"pull\", group = \"xmax\", traction = [3e4, 0] }]\n",
-    )
-    .unwrap();
+    );
     let (output, said) = springfit(folder.path(), "run s.toml --out out");
     let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(

@@ -1,7 +1,8 @@
 //! Scenes as people write them: regions, materials by other constants, data in another unit, and the first scene of any file.
 
 use super::springfit;
-use springfit_studies::study::{Outcome, Scene, run};
+use crate::kit::{outcome, outcome_in};
+use springfit_studies::study::Outcome;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -10,16 +11,8 @@ const BOX: &str = "[mesh]\nbox = { element = \"hex8\", size = [4, 1, 1], cells =
 const REST: &str =
     "[[fit]]\nobjective = \"exact\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\nforce = [1, 0, 0]\n";
 
-fn outcome(text: &str, folder: &Path) -> springfit_foundation::error::Result<Outcome> {
-    run(&Scene::parse(text, &folder.join("s.toml"))?, &mut |_| {})
-}
-
-fn solved(text: &str) -> Outcome {
-    outcome(text, Path::new("")).unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
 fn refused(text: &str, folder: &Path) -> String {
-    outcome(text, folder).unwrap_err().to_string()
+    outcome_in(folder, text).unwrap_err().to_string()
 }
 
 /// Any two constants state the material; those of the other pairs are worked out by hand for E = 10 kPa and ν = 0.25: μ = 4 kPa, λ = 4 kPa, K = 20/3 kPa.
@@ -33,7 +26,7 @@ fn two_constants_state_a_material() {
                 continue;
             }
             let material = [all[i], all[j]].map(|(key, value)| format!("{key} = {value:?}\n")).concat();
-            let found = solved(&format!("{BOX}[material]\n{material}{REST}")).material.uniform().unwrap().moduli();
+            let found = outcome(&format!("{BOX}[material]\n{material}{REST}")).material.uniform().unwrap().moduli();
             assert!((found.lambda - 4e3).abs() < 1e-8 && (found.mu - 4e3).abs() < 1e-8, "{material}: {found:?}");
             pairs += 1;
         }
@@ -60,7 +53,7 @@ fn a_region_has_the_cells_whose_middle_is_in_it() {
             "{BOX}[[material]]\nwhere = \"x > {cut}\"\nyoung = 1e4\npoisson = 0\n[[material]]\nwhere = \"x <= {cut}\"\nyoung = 2e4\npoisson = 0\n{REST}\
              [reference]\nfrom = \"quadratic\"\nrefine = 1\n"
         );
-        let outcome = solved(&text);
+        let outcome = outcome(&text);
         // Two cubes of each: u = 2 F/(E₁ A) + 2 F/(E₂ A), on these cells and on those of the reference.
         let largest = outcome.loads[0].fem.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
         assert!((largest - 3e-4).abs() < 1e-12, "{cut}: {largest}");
@@ -80,7 +73,7 @@ fn conditions_that_select_nothing_or_all_are_told() {
             && said.contains("the body extends from 0 to 4 m along x, from 0 to 1 m along y"),
         "{said}"
     );
-    let notes = |text: &str| springfit_report::report::notes(&solved(text)).join("\n");
+    let notes = |text: &str| springfit_report::report::notes(&outcome(text)).join("\n");
     let load = REST.replace("group = \"xmax\"\nforce", "name = \"all\"\nwhere = \"x > -1\"\nforce");
     let said = notes(&format!("{BOX}{material}{load}"));
     assert!(said.contains("where = \"x > -1\" of the load all holds at all points of the body"), "{said}");
@@ -96,7 +89,7 @@ fn the_thickness_of_a_deck_is_offered() {
     let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT, TYPE=S4, ELSET=P\n1,1,2,3,4\n*SHELL SECTION, ELSET=P, MATERIAL=S\n0.002\n";
     fs::write(folder.path().join("plate.inp"), deck).unwrap();
     let text = "[mesh]\nfile = \"plate.inp\"\n[material]\nyoung = 1e9\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
-    let said = |text: &str| springfit_report::report::notes(&outcome(text, folder.path()).unwrap()).join("\n");
+    let said = |text: &str| springfit_report::report::notes(&outcome_in(folder.path(), text).unwrap()).join("\n");
     let words = "assumed to be 1 m; \"thickness\" in the material sets it, and the file states 0.002 in its unit";
     assert!(said(text).contains(words), "{}", said(text));
     assert!(!said(&text.replace("poisson", "thickness = 0.002\npoisson")).contains("assumed"), "{}", said(text));
@@ -130,7 +123,7 @@ fn material_data_in_another_unit_are_refused() {
     };
     for steps in [1, 2, 8] {
         write("map.csv", &map(1.0, steps));
-        let (least, most) = range(&outcome(&scene(", scale = \"mm\""), folder.path()).unwrap());
+        let (least, most) = range(&outcome_in(folder.path(), &scene(", scale = \"mm\"")).unwrap());
         assert!((least - 11875.0).abs() < 2000.0 && (most - 38125.0).abs() < 2000.0, "{steps}: {least} to {most}");
         let far = "map.csv: scale: expected places about as far apart as the body is long";
         let near = "expected values around every cell";
@@ -152,7 +145,7 @@ fn material_data_in_another_unit_are_refused() {
         said.contains("map.csv:38: points[36]: expected a number above 0, found -9999; missing = -9999.0"),
         "{said}"
     );
-    let told = outcome(&scene(", scale = \"mm\", missing = -9999"), folder.path()).unwrap();
+    let told = outcome_in(folder.path(), &scene(", scale = \"mm\", missing = -9999")).unwrap();
     let said = springfit_report::report::notes(&told).join("\n");
     assert!(said.contains("1 place of map.csv without a value (-9999) were left out"), "{said}");
     // Data in the file of the mesh have its unit.
@@ -161,7 +154,7 @@ fn material_data_in_another_unit_are_refused() {
                 LOOKUP_TABLE default\n5000 50000\n";
     write("own.vtk", grid);
     let text = "[mesh]\nfile = \"own.vtk\"\nscale = \"mm\"\n[material]\nyoung = { file = \"own.vtk\", array = \"E\" }\npoisson = 0.3\n[[fit]]\nobjective = \"exact\"\n";
-    assert_eq!(range(&outcome(text, folder.path()).unwrap()), (5000.0, 50000.0));
+    assert_eq!(range(&outcome_in(folder.path(), text).unwrap()), (5000.0, 50000.0));
 }
 
 /// The scene that `new` writes for a file, which runs.
@@ -269,7 +262,7 @@ fn a_flat_sheet_hangs_whatever_its_axis() {
                  fit = [{{ objective = \"offdiag\", nonnegative = true }}]\nfix = [{{ where = \"x < 1e-9\" }}]\n\
                  [motion]\nduration = \"0.1 s\"\nstep = \"5 ms\"\ngravity = {gravity}\nfinite_elements = false\n"
             );
-            let outcome = outcome(&scene, folder.path()).unwrap();
+            let outcome = outcome_in(folder.path(), &scene).unwrap();
             outcome.motion.unwrap().models[0].records.last().unwrap().account.kinetic
         })
         .collect();
@@ -293,7 +286,7 @@ fn a_pressed_block_shrinks() {
                  fix = [{ where = \"x < 1e-9 && y < 1e-9 && z < 1e-9\" }, { where = \"x > 0.99 && x < 1.01 && y < 1e-9\", axes = [\"y\", \"z\"] },\n\
                  { where = \"x < 1e-9 && y > 0.99 && y < 1.01\", axes = [\"z\"] }]\n\
                  load = [{ name = \"pressure\", where = \"x > -100\", pressure = 100 }]\n";
-    let outcome = outcome(scene, folder.path()).unwrap();
+    let outcome = outcome_in(folder.path(), scene).unwrap();
     let fem = &outcome.loads[0].fem;
     let worst =
         fem.iter().zip(&outcome.mesh.points).map(|(u, x)| (u + 100.0 * 0.4 / 1e4 * x).abs()).fold(0.0, f64::max);

@@ -14,9 +14,18 @@ use std::sync::Arc;
 pub struct Random(pub u64);
 
 impl Random {
-    pub fn next(&mut self) -> f64 {
+    fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        self.0
+    }
+
+    pub fn next(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A whole number below a count.
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.bits() >> 33) as usize % count
     }
 }
 

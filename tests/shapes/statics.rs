@@ -48,3 +48,10 @@ pub fn product(entries: &Entries, u: &[f64]) -> Vec<f64> {
     }
     f
 }
+
+/// Some points held in all directions.
+pub fn support_at(mesh: &Mesh, points: &[usize]) -> Support {
+    let mut support = Support::free(mesh);
+    support.fix(points, &(0..mesh.dimension).collect::<Vec<_>>(), mesh.dimension);
+    support
+}
