@@ -3,9 +3,9 @@
 
 use crate::kit::{outcome, outcome_in, refusal};
 use crate::messages::reads;
-use crate::shapes::geometry;
+use crate::shapes::{elements, geometry};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::Element;
 use springfit_element::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
@@ -140,10 +140,6 @@ fn a_plane_answers_with_its_compliance() {
 fn definite(order: usize, seed: &mut u64) -> DMatrix<f64> {
     let a = DMatrix::from_fn(order, order, |_, _| random(seed) - 0.5);
     &a * a.transpose() * 1e3 + DMatrix::identity(order, order) * 50.0
-}
-
-fn elements() -> impl Iterator<Item = Element> {
-    SHIPPED.iter().map(|file| Element::load(file.name).unwrap())
 }
 
 /// The nodes of the reference cell, moved a little.

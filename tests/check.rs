@@ -1,9 +1,8 @@
 //! Every shipped element and example passes its proof; files that are wrong in one way fail in that one.
 
-use crate::kit::place;
+use crate::kit::{place, springfit};
 use springfit_element::element::Element;
 use springfit_studies::study::{Mark, inspect};
-use std::process::Command;
 
 fn folder(name: &str) -> Vec<String> {
     let folder = place(name);
@@ -116,12 +115,7 @@ fn wrong_files_fail_in_what_is_wrong() {
 }
 
 fn check(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit"))
-        .arg("check")
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .unwrap();
+    let output = springfit(&place(""), &[&["check"], arguments].concat());
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (output.status.code(), text(output.stdout), text(output.stderr))
 }

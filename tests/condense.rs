@@ -1,6 +1,6 @@
 //! Functions that are condensed in each cell: Wilson's modes and bubbles, against hand-made matrices, bending and the patch test.
 
-use crate::kit::place;
+use crate::kit::{place, ran, refused};
 use crate::shapes::{Random, distorted, geometry};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use springfit_element::element::Element;
@@ -11,7 +11,6 @@ use springfit_fit::fit::{
     fit_exact, plain,
 };
 use springfit_studies::study::{StabilityRow, Verdict, stability};
-use std::process::Command;
 
 const MODULI: Moduli = Moduli { lambda: 1.7, mu: 0.6 };
 const NAMES: [&str; 3] = ["quad4_wilson", "quad8_bubble", "hex8_wilson"];
@@ -221,22 +220,15 @@ fn what_needs_nodes_alone_is_refused() {
     };
     let run = |text: String| {
         std::fs::write(folder.path().join("scene.toml"), text).unwrap();
-        let output = Command::new(env!("CARGO_BIN_EXE_springfit"))
-            .args(["run", "scene.toml"])
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        ran(folder.path(), &["run", "scene.toml"])
     };
     let (code, said) = run(scene("law = \"neo-hookean\"\n"));
     assert!(code == Some(2) && said.contains("without condensed functions for large deformation"), "{said}");
     let (code, said) = run(scene(""));
     assert_eq!(code, Some(0), "{said}");
     for (arguments, what) in [(["generate", path], "generated code"), (["derive", path], "closed forms")] {
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(2) && said.contains(what), "{said}");
+        let said = refused(folder.path(), &arguments);
+        assert!(said.contains(what), "{said}");
     }
 }
 

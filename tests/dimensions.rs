@@ -1,5 +1,6 @@
 //! Bodies of several dimensions: membranes on solids, rods in them, sheets that meet.
 
+use crate::kit::{holding, ran};
 use crate::shapes::bodies::{gmsh_text, grid, mapped};
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
 use springfit_bodies::model::{finite_elements, lumped_masses};
@@ -426,20 +427,11 @@ fn sides_of_a_box_carry_membranes() {
 /// The first scene of a deck with a skin says what the deck states of it, and the scene with it as a material has it in its body.
 #[test]
 fn a_new_scene_names_what_is_beside_the_body() {
-    let folder = tempfile::tempdir().unwrap();
     let deck = "*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n*ELEMENT, TYPE=C3D8, ELSET=BODY\n1, 1,2,3,4,5,6,7,8\n\
                 *ELEMENT, TYPE=M3D4, ELSET=SKIN\n2, 5,6,7,8\n*MATERIAL, NAME=A\n*ELASTIC\n2e3, 0.3\n*MATERIAL, NAME=B\n*ELASTIC\n5e5, 0.4\n\
                 *SOLID SECTION, ELSET=BODY, MATERIAL=A\n*MEMBRANE SECTION, ELSET=SKIN, MATERIAL=B\n0.002\n";
-    fs::write(folder.path().join("d.inp"), deck).unwrap();
-    let springfit = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"));
-        let output = command.args(arguments).current_dir(&folder).output().unwrap();
-        (
-            output.status.code(),
-            String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr),
-        )
-    };
-    let (code, said) = springfit(&["new", "d.inp", "--output", "d.toml"]);
+    let folder = holding("d.inp", deck);
+    let (code, said) = ran(folder.path(), &["new", "d.inp", "--output", "d.toml"]);
     assert_eq!(code, Some(0), "{said}");
     let scene = fs::read_to_string(folder.path().join("d.toml")).unwrap();
     let line = "# Not in the body until a [[material]] names it: group = \"SKIN\", young = 500000, poisson = 0.4, thickness = 0.002\n";
@@ -447,7 +439,7 @@ fn a_new_scene_names_what_is_beside_the_body() {
     let keys = line.trim_start_matches("# Not in the body until a [[material]] names it: ").replace(", ", "\n");
     let scene = scene.replace("[material]\n", &format!("[[material]]\n{keys}[[material]]\n"));
     fs::write(folder.path().join("d.toml"), scene).unwrap();
-    let (code, said) = springfit(&["run", "d.toml"]);
+    let (code, said) = ran(folder.path(), &["run", "d.toml"]);
     assert_eq!(code, Some(0), "{said}");
     assert!(said.contains("1 hex8, 1 quad4"), "{said}");
     assert!(said.contains("the group \"SKIN\" is part of the body as membranes, without bending stiffness"), "{said}");
@@ -479,8 +471,7 @@ fn wrong_parts_are_refused() {
             "a body of cells of one dimension",
         ),
     ] {
-        let scene = scene(folder.path(), &text, &text_of_scene);
-        let error = run(&scene, &mut |_| ()).unwrap_err().to_string();
+        let error = run(&scene(folder.path(), &text, &text_of_scene), &mut |_| ()).unwrap_err().to_string();
         assert!(error.contains(wanted) && !error.contains('\n'), "{wanted}: {error}");
     }
 }

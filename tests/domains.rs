@@ -3,12 +3,9 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{compliance, membrane, product, support_at};
+use crate::shapes::statics::{compliance, end_load, frequencies, held_where, membrane, on_cells, product};
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{
-    Elastic, Entries, Lumping, Network, Support, edge_springs, finite_elements, lumped_masses, patch_springs,
-};
-use springfit_bodies::solve::{System, lowest_modes};
+use springfit_bodies::model::{Elastic, Entries, Network, Support, edge_springs, finite_elements, patch_springs};
 use springfit_element::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use springfit_foundation::error::ErrorKind;
@@ -230,51 +227,21 @@ fn forces_and_tangents_are_derivatives() {
     }
 }
 
-fn held(mesh: &Mesh) -> (Support, Vec<bool>) {
-    let held: Vec<bool> = (0..mesh.point_count()).map(|p| mesh.point(p)[0] == 0.0).collect();
-    let points: Vec<usize> = (0..held.len()).filter(|p| held[*p]).collect();
-    let support = support_at(mesh, &points);
-    (support, held)
+fn clamped(mesh: &Mesh) -> (Support, Vec<bool>) {
+    held_where(mesh, |x| x[0] == 0.0)
 }
 
-/// A unit force along the last axis, spread evenly over the side with the largest x.
-fn end_load(mesh: &Mesh) -> Vec<f64> {
-    let d = mesh.dimension;
-    let end = mesh.points.chunks_exact(d).fold(0.0f64, |most, x| most.max(x[0]));
-    let mut load = vec![0.0; mesh.points.len()];
-    let mut total = 0.0;
-    for nodes in mesh.blocks[0].cells() {
-        for side in mesh.blocks[0].element.sides() {
-            let side: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
-            if side.iter().any(|p| mesh.point(*p)[0] != end) {
-                continue;
-            }
-            let at = |i: usize| DVector::from_column_slice(mesh.point(side[i]));
-            let edges = DMatrix::from_columns(&(1..d).map(|i| at(i) - at(0)).collect::<Vec<_>>());
-            let measure = (edges.transpose() * &edges).determinant().sqrt();
-            total += measure;
-            // Of a straight side of three nodes in the plane, the middle one has four sixths.
-            let weights: &[f64] = if (d, side.len()) == (2, 3) { &[1.0, 1.0, 4.0] } else { &[1.0; 3] };
-            let whole: f64 = weights[..side.len()].iter().sum();
-            side.iter().zip(weights).for_each(|(p, w)| load[p * d + d - 1] += measure * w / whole);
-        }
-    }
-    load.iter_mut().for_each(|f| *f /= total);
-    load
+/// Under a unit force on the side with the largest x.
+fn pulled(mesh: &Mesh) -> Vec<f64> {
+    let end = mesh.points.chunks_exact(mesh.dimension).fold(0.0f64, |most, x| most.max(x[0]));
+    end_load(mesh, |x| x[0] == end)
 }
 
 /// Errors of the compliance relative to the truth: finite elements, patches, and patches with shear springs on edges.
 fn errors(mesh: &Mesh, material: Material, truth: f64) -> [f64; 3] {
-    let ((support, held), load) = (held(mesh), end_load(mesh));
+    let ((support, held), load) = (clamped(mesh), pulled(mesh));
     let of = |entries: &Entries| compliance(entries, &support, &load) / truth - 1.0;
-    let cells = {
-        let fit = ExactFit { volume: VolumeSprings::Patches, ..ExactFit::default() };
-        let block = &mesh.blocks[0];
-        let cells = fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
-        let mut network = Network::assemble(mesh, &[cells]);
-        network.others.extend(patch_springs(mesh, material, &fit, &held).unwrap());
-        network
-    };
+    let cells = on_cells(mesh, material, VolumeSprings::Patches, &held);
     let edges = network(mesh, material, ExactFit { volume: VolumeSprings::Patches, ..EDGES }, &held);
     [
         of(&finite_elements(mesh, material.moduli())),
@@ -304,9 +271,9 @@ fn cooks_membrane_is_within_twice_the_error_of_quadratic_triangles() {
     for n in [8, 16, 32] {
         let [bodies, patches, edges] = errors(&membrane("tri3", n), material, 18.53);
         let quadratic = membrane("tri6", n / 2);
-        let (support, _) = held(&quadratic);
+        let (support, _) = clamped(&quadratic);
         let entries = finite_elements(&quadratic, material.moduli());
-        let known = compliance(&entries, &support, &end_load(&quadratic)) / 18.53 - 1.0;
+        let known = compliance(&entries, &support, &pulled(&quadratic)) / 18.53 - 1.0;
         println!("{n}: finite elements {bodies:.4}, patches {patches:.4}, edges {edges:.4}, tri6 {known:.4}");
         assert!(bodies < -0.6 && edges.abs() < 0.5 * patches.abs(), "{n}: {bodies} {patches} {edges}");
         assert!(edges.abs() < 2.0 * known.abs(), "{n}: {edges} {known}");
@@ -319,16 +286,10 @@ fn cooks_membrane_is_within_twice_the_error_of_quadratic_triangles() {
 fn edges_add_no_soft_motion() {
     for nu in [0.3, 0.4999] {
         let material = Material::new(1.0, nu, State::Solid).unwrap();
-        let frequencies = |mesh: &Mesh, entries: &Entries, support: &Support| {
-            let masses = lumped_masses(mesh, 1.0, 1.0, Lumping::Hrz);
-            let system = System::new(entries, support).unwrap();
-            let factor = system.cholesky().unwrap().unwrap();
-            lowest_modes(&system, &factor, &masses, 3, 30).unwrap().frequencies()
-        };
         let fine = grid("hex20", &[1.0; 3], &[4; 3]);
-        let known = frequencies(&fine, &finite_elements(&fine, material.moduli()), &held(&fine).0);
+        let known = frequencies(&fine, &finite_elements(&fine, material.moduli()), &clamped(&fine).0);
         let mesh = shaken("tet4", &[8, 8, 8], &[1.0; 3], &mut Random(75));
-        let (support, held) = held(&mesh);
+        let (support, held) = clamped(&mesh);
         let edges = network(&mesh, material, ExactFit { volume: VolumeSprings::Patches, ..EDGES }, &held);
         let found = frequencies(&mesh, &edges.stiffness(&mesh.points), &support);
         let ratios: Vec<f64> = found.iter().zip(&known).map(|(a, b)| a / b).collect();

@@ -44,6 +44,12 @@ fn pair(constant: f64) -> (Network, Vec<f64>) {
     (network, vec![0.0, 0.0, 1.0, 0.0])
 }
 
+/// Two masses on a spring of 50 N/m, and `ω = √(k (1/m₁ + 1/m₂))` with which they swing.
+fn swing() -> (Network, Vec<f64>, [f64; 2], f64) {
+    let (network, points) = pair(50.0);
+    (network, points, [0.2, 0.3], (50.0f64 * (1.0 / 0.2 + 1.0 / 0.3)).sqrt())
+}
+
 /// A square or a cube of `side` cells of 1 cm along each edge, 10 kPa; all springs, also those on the volume.
 pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
     let d = Element::load(element).unwrap().dimension();
@@ -129,9 +135,7 @@ fn bodies_fall_as_they_must() {
 /// period's relative change, `(ωh)²/12` of Newmark: over t radians `t (ωh)²/12`.
 #[test]
 fn two_masses_swing_with_their_reduced_mass() {
-    let (network, points) = pair(50.0);
-    let masses = [0.2, 0.3];
-    let omega = (50.0f64 * (1.0 / 0.2 + 1.0 / 0.3)).sqrt();
+    let (network, points, masses, omega) = swing();
     let h = 1e-3 / omega;
     for linear in [false, true] {
         let options = Options { step: h, integrator: Integrator::newmark(), linear, ..Options::default() };
@@ -155,9 +159,7 @@ fn two_masses_swing_with_their_reduced_mass() {
 /// terms with the same ratio at ω.
 #[test]
 fn oscillators_are_damped_by_their_ratio() {
-    let (network, points) = pair(50.0);
-    let masses = [0.2, 0.3];
-    let omega = (50.0f64 * (1.0 / 0.2 + 1.0 / 0.3)).sqrt();
+    let (network, points, masses, omega) = swing();
     let zeta = 0.2;
     let dampers = Dampers::of_ratio(&network, &points, &masses, &Support { prescribed: vec![None; 4] }, zeta).unwrap();
     assert_near(dampers.coefficients[0], 2.0 * zeta * (50.0f64 * 0.12).sqrt(), 1e-12);
@@ -216,8 +218,7 @@ fn tension_at_rest_is_no_energy_of_a_motion() {
 /// starts with the jump done, of the same energy: the kinetic energy of the held point does not hide it.
 #[test]
 fn jumps_do_not_hide_the_drift() {
-    let (network, points) = pair(50.0);
-    let masses = [0.2, 0.3];
+    let (network, points, masses, _) = swing();
     let mut support = Support { prescribed: vec![None; 4] };
     support.fix(&[0], &[0, 1], 2);
     for integrator in all_integrators() {
@@ -338,9 +339,7 @@ fn free_networks_keep_their_momentum() {
 /// Symplectic Euler's energy swings by a share of ωh/2 and does not drift: here ωh = 10⁻³, sixteen periods.
 #[test]
 fn symplectic_energy_stays() {
-    let (network, points) = pair(50.0);
-    let masses = [0.2, 0.3];
-    let omega = (50.0f64 * (1.0 / 0.2 + 1.0 / 0.3)).sqrt();
+    let (network, points, masses, omega) = swing();
     let options = Options { step: 1e-3 / omega, integrator: Integrator::SymplecticEuler, ..Options::default() };
     let mut simulation = Simulation::new(Motion::free(&network, &points, &masses), options).unwrap();
     simulation.start(&[-0.06, 0.02, 0.04, 0.0], &[0.0, -0.1, 0.0, 0.2]).unwrap();
@@ -689,9 +688,7 @@ fn explicit_steps_have_a_limit() {
     run(&mut simulation, 20_000);
     assert!(simulation.state().velocity.iter().all(|v| v.abs() < 1.0));
     // One damped oscillator: 2 (√(1 + ζ²) − ζ)/ω, stable below, unstable above with any other method's time step.
-    let (network, points) = pair(50.0);
-    let (masses, zeta) = ([0.2, 0.3], 0.3f64);
-    let omega = (50.0f64 * (1.0 / 0.2 + 1.0 / 0.3)).sqrt();
+    let ((network, points, masses, omega), zeta) = (swing(), 0.3f64);
     let dampers = Dampers::of_ratio(&network, &points, &masses, &Support { prescribed: vec![None; 4] }, zeta).unwrap();
     let damping = Damping { dampers: Some(dampers), ..Damping::default() };
     let motion = Motion { damping, ..Motion::free(&network, &points, &masses) };
@@ -712,9 +709,9 @@ fn lumped_masses_are_positive() {
     for shipped in SHIPPED {
         let element = Element::shipped(shipped).unwrap();
         let d = element.dimension();
-        let points = element.positions.clone();
         // The reference cell itself, pulled to another shape.
-        let points: Vec<f64> = points.iter().enumerate().map(|(i, x)| x * (1.0 + 0.3 * (i % d) as f64)).collect();
+        let points: Vec<f64> =
+            element.positions.iter().enumerate().map(|(i, x)| x * (1.0 + 0.3 * (i % d) as f64)).collect();
         let mesh = single(&element, &points);
         let rows = masses(&mesh, 1000.0, 0.5);
         let hrz = lumped_masses(&mesh, 1000.0, 0.5, Lumping::Hrz);

@@ -1,6 +1,6 @@
 //! Networks as the files of other programs: what is held is written whole, what is not is refused with a way out.
 
-use crate::kit::{holding, outcome, springfit, told};
+use crate::kit::{holding, outcome, ran};
 use springfit::export::{Content, TARGETS, Target, target_named, with_warnings};
 use springfit_bodies::engine::{Engine, Setting};
 use springfit_bodies::model::Elastic;
@@ -8,7 +8,6 @@ use springfit_foundation::error::ErrorKind;
 use springfit_report::report::{Division, NetworkFile, NetworkRecord, Parts};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 use std::sync::LazyLock;
 use tempfile::TempDir;
 
@@ -191,23 +190,18 @@ fn phystwin_has_the_gravity_of_its_own_and_no_other() {
     }
 }
 
-fn program(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let output = springfit(folder, arguments);
-    (output.status.code(), told(&output))
-}
-
 #[test]
 fn a_scene_and_its_network_give_the_same_files_and_a_refusal_leaves_none() {
     let folder = TempDir::new().unwrap();
     let at = |name: &str| folder.path().join(name);
     // A body that stands its weight.
     fs::write(at("s.toml"), SCENE.replace("1e4", "1e6")).unwrap();
-    let (code, text) = program(folder.path(), &["run", "s.toml", "--out", "o"]);
+    let (code, text) = ran(folder.path(), &["run", "s.toml", "--out", "o"]);
     assert_eq!(code, Some(0), "{text}");
     for (from, to) in [("s.toml", "a"), ("o/classical.json", "b")] {
         let fit: &[&str] = if from == "s.toml" { &["--fit", "classical"] } else { &[] };
         let arguments = [&["export", from, "--to", "lammps", "--out", to], fit].concat();
-        let (code, text) = program(folder.path(), &arguments);
+        let (code, text) = ran(folder.path(), &arguments);
         assert!(code == Some(0) && text.contains("run it: cd "), "{text}");
     }
     for name in ["network.data", "in.network"] {
@@ -225,7 +219,7 @@ fn a_scene_and_its_network_give_the_same_files_and_a_refusal_leaves_none() {
         (&["export", "o/none.json", "--to", "newton"], "cannot be read"),
     ] {
         let before = fs::read_dir(folder.path()).unwrap().count();
-        let (code, text) = program(folder.path(), arguments);
+        let (code, text) = ran(folder.path(), arguments);
         assert!(code == Some(2) && text.contains(words), "{arguments:?}: {text}");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
     }
@@ -522,7 +516,7 @@ fn a_network_that_locks_is_told() {
     }
     let folder = holding("s.toml", SCENE.replace("0.3", "0.49"));
     for arguments in ["export s.toml --to npz", "run s.toml --out out", "export out/exact.json --to newton --out n"] {
-        let (code, said) = program(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        let (code, said) = ran(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
         assert_eq!(code, Some(0), "{said}");
         assert!(said.contains("linear cells lock"), "{arguments}: {said}");
     }
@@ -551,7 +545,7 @@ fn scripts_begin_with_what_is_told() {
     let text = SCENE.replace("1e4", "2e5") + "[[load]]\nname = \"push\"\ngroup = \"zmax\"\ntraction = [0, 0, -1e5]\n";
     let folder = holding("s.toml", text.as_bytes());
     for target in ["mujoco", "newton"] {
-        let (code, printed) = program(folder.path(), &["export", "s.toml", "--to", target, "--out", target]);
+        let (code, printed) = ran(folder.path(), &["export", "s.toml", "--to", target, "--out", target]);
         assert_eq!(code, Some(0), "{printed}");
         let written = fs::read_to_string(folder.path().join(target).join("run.py")).unwrap();
         let told: Vec<&str> = written.lines().map_while(|line| line.strip_prefix("# Beware: ")).collect();
@@ -674,8 +668,7 @@ fn springs_on_hexahedra_are_divided_into_those_of_tetrahedra() {
 #[test]
 fn networks_of_voxels_reach_an_engine() {
     let folder = holding("v.toml", VOXELS);
-    let export =
-        |to: &str, fit: &str| program(folder.path(), &["export", "v.toml", "--to", to, "--fit", fit, "--out", to]);
+    let export = |to: &str, fit: &str| ran(folder.path(), &["export", "v.toml", "--to", to, "--fit", fit, "--out", to]);
     for to in ["newton", "blender", "jolt", "xpbd", "npz"] {
         let (code, said) = export(to, "bulk");
         assert_eq!(code, Some(0), "{to}: {said}");
@@ -809,8 +802,7 @@ fn gravity_of_a_load_is_the_gravity_of_the_program() {
                  [[load]]\nname = \"both\"\nsum = [\"sag\", \"push\"]\n";
     fs::write(folder.path().join("s.toml"), scene).unwrap();
     let written = |more: &[&str], out: &str| -> (String, serde_json::Value) {
-        let (code, text) =
-            program(folder.path(), &[&["export", "s.toml", "--to", "xpbd", "--out", out], more].concat());
+        let (code, text) = ran(folder.path(), &[&["export", "s.toml", "--to", "xpbd", "--out", out], more].concat());
         assert_eq!(code, Some(0), "{text}");
         (text, serde_json::from_slice(&fs::read(folder.path().join(out).join("network.json")).unwrap()).unwrap())
     };
@@ -847,7 +839,7 @@ fn a_surface_of_quadrilaterals_is_no_body_of_tetrahedra() {
     let scene = "[mesh]\nfile = \"cloth.obj\"\n[material]\nyoung = 1e5\npoisson = 0.3\nthickness = 0.001\ndensity = 1000\n\
                  [[fit]]\nobjective = \"offdiag\"\nnonnegative = true\n[[fix]]\nwhere = \"x < 0.1\"\n";
     fs::write(folder.path().join("s.toml"), scene).unwrap();
-    let (code, text) = program(folder.path(), &["export", "s.toml", "--to", "mujoco", "--out", "o"]);
+    let (code, text) = ran(folder.path(), &["export", "s.toml", "--to", "mujoco", "--out", "o"]);
     assert!(code == Some(2) && text.contains("linear tetrahedra or of triangles"), "{text}");
     assert!(!folder.path().join("o").exists());
 }

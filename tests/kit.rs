@@ -39,6 +39,12 @@ pub fn told(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &said(output)
 }
 
+/// Its exit code, and what it said on both of its streams.
+pub fn ran(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = springfit(folder, arguments);
+    (output.status.code(), told(&output))
+}
+
 /// What it prints where it succeeds.
 pub fn prints(folder: &Path, arguments: &[&str]) -> String {
     let output = springfit(folder, arguments);

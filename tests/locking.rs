@@ -1,64 +1,15 @@
 //! Near the incompressible: volume springs on cells and patches answer where finite elements lock.
 
-use crate::kit::{outcome, place};
+use crate::kit::{json, outcome, place, ran};
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{compliance, membrane, support_at};
-use nalgebra::DMatrix;
-use springfit_bodies::model::{
-    Entries, Lumping, Network, Support, finite_elements, lumped_masses, patch_springs, smoothed_pressure,
-};
-use springfit_bodies::solve::{System, lowest_modes};
+use crate::shapes::statics::{compliance, end_load, frequencies, held_where, membrane, on_cells};
+use springfit_bodies::model::{Network, Support, finite_elements, patch_springs, smoothed_pressure};
+use springfit_bodies::solve::System;
 use springfit_element::material::{Material, Plane, State};
 use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
 use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::{Scene, run};
 use std::path::Path;
-
-/// Held where `test` is true of the place.
-fn held(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> (Support, Vec<bool>) {
-    let points: Vec<usize> = (0..mesh.point_count()).filter(|p| test(mesh.point(*p))).collect();
-    let support = support_at(mesh, &points);
-    (support, (0..mesh.point_count()).map(|p| points.contains(&p)).collect())
-}
-
-/// The stiffness of the exact network at rest.
-fn stiffness(mesh: &Mesh, material: Material, volume: VolumeSprings, held: &[bool]) -> Entries {
-    let fit = ExactFit { volume, ..ExactFit::default() };
-    let block = &mesh.blocks[0];
-    let cells = fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
-    let mut network = Network::assemble(mesh, &[cells]);
-    if volume == VolumeSprings::Patches {
-        network.others.extend(patch_springs(mesh, material, &fit, held).unwrap());
-    }
-    network.stiffness(&mesh.points)
-}
-
-/// A unit traction force along `axis` on the side where `test` holds, of triangles or of edges.
-fn end_load(mesh: &Mesh, axis: usize, test: impl Fn(&[f64]) -> bool) -> Vec<f64> {
-    let d = mesh.dimension;
-    let mut load = vec![0.0; mesh.points.len()];
-    let (mut total, element) = (0.0, &mesh.blocks[0].element);
-    for nodes in mesh.blocks[0].cells() {
-        for side in element.sides() {
-            let side: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
-            if !side.iter().all(|p| test(mesh.point(*p))) {
-                continue;
-            }
-            let at = |i: usize| nalgebra::DVector::from_column_slice(mesh.point(side[i]));
-            let measure = match d {
-                2 => (at(1) - at(0)).norm(),
-                _ => {
-                    let edges = DMatrix::from_columns(&[at(1) - at(0), at(2) - at(0)]);
-                    (edges.transpose() * edges).determinant().sqrt() / 2.0
-                }
-            };
-            total += measure;
-            side.iter().for_each(|p| load[p * d + axis] += measure / side.len() as f64);
-        }
-    }
-    load.iter_mut().for_each(|f| *f /= total);
-    load
-}
 
 /// The cantilever 4 × 1 × 1 of tetrahedra under a unit shear of its end: twenty-node hexahedra find 263 at ν = 0.3 and 249 at
 /// ν = 0.4999. With 4 cells across, patches have an error at 0.4999 that is less than one and a half times that at 0.3, and finite
@@ -69,10 +20,11 @@ fn a_cantilever_bends_near_the_incompressible() {
     for (nu, known) in [(0.3, 263.0), (0.4999, 249.0)] {
         let material = Material::new(1.0, nu, State::Solid).unwrap();
         let mesh = grid("tet4", &[4.0, 1.0, 1.0], &[16, 4, 4]);
-        let (support, held) = held(&mesh, |x| x[0] == 0.0);
-        let load = end_load(&mesh, 2, |x| x[0] == 4.0);
+        let (support, held) = held_where(&mesh, |x| x[0] == 0.0);
+        let load = end_load(&mesh, |x| x[0] == 4.0);
         let bodies = compliance(&finite_elements(&mesh, material.moduli()), &support, &load);
-        let of = |volume| compliance(&stiffness(&mesh, material, volume, &held), &support, &load);
+        let of =
+            |volume| compliance(&on_cells(&mesh, material, volume, &held).stiffness(&mesh.points), &support, &load);
         let (points, patches) = (of(VolumeSprings::Points), of(VolumeSprings::Patches));
         println!("nu = {nu}: known {known}, finite elements {bodies:.1}, patches {patches:.1}");
         assert!((points / bodies - 1.0).abs() < 1e-9, "{points} {bodies}");
@@ -94,11 +46,13 @@ fn cooks_membrane_deforms_near_the_incompressible() {
         ("quad4", 32, VolumeSprings::Cells, 0.01),
     ] {
         let mesh = membrane(element, n);
-        let (support, held) = held(&mesh, |x| x[0] == 0.0);
-        let load = end_load(&mesh, 1, |x| x[0] == 48.0);
+        let (support, held) = held_where(&mesh, |x| x[0] == 0.0);
+        let load = end_load(&mesh, |x| x[0] == 48.0);
         let material = Material::for_body(2, 1.0, 0.4999, Some(Plane::Strain), None).unwrap();
         let bodies = compliance(&finite_elements(&mesh, material.moduli()), &support, &load) / 18.53 - 1.0;
-        let networks = compliance(&stiffness(&mesh, material, volume, &held), &support, &load) / 18.53 - 1.0;
+        let networks = compliance(&on_cells(&mesh, material, volume, &held).stiffness(&mesh.points), &support, &load)
+            / 18.53
+            - 1.0;
         println!("{element} {n}: finite elements {:.1} %, {} {:.2} %", 100.0 * bodies, volume.name(), 100.0 * networks);
         assert!(bodies < -0.2 && networks.abs() < allowed, "{element} {n}: {bodies} {networks}");
     }
@@ -108,20 +62,18 @@ fn cooks_membrane_deforms_near_the_incompressible() {
 /// remove a frequency.
 #[test]
 fn patches_add_no_soft_motion() {
-    let density = 1.0;
     for nu in [0.49, 0.4999] {
         let material = Material::new(1.0, nu, State::Solid).unwrap();
-        let frequencies = |mesh: &Mesh, entries: &Entries, support: &Support| {
-            let masses = lumped_masses(mesh, density, 1.0, Lumping::Hrz);
-            let system = System::new(entries, support).unwrap();
-            let factor = system.cholesky().unwrap().unwrap();
-            lowest_modes(&system, &factor, &masses, 3, 30).unwrap().frequencies()
-        };
         let fine = grid("hex20", &[1.0; 3], &[4, 4, 4]);
-        let known = frequencies(&fine, &finite_elements(&fine, material.moduli()), &held(&fine, |x| x[2] == 0.0).0);
+        let known =
+            frequencies(&fine, &finite_elements(&fine, material.moduli()), &held_where(&fine, |x| x[2] == 0.0).0);
         let mesh = grid("tet4", &[1.0; 3], &[8, 8, 8]);
-        let (support, held) = held(&mesh, |x| x[2] == 0.0);
-        let found = frequencies(&mesh, &stiffness(&mesh, material, VolumeSprings::Patches, &held), &support);
+        let (support, held) = held_where(&mesh, |x| x[2] == 0.0);
+        let found = frequencies(
+            &mesh,
+            &on_cells(&mesh, material, VolumeSprings::Patches, &held).stiffness(&mesh.points),
+            &support,
+        );
         let ratios: Vec<f64> = found.iter().zip(&known).map(|(a, b)| a / b).collect();
         println!(
             "nu = {nu}: ratios {:.3} to {:.3}",
@@ -338,10 +290,8 @@ fn what_is_compared_with_cells_that_lock_is_told() {
 fn a_fit_on_patches_is_told_what_is_held() {
     let folder = tempfile::tempdir().unwrap();
     let program = |arguments: &str| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"));
-        let output = command.args(arguments.split(' ')).current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(output.status.success(), "{said}");
+        let (code, said) = ran(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(code, Some(0), "{said}");
         said
     };
     let mesh = place("scenes/meshes/cube_tet.msh");
@@ -352,10 +302,7 @@ fn a_fit_on_patches_is_told_what_is_held() {
     );
     std::fs::write(folder.path().join("s.toml"), text).unwrap();
     program("run s.toml --out out");
-    let springs = |path: &str| {
-        let text = std::fs::read_to_string(folder.path().join(path)).unwrap();
-        serde_json::from_str::<serde_json::Value>(&text).unwrap()["springs"].to_string()
-    };
+    let springs = |path: &str| json(&folder.path().join(path))["springs"].to_string();
     let known = springs("out/patches.json");
     let fit = format!("fit {} --scale 0.01 --young 1e4 --poisson 0.49 --volume patches", mesh.display());
     let said = program(&format!("{fit} --fix {group} -o held.json"));

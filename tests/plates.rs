@@ -1,6 +1,7 @@
 //! Sheets that bend: springs on directors are the plate of Morley, on any mesh.
 
 use crate::shapes::Random;
+use crate::shapes::bodies::{bending, of_triangles, triangles};
 use crate::shapes::statics::{product, support_at};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use springfit_bodies::model::{
@@ -8,12 +9,10 @@ use springfit_bodies::model::{
     hinge_flexure, lumped_masses,
 };
 use springfit_bodies::solve::{Ending, Newton, System, lowest_modes};
-use springfit_element::element::Element;
 use springfit_element::material::{CellMap, Energy, Hooke, Material, Plane};
 use springfit_element::springs::{Measure, Turns};
-use springfit_mesh::mesh::{CellBlock, Mesh};
+use springfit_mesh::mesh::Mesh;
 use springfit_report::report::{HeldRecord, NetworkFile, Parts};
-use std::sync::Arc;
 
 /// Ways to divide squares into triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,32 +29,14 @@ const KINDS: [Kind; 3] = [Kind::Right, Kind::Union, Kind::Jitter];
 
 /// A sheet `[0, size[0]] × [0, size[1]]` at z = 0 of thickness t, with directors.
 fn sheet(kind: Kind, size: [f64; 2], cells: [usize; 2], t: f64) -> Mesh {
-    let [nx, ny] = cells;
-    let mut random = Random(7);
-    let mut points = Vec::new();
-    for (i, j) in (0..=ny).flat_map(|j| (0..=nx).map(move |i| (i, j))) {
-        let is_inner = i > 0 && i < nx && j > 0 && j < ny;
-        let mut shift = || if kind == Kind::Jitter && is_inner { 0.3 * random.next() } else { 0.0 };
-        points.extend([size[0] * (i as f64 + shift()) / nx as f64, size[1] * (j as f64 + shift()) / ny as f64, 0.0]);
-    }
-    let at = |i: usize, j: usize| j * (nx + 1) + i;
-    let mut triangles = Vec::new();
-    for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))) {
-        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        triangles.extend(match kind == Kind::Right || (i + j) % 2 == 0 {
-            true => [a, b, c, a, c, d],
-            false => [a, b, d, b, c, d],
-        });
-    }
-    surface(points, triangles, t)
+    let share = if kind == Kind::Jitter { 0.3 } else { 0.0 };
+    let (points, triangles) = triangles(cells, share, |i, j| kind == Kind::Right || (i + j) % 2 == 0);
+    surface(points.iter().flat_map(|x| [size[0] * x[0], size[1] * x[1], 0.0]).collect(), triangles, t)
 }
 
 /// A surface in space of these triangles, with directors.
 fn surface(points: Vec<f64>, triangles: Vec<usize>, t: f64) -> Mesh {
-    let element = Arc::new(Element::load("tri3").unwrap().in_space(3));
-    let count = triangles.len() / 3;
-    let mesh = Mesh::of_cells(3, points, vec![CellBlock { element, connectivity: triangles }]);
-    mesh.with_directors(vec![t * t / 12.0; count]).unwrap()
+    bending(of_triangles(points, triangles), t)
 }
 
 /// A material with the flexural stiffness 1 N·m at the thickness t.

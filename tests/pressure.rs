@@ -1,6 +1,6 @@
 //! Pressures on faces, at rest and on faces that move; and cavities that are filled to a given volume.
 
-use crate::kit::{json, outcome, refusal};
+use crate::kit::{json, outcome, ran, refusal};
 use crate::shapes::bodies::{grid, mapped, patch, sphere};
 use crate::shapes::statics::support_at;
 use crate::shapes::{Random, distorted, elements, single};
@@ -703,10 +703,7 @@ fn a_scene_fills_a_cavity() {
     };
     let run = |text: &str| {
         std::fs::write(folder.path().join("ball.toml"), text).unwrap();
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"));
-        let output = command.args(["run", "ball.toml", "--out", "out"]).current_dir(folder.path()).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-        (output.status.code(), said)
+        ran(folder.path(), &["run", "ball.toml", "--out", "out"])
     };
     let (code, said) = run(&scene("\"30 m^3\""));
     assert_eq!(code, Some(0), "{said}");

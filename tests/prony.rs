@@ -4,10 +4,11 @@ use crate::kit::{outcome, refusal};
 use crate::messages::reads;
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
+use crate::shapes::statics::support_at;
 use springfit_bodies::dynamics::{
     BranchForm, Decay, Integrator, LargeMemory, LinearMemory, Memory, Motion, Options, RelaxingPart, Simulation,
 };
-use springfit_bodies::model::{MaterialPoints, Support, displaced, exact_network, finite_elements, lumped_masses};
+use springfit_bodies::model::{MaterialPoints, displaced, exact_network, finite_elements, lumped_masses};
 use springfit_element::material::{Material, MaterialMap, Moduli, Relaxation, RelaxationTerm, State};
 use springfit_fit::fit::{ExactFit, ModulusTest, ShearSprings};
 use springfit_mesh::mesh::Mesh;
@@ -285,15 +286,7 @@ fn what_a_maxwell_element_dissipates_is_its_integral() {
         let (a, c) = (0.8, -1.3);
         let stretch = |y: f64| a * f64::exp(-y) - c * f64::exp_m1(-y) / x;
         let n = 2000;
-        let weight = |i: usize| {
-            if i == 0 || i == n {
-                1.0
-            } else if i % 2 == 1 {
-                4.0
-            } else {
-                2.0
-            }
-        };
+        let weight = |i: usize| if i == 0 || i == n { 1.0 } else { [2.0, 4.0][i % 2] };
         let sum: f64 = (0..=n).map(|i| weight(i) * stretch(x * i as f64 / n as f64).powi(2)).sum();
         let [own, both, other] = decay.dissipation();
         let found = own * a * a + both * a * c + other * c * c;
@@ -333,6 +326,10 @@ watch = {{ group = "xmax" }}
 
 const EXACT: &str = "[[fit]]\nobjective = \"exact\"\n[[fit]]\nname = \"smooth\"\nobjective = \"exact\"\nshear = \"edges\"\nvolume = \"patches\"\n";
 
+/// 0.02 N at once, for 5 s.
+const CREEPING: &str =
+    "duration = 5\nstep = 0.02\nevery = 0.5\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
+
 /// The largest error of the elongation of a bar that creeps under 0.02 N with the shares g and k and τ = 2 s.
 fn error_of_creep(model: &ModelMotion, [g, k]: [f64; 2]) -> f64 {
     let creep = |g: f64, t: f64| 1.0 - g / (1.0 - g) * f64::exp_m1(-(1.0 - g) * t / 2.0);
@@ -356,8 +353,7 @@ pub fn creep_error(step: f64) -> f64 {
 
 /// The errors of creep at a hundredth of τ of the finite elements, of the exact network and of the smoothed one, with these shares.
 pub fn creep_errors([g, k]: [f64; 2]) -> Vec<f64> {
-    let pull = "duration = 5\nstep = 0.02\nevery = 0.5\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
-    let outcome = outcome(&bar(&format!("{{ shear = {g:?}, bulk = {k:?}, time = 2 }}"), EXACT, pull));
+    let outcome = outcome(&bar(&format!("{{ shear = {g:?}, bulk = {k:?}, time = 2 }}"), EXACT, CREEPING));
     outcome.motion.unwrap().models.iter().map(|model| error_of_creep(model, [g, k])).collect()
 }
 
@@ -371,8 +367,7 @@ fn a_bar_creeps_as_prony() {
         ("{ bulk = 0.6, time = 2 }", 0.0, 0.6),
         ("{ shear = 0.6, time = 2 }, { bulk = 0.3, time = 2 }", 0.6, 0.3),
     ] {
-        let pull = "duration = 5\nstep = 0.02\nevery = 0.5\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
-        let outcome = outcome(&bar(terms, EXACT, pull));
+        let outcome = outcome(&bar(terms, EXACT, CREEPING));
         let motion = outcome.motion.as_ref().unwrap();
         assert_eq!(motion.models.len(), 3);
         for model in &motion.models {
@@ -647,14 +642,7 @@ fn the_stable_step_is_that_of_a_sudden_strain() {
     let network = exact_network(&mesh, &map, &ExactFit::default(), &[]).unwrap();
     let masses = lumped_masses(&mesh, 1000.0, 1.0, Default::default());
     let stiffness = network.stiffness(&mesh.points);
-    let support = Support {
-        prescribed: mesh
-            .points
-            .iter()
-            .enumerate()
-            .map(|(dof, _)| (mesh.points[dof / 3 * 3 + 2] < 1e-9).then_some(0.0))
-            .collect(),
-    };
+    let support = support_at(&mesh, &mesh.groups["zmin"].points);
     for time in [1e-5, 1e-3, 3e-3, 0.1, 10.0] {
         let part = RelaxingPart::new(&stiffness, mesh.points.len(), vec![0.7]).unwrap();
         let memory = Some(Memory::Linear(LinearMemory::new(vec![time], vec![part], mesh.points.len()).unwrap()));
@@ -682,51 +670,42 @@ fn wrong_keys_are_named() {
     let pull = "duration = 5\nstep = 0.5\n[[motion.force]]\ngroup = \"xmax\"\nforce = [0.02, 0, 0]\n";
     let with = |terms: &str| bar(terms, EXACT, pull);
     let good = with("{ shear = 0.6, time = 2 }");
-    for (text, message) in [
-        (with(""), "…material.relaxation.terms: … found none…"),
-        (with("{ shear = -0.1, time = 2 }"), "…material.relaxation.terms[0].shear: … found -0.1…"),
-        (with("{ bulk = 1.1, time = 2 }"), "…material.relaxation.terms[0].bulk: … found 1.1…"),
-        (with("{ shear = nan, time = 2 }"), "…material.relaxation.terms[0].shear: … found NaN…"),
-        (with("{ time = 2 }"), "…material.relaxation.terms[0]: … found none…"),
-        (with("{ shear = 0.6, time = 0 }"), "…material.relaxation.terms[0].time: … found 0…"),
-        (with("{ shear = 0.6, time = -3 }"), "…material.relaxation.terms[0].time: … found -3…"),
-        (with("{ shear = 0.6, time = \"2 kg\" }"), "…time…2 kg…"),
-        (with("{ shear = 0.6 }"), "…time…"),
-        (with("{ shear = 0.6, time = 1 }, { shear = 0.5, time = 2 }"), "…material.relaxation.terms: … found 1.1…"),
-        (good.replace("linear = true\n", ""), "…motion.linear: expected true …"),
-        (good.replace("quasi-static = true", "quasi-static = true\nintegrator = \"newmark\""), "…motion.integrator: …"),
-        (
-            good.replace("quasi-static = true", "quasi-static = true\ndamping = { rayleigh = [1, 0] }"),
-            "…motion.damping: …",
-        ),
-        (good.replace("quasi-static = true\n", ""), "…material.density: …"),
-        (good.replace("quasi-static = true\n", "error = 0.1\n"), "…motion.error: …quasi-static = true…"),
-        (good.replace("quasi-static = true\n", "quasi-static = true\nerror = 0\n"), "…motion.error: … found 0…"),
-        (
-            good.replace("quasi-static = true\n", "quasi-static = true\nerror = 0.1\n").replace("relaxation = ", "# "),
-            "…motion.error: … found one without…",
-        ),
-        (good.replace("quasi-static = true", "quasi-static = true\ngravity = [0, 0, -9.81]"), "…material.density: …"),
-        (column("hex8", "duration = 1\nstep = 0.1\nlinear = true", ""), "…motion.linear: expected false …"),
-        (
-            column("hex8", "duration = 1\nstep = 0.1", "").replace("shear = 0.2,", "shear = 0.2, bulk = 0.1,"),
-            "…material.relaxation.bulk: … found 0.1…",
-        ),
-        (
-            column("hex8", "duration = 1\nstep = 0.1", "").replace("shear = 0.2,", "shear = 0.5,"),
-            "…material.relaxation.terms: … less than 1 … found 1…",
-        ),
-        (
-            column("hex8", "duration = 1\nstep = 0.1", "").replace("stable-neo-hookean", "neo-hookean"),
-            "…material.relaxation.terms: … \"neo-hookean\"…",
-        ),
-        (
-            column("hex8", "duration = 1\nstep = 0.1", "").replace("\"exact\"", "\"modal\""),
-            "…material.relaxation.terms: expected exact networks …",
-        ),
+    for (terms, message) in [
+        ("", ": … found none"),
+        ("{ shear = -0.1, time = 2 }", "[0].shear: … found -0.1"),
+        ("{ bulk = 1.1, time = 2 }", "[0].bulk: … found 1.1"),
+        ("{ shear = nan, time = 2 }", "[0].shear: … found NaN"),
+        ("{ time = 2 }", "[0]: … found none"),
+        ("{ shear = 0.6, time = 0 }", "[0].time: … found 0"),
+        ("{ shear = 0.6, time = -3 }", "[0].time: … found -3"),
+        ("{ shear = 0.6, time = \"2 kg\" }", "…time…2 kg"),
+        ("{ shear = 0.6 }", "…time"),
+        ("{ shear = 0.6, time = 1 }, { shear = 0.5, time = 2 }", ": … found 1.1"),
     ] {
-        let found = refusal(&text);
-        reads(&found, message).unwrap();
+        reads(&refusal(&with(terms)), &format!("…material.relaxation.terms{message}…")).unwrap();
+    }
+    let unlike = good.replace("relaxation = ", "# ");
+    for (text, from, to, message) in [
+        (&good, "linear = true\n", "", "…motion.linear: expected true …"),
+        (&good, "static = true", "static = true\nintegrator = \"newmark\"", "…motion.integrator: …"),
+        (&good, "static = true", "static = true\ndamping = { rayleigh = [1, 0] }", "…motion.damping: …"),
+        (&good, "quasi-static = true\n", "", "…material.density: …"),
+        (&good, "quasi-static = true\n", "error = 0.1\n", "…motion.error: …quasi-static = true…"),
+        (&good, "static = true", "static = true\nerror = 0", "…motion.error: … found 0…"),
+        (&unlike, "static = true", "static = true\nerror = 0.1", "…motion.error: … found one without…"),
+        (&good, "static = true", "static = true\ngravity = [0, 0, -9.81]", "…material.density: …"),
+    ] {
+        reads(&refusal(&text.replace(from, to)), message).unwrap();
+    }
+    let large = column("hex8", "duration = 1\nstep = 0.1", "");
+    for (from, to, message) in [
+        ("step = 0.1", "step = 0.1\nlinear = true", "…motion.linear: expected false …"),
+        ("shear = 0.2,", "shear = 0.2, bulk = 0.1,", "…material.relaxation.bulk: … found 0.1…"),
+        ("shear = 0.2,", "shear = 0.5,", "…material.relaxation.terms: … less than 1 … found 1…"),
+        ("stable-neo-hookean", "neo-hookean", "…material.relaxation.terms: … \"neo-hookean\"…"),
+        ("\"exact\"", "\"modal\"", "…material.relaxation.terms: expected exact networks …"),
+    ] {
+        reads(&refusal(&large.replace(from, to)), message).unwrap();
     }
     let plane = good.replace("tet4", "tri3").replace("0.02, 0.02], cells = [4, 2, 2]", "0.02], cells = [4, 2]");
     let plane =

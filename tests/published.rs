@@ -5,7 +5,7 @@
 use crate::messages::reads;
 use crate::shapes::statics::dense;
 
-use crate::shapes::{Random, distorted, elements, materials, rigid_motions, single};
+use crate::shapes::{Random, bodies, distorted, elements, materials, rigid_motions, single};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, Network};
 use springfit_element::element::{Cell, Element, SpringKind};
@@ -13,7 +13,7 @@ use springfit_element::material::{Material, Plane};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::published::{self, Method, Ratio, Shape, Unmet, unmet};
 use springfit_fit::fit::{CellFits, Fit, Objective, Weight, element_errors, fit_element};
-use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
+use springfit_mesh::mesh::{CellBlock, Mesh};
 use springfit_studies::study::{EffectiveModuli, Lattice};
 use std::sync::Arc;
 
@@ -80,8 +80,7 @@ fn all_close(found: &[f64], expected: f64, digits: f64) {
 
 fn boxed(element: &Element, size: &[f64], cells: usize) -> Mesh {
     let d = element.dimension();
-    let element = Arc::new(element.clone());
-    BoxMesh { element, size: size[..d].to_vec(), cells: vec![cells; d], origin: vec![0.0; d] }.build().unwrap()
+    bodies::boxed(&Arc::new(element.clone()), &size[..d], &vec![cells; d]).unwrap()
 }
 
 fn network(method: Method, mesh: &Mesh, material: Material) -> Network {
@@ -226,35 +225,18 @@ fn baudets_springs_hold_the_modulus_of_tension_and_of_shear() {
             let found = moduli(Method::Baudet, name, &size, material(d, nu)).stiffness;
             for i in 0..found.nrows() {
                 for j in 0..found.nrows() {
-                    let expected = match (i < d, j < d) {
-                        (true, true) => {
-                            if i == j {
-                                along
-                            } else {
-                                shear
-                            }
-                        }
-                        _ => {
-                            if i == j {
-                                shear
-                            } else {
-                                0.0
-                            }
-                        }
+                    let expected = match (i < d && j < d, i == j) {
+                        (true, true) => along,
+                        (true, false) | (false, true) => shear,
+                        (false, false) => 0.0,
                     };
                     close(found[(i, j)], expected, 1e-13);
                 }
             }
             // Under ε along and −ν ε across: E along, and across the part that the correction has to cancel.
-            let strain = DVector::from_fn(found.nrows(), |i, _| {
-                if i == 0 {
-                    1.0
-                } else if i < d {
-                    -nu
-                } else {
-                    0.0
-                }
-            });
+            let mut strain = DVector::zeros(found.nrows());
+            strain.rows_mut(0, d).fill(-nu);
+            strain[0] = 1.0;
             let stress = found * strain;
             close(stress[0], 1.0, 1e-13);
             close(stress[1], (1.0 - (d as f64 + 1.0) * nu) / 2.0, 1e-13);
@@ -293,24 +275,16 @@ fn baudets_corrected_springs_are_the_material() {
 /// Quadratic springs are the constant strain triangle and tetrahedron, whatever their shape; in plane strain too.
 #[test]
 fn delingettes_springs_are_the_finite_element() {
-    let triangle = Element::load("tri3").unwrap();
     let mut random = Random(2);
-    for _ in 0..20 {
-        let x = distorted(&triangle, &mut random);
-        for material in materials(2) {
-            for method in [Method::DelingetteQuadratic, Method::DelingetteBiquadratic] {
-                let found = error(method, "tri3", &x, material);
-                assert!(found < 1e-12, "{method:?}: {found}");
-            }
-        }
-    }
-    let tetrahedron = Element::load("tet4").unwrap();
-    for _ in 0..20 {
-        let x = distorted(&tetrahedron, &mut random);
-        for material in materials(3) {
-            for method in [Method::DelingetteQuadratic, Method::DelingetteBiquadratic] {
-                let found = error(method, "tet4", &x, material);
-                assert!(found < 1e-11, "{method:?}: {found}");
+    let [triangle, tetrahedron] = ["tri3", "tet4"].map(|name| Element::load(name).unwrap());
+    for (element, most) in [(&triangle, 1e-12), (&tetrahedron, 1e-11)] {
+        for _ in 0..20 {
+            let x = distorted(element, &mut random);
+            for material in materials(element.dimension()) {
+                for method in [Method::DelingetteQuadratic, Method::DelingetteBiquadratic] {
+                    let found = error(method, &element.name, &x, material);
+                    assert!(found < most, "{method:?}: {found}");
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Rods that bend: springs on joints are the beam of Euler and Bernoulli, in any frame.
 
+use crate::kit::prints;
 use crate::shapes::Random;
 use crate::shapes::statics::support_at;
 use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
@@ -501,12 +502,7 @@ fn drafts_take_the_sections_of_beams() {
             "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 2, 0, 0.5\n*ELEMENT, TYPE=B31, ELSET=ALL\n1, 1, 2\n2, 2, 3\n*MATERIAL, NAME=STEEL\n*ELASTIC\n2e11, 0.3\n*DENSITY\n7850\n{section}\n"
         );
         std::fs::write(folder.path().join("beam.inp"), deck).unwrap();
-        let done = std::process::Command::new(env!("CARGO_BIN_EXE_springfit"))
-            .args(["new", "beam.inp", "-o", "beam.toml"])
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        assert!(done.status.success());
+        prints(folder.path(), &["new", "beam.inp", "-o", "beam.toml"]);
         let draft = std::fs::read_to_string(folder.path().join("beam.toml")).unwrap();
         std::fs::remove_file(folder.path().join("beam.toml")).unwrap();
         assert!(draft.contains(area) && draft.contains("7850"), "{section}: {draft}");

@@ -1,6 +1,7 @@
 //! Shells: the strains of surfaces in space on the domains of edges, with directors and without.
 
 use crate::shapes::Random;
+use crate::shapes::bodies::{bending, of_triangles, triangles};
 use crate::shapes::statics::product;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use springfit_bodies::model::{
@@ -35,39 +36,14 @@ pub const KINDS: [Kind; 4] = [Kind::Right, Kind::Left, Kind::Jitter, Kind::Union
 
 /// The unit square as n × n squares of two triangles.
 fn patch(kind: Kind, n: usize) -> (Vec<[f64; 2]>, Vec<usize>) {
-    let mut random = Random(7);
-    let mut points = Vec::new();
-    for (i, j) in (0..=n).flat_map(|j| (0..=n).map(move |i| (i, j))) {
-        let is_inner = i > 0 && i < n && j > 0 && j < n;
-        let mut shift = || if kind == Kind::Jitter && is_inner { 0.25 * random.next() } else { 0.0 };
-        points.push([(i as f64 + shift()) / n as f64, (j as f64 + shift()) / n as f64]);
-    }
-    let mut triangles = Vec::new();
-    for (i, j) in (0..n).flat_map(|j| (0..n).map(move |i| (i, j))) {
-        let a = j * (n + 1) + i;
-        let [b, c, d] = [a + 1, a + n + 2, a + n + 1];
-        triangles.extend(match kind == Kind::Left || (kind == Kind::Union && (i + j) % 2 == 0) {
-            true => [a, b, c, a, c, d],
-            false => [a, b, d, b, c, d],
-        });
-    }
-    (points, triangles)
+    let share = if kind == Kind::Jitter { 0.25 } else { 0.0 };
+    triangles([n, n], share, |i, j| kind == Kind::Left || (kind == Kind::Union && (i + j) % 2 == 0))
 }
 
 /// A surface in space whose points are `place` of those of a patch.
 fn surface(kind: Kind, n: usize, place: impl Fn([f64; 2]) -> [f64; 3]) -> Mesh {
     let (points, triangles) = patch(kind, n);
     of_triangles(points.into_iter().flat_map(place).collect(), triangles)
-}
-
-fn of_triangles(points: Vec<f64>, triangles: Vec<usize>) -> Mesh {
-    let element = Arc::new(Element::load("tri3").unwrap().in_space(3));
-    Mesh::of_cells(3, points, vec![CellBlock { element, connectivity: triangles }])
-}
-
-fn bending(mesh: Mesh, t: f64) -> Mesh {
-    let count = mesh.cell_count();
-    mesh.with_directors(vec![t * t / 12.0; count]).unwrap()
 }
 
 fn membrane(young: f64, poisson: f64, t: f64) -> Material {

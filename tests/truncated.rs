@@ -1,6 +1,6 @@
 //! Networks in engines that end their sweeps early, against loops that make the steps one after the other.
 
-use crate::kit::holding;
+use crate::kit::{holding, springfit};
 use crate::shapes::Random;
 use crate::shapes::bodies::{grid, mapped};
 use springfit_bodies::engine::{
@@ -12,7 +12,6 @@ use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
 use springfit_identify::whole::{Displacements, LeastSquares, Object, Target, Unknowns};
 use springfit_mesh::mesh::Mesh;
-use std::process::Command;
 
 /// A bent and distorted bar of tetrahedra that is held at one end, with springs on lengths and on volumes.
 struct Bar {
@@ -367,12 +366,7 @@ fn scene(of_fit: &str, material: &str) -> String {
 
 fn run(text: &str, words: &[&str]) -> (Option<i32>, String, String) {
     let folder = holding("s.toml", text);
-    let output = Command::new(env!("CARGO_BIN_EXE_springfit"))
-        .args(["run", "s.toml"])
-        .args(words)
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
+    let output = springfit(folder.path(), &[&["run", "s.toml"], words].concat());
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (output.status.code(), text(output.stdout), text(output.stderr))
 }

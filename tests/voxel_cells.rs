@@ -1,10 +1,9 @@
 //! Voxels that are divided into tetrahedra.
 
-use crate::kit::place;
+use crate::kit::{place, ran};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{CellIndex, Mesh, MeshSource, Selection, VoxelMesh};
 use std::fs;
-use std::process::Command;
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -87,10 +86,8 @@ fn the_program_divides_voxels_and_writes_the_key_into_the_scene() {
     let folder = TempDir::new().unwrap();
     fs::copy(place("tests/meshes/labels.npy"), folder.path().join("labels.npy")).unwrap();
     let run = |words: &[&str]| {
-        let output =
-            Command::new(env!("CARGO_BIN_EXE_springfit")).args(words).current_dir(folder.path()).output().unwrap();
-        let told = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
-        assert!(output.status.success(), "{words:?}: {told}");
+        let (code, told) = ran(folder.path(), words);
+        assert_eq!(code, Some(0), "{words:?}: {told}");
         told
     };
     run(&["new", "labels.npy", "--scale", "2 mm", "--fill-element", "tet4", "-o", "labels.toml"]);

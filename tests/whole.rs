@@ -1,8 +1,8 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
-use crate::kit::place;
+use crate::kit::{outcome, outcome_in, place, refusal};
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::support_at;
+use crate::shapes::statics::{dense, support_at};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 use springfit_bodies::model::{Network, Support, exact_network, finite_elements, masses};
@@ -18,6 +18,7 @@ use springfit_identify::whole::{
 use springfit_mesh::mesh::{CellIndex, Group, Mesh, vtk};
 use springfit_report::report;
 use springfit_studies::study::{Controls, Event, LoadOutcome, Outcome, Scene, run, run_with};
+use std::path::Path;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;
 
@@ -25,13 +26,9 @@ fn load(name: &str) -> Scene {
     Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
 }
 
-/// A scene of that text in a folder of its own.
-fn written(text: &str) -> (TempDir, Scene) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("scene.toml");
-    std::fs::write(&path, text).unwrap();
-    let scene = Scene::load(&path).unwrap();
-    (folder, scene)
+/// The scene of that text, whose files are in a folder.
+fn scene_in(folder: &Path, text: &str) -> Scene {
+    Scene::parse(text, &folder.join("scene.toml")).unwrap()
 }
 
 /// A body held by a group, and its finite elements.
@@ -214,11 +211,8 @@ fn domains_of_edges_share_the_moduli_of_groups() {
         let truth: Vec<f64> = names.iter().map(|name| if name.contains("upper") { 4.0f64.ln() } else { 0.0 }).collect();
         let object = Object::of_moduli(parts.clone(), parts.unknowns(sharing), None).unwrap();
         let network = object.network(&truth);
-        let [own, other] = [&network, &known].map(|network| {
-            let mut matrix = nalgebra::DMatrix::<f64>::zeros(body.mesh.points.len(), body.mesh.points.len());
-            network.stiffness(&body.mesh.points).iter().for_each(|e| matrix[(e.row, e.col)] += e.val);
-            matrix
-        });
+        let [own, other] =
+            [&network, &known].map(|network| dense(body.mesh.points.len(), &network.stiffness(&body.mesh.points)));
         assert!((&own - &other).norm() < 1e-12 * other.norm(), "{sharing:?}: {:e}", (own - other).norm());
         let found = object.region_factors(&truth);
         assert_eq!(found.len(), 2);
@@ -431,7 +425,7 @@ fn the_path_goes_to_its_end() {
 /// The same where displacements are large and springs have laws of force.
 #[test]
 fn derivatives_are_those_of_differences_at_large_deformation() {
-    let (_folder, scene) = written(SOFT);
+    let scene = scene_in(Path::new(""), SOFT);
     let body = Body::new(&scene, "zmin");
     for law in ["k*s", "k1*s + k3*s^3"] {
         let law = std::sync::Arc::new(springfit_element::springs::Law::parse(law).unwrap());
@@ -641,8 +635,7 @@ traction = ["0.5 - y", "x - 0.5", 0]
 "#;
 
 fn brick(keys: &str) -> Outcome {
-    let (_folder, scene) = written(&BRICK.replace("KEYS", keys).replace("MEASURED", ""));
-    run(&scene, &mut |_| {}).unwrap()
+    outcome(&BRICK.replace("KEYS", keys).replace("MEASURED", ""))
 }
 
 /// With loads made from the mesh all of the scene's are held out. Every way to share unknowns, to choose ρ and to go down does better
@@ -728,7 +721,7 @@ fn boxes_of_tetrahedra(sides: &[usize]) {
         let text = BRICK.replace("MEASURED", "").replace("KEYS", "start = [\"exact\", \"offdiag\"]\niterations = 3");
         let cells = format!("element = \"tet4\", size = [1, 1, 1], cells = [{side}, {side}, {side}]");
         let text = text.replace("element = \"hex8\", size = [1, 1, 2], cells = [3, 3, 6]", &cells);
-        let outcome = run(&written(&text).1, &mut |_| {}).unwrap();
+        let outcome = outcome(&text);
         let error = |fit: usize| ["tension", "shear"].map(|load| rms(&outcome.fits[fit].loads, load));
         println!("{side}: exact {:.4?}, offdiag {:.1?} %", error(1), error(2));
         assert!(error(1).iter().all(|e| *e < 0.005), "{side}: {:?}", error(1));
@@ -768,7 +761,7 @@ fn iterations_lead_to_the_same_network() {
         let of = |method: &str| {
             let text =
                 BRICK.replace("KEYS", keys).replace("MEASURED", "") + &format!("[solver]\nmethod = \"{method}\"\n");
-            run(&written(&text).1, &mut |_| {}).unwrap()
+            outcome(&text)
         };
         let [factors, iterations] = ["cholesky", "multigrid"].map(of);
         assert_eq!(iterations.fits[1].loads[0].solved_lem.as_ref().unwrap().method, "multigrid");
@@ -784,9 +777,10 @@ fn iterations_lead_to_the_same_network() {
 #[test]
 fn measured_displacements_are_fitted() {
     let text = BRICK.replace("KEYS", "loads = [\"tension\"]\nregularization = 1e-4");
-    let (folder, scene) = written(&text.replace("MEASURED", "measured = { file = \"u.csv\", scale = 0.001 }"));
-    let (_, plain) = written(&text.replace("MEASURED", ""));
-    let outcome = run(&plain, &mut |_| {}).unwrap();
+    let folder = TempDir::new().unwrap();
+    let entry = "measured = { file = \"u.csv\", scale = 0.001 }";
+    let scene = scene_in(folder.path(), &text.replace("MEASURED", entry));
+    let outcome = outcome(&text.replace("MEASURED", ""));
     let table = |keep: &dyn Fn(usize) -> bool| {
         let mut table = String::from("point,ux,uy,uz\n");
         for (p, u) in outcome.loads[0].fem.chunks_exact(3).enumerate().filter(|(p, _)| keep(*p)) {
@@ -818,9 +812,7 @@ fn measured_displacements_are_fitted() {
     let grid = report::displacement_grid(&outcome);
     vtk::write(&folder.path().join("u.vtu"), &grid).unwrap();
     let entry = "measured = { file = \"u.vtu\", array = \"u fem tension (m)\" }";
-    let (other, scene) = written(&text.replace("MEASURED", entry));
-    std::fs::copy(folder.path().join("u.vtu"), other.path().join("u.vtu")).unwrap();
-    let found = run(&scene, &mut |_| {}).unwrap();
+    let found = outcome_in(folder.path(), &text.replace("MEASURED", entry)).unwrap();
     assert!((rms(&found.fits[1].loads, "tension") - rms(&outcome.fits[1].loads, "tension")).abs() < 1e-6);
 }
 
@@ -884,8 +876,7 @@ traction = ["0.3 + 0.7*(0.5 - y)", "0.7*(x - 0.5)", 1]
 /// The springs follow the finite elements to large deformation: under a load that was not seen as well.
 #[test]
 fn large_deformations_are_fitted() {
-    let (_folder, scene) = written(SOFT);
-    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let outcome = outcome(SOFT);
     let error = |fit: usize, load: &str| rms(&outcome.fits[fit].loads, load);
     let largest = outcome.loads[0].fem.iter().fold(0.0f64, |a, u| a.max(u.abs()));
     assert!(largest > 0.2, "{largest}");
@@ -901,7 +892,8 @@ fn large_deformations_are_fitted() {
 /// A fit that is ended keeps its best point, and goes on from the checkpoint to where it would have come.
 #[test]
 fn ended_fits_go_on() {
-    let (folder, scene) = written(&BRICK.replace("KEYS", "").replace("MEASURED", ""));
+    let folder = TempDir::new().unwrap();
+    let scene = scene_in(folder.path(), &BRICK.replace("KEYS", "").replace("MEASURED", ""));
     let path = folder.path().join("state.json");
     let controls = Controls { checkpoint: Some(path.clone()), ..Controls::default() };
     let mut stages = 0;
@@ -932,8 +924,7 @@ fn ended_fits_go_on() {
         text.replace("KEYS", "start = \"equal\""),
         text.replace("KEYS", "").replace("group = \"zmin\"", "where = \"z < 0.1 && x < 0.6\""),
     ] {
-        let (_other, scene) = written(&other);
-        let error = run_with(&scene, &controls, &mut |_| {}).unwrap_err().to_string();
+        let error = run_with(&scene_in(folder.path(), &other), &controls, &mut |_| {}).unwrap_err().to_string();
         assert!(error.contains("state.json: fits.whole: "), "{error}");
     }
     let state = std::fs::read_to_string(&path).unwrap();
@@ -956,18 +947,16 @@ fn fits_of_nothing_end() {
     let keys = "loads = [\"tension\"]\nvalidate = [\"shear\"]";
     for size in ["1e30", "1e25", "1e-25", "1e-30"] {
         let load = format!("traction = [0, 0, {size}]");
-        let (_folder, scene) = written(&text.replace("KEYS", keys).replace("traction = [0, 0, 1]", &load));
-        let outcome = run(&scene, &mut |_| {}).unwrap();
+        let outcome = outcome(&text.replace("KEYS", keys).replace("traction = [0, 0, 1]", &load));
         let fitted = &outcome.fits[1].kind.whole().unwrap().fitted[0];
         assert!(fitted.after <= fitted.before && fitted.before < 1.0, "{size}: {fitted:?}");
     }
     let held = "group = \"zmax\"\ntraction = [0, 0, 1]";
     let all =
         text.replace("KEYS", "loads = [\"tension\"]").replace(held, "where = \"x > -1\"\ndisplacement = [1, 0, 0]");
-    let error = run(&written(&all).1, &mut |_| {}).unwrap_err().to_string();
+    let error = refusal(&all);
     assert!(error.contains("load[0].displacement[0]: "), "{error}");
-    let (_folder, scene) = written(&text.replace("KEYS", "springs = [\"edge\"]"));
-    let outcome = run(&scene, &mut |_| {}).unwrap();
+    let outcome = outcome(&text.replace("KEYS", "springs = [\"edge\"]"));
     assert!(!outcome.fits[1].kind.whole().unwrap().stands);
     assert!(outcome.fits[0].loads.iter().all(|load| load.error.is_some()));
     assert!(report::notes(&outcome).iter().any(|note| note.contains("the start is not stable under each of them")));

@@ -192,9 +192,7 @@ def test_several_loads_are_several_solutions(large):
     assert error.value.key == "displacement"
 
 
-def test_jax_passes_through_solutions():
-    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
-    jax.config.update("jax_enable_x64", True)
+def test_jax_passes_through_solutions(jax):
     constants, points, _, held, displacement, forces, rng = case("tet4", "exact")
     young, w = np.full(len(constants.blocks[0].cells), 1e4), rng.normal(size=points.shape)
     for large in (False, True):
@@ -222,9 +220,7 @@ def test_jax_passes_through_solutions():
 
 
 @pytest.mark.parametrize("name, objective", [("tet4", "exact"), ("quad4", "exact"), ("hex8", "offdiag")])
-def test_jax_has_second_derivatives_of_small_displacements(name, objective):
-    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
-    jax.config.update("jax_enable_x64", True)
+def test_jax_has_second_derivatives_of_small_displacements(name, objective, jax):
     constants, points, _, held, displacement, forces, rng = case(name, objective)
     statics = sf.Statics(constants, held)
     shares = rng.normal(size=(3, len(constants.blocks[0].cells)))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import springfit as sf
-from conftest import square
+from conftest import raised, square
 
 MATERIAL = sf.Material(young=1e4, poisson=0.3)
 SCENE = square(2)
@@ -20,13 +20,6 @@ def box():
 
 def net():
     return sf.fit(box(), MATERIAL)
-
-
-def raised(call, key):
-    with pytest.raises(sf.SpringfitError) as error:
-        call()
-    assert error.value.key == key, str(error.value)
-    return str(error.value)
 
 
 def masked(shape):

@@ -1,7 +1,6 @@
 """The benchmark of benches/bodies: its reference, its results, and the script that scores networks on its own."""
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -105,9 +104,6 @@ def test_the_table_of_the_book_is_that_of_the_results():
     assert re.search(r"springfit's own finite elements agree", page)
 
 
-def test_all_results_are_those_of_the_command():
-    command = os.environ.get("SPRINGFIT")
-    if command is None:
-        pytest.skip("SPRINGFIT does not name the command")
+def test_all_results_are_those_of_the_command(command):
     made = run("results.py", "--springfit", command, "--check")
     assert made.returncode == 0, made.stdout + made.stderr

@@ -4,15 +4,10 @@ import numpy as np
 import pytest
 
 import springfit as sf
+from conftest import raised
 
 MATERIAL = sf.Material(young=1e4, poisson=0.3)
 TWO_TRIANGLES = ([[0.0, 0], [1, 0], [0, 1], [1, 1]], [[0, 1, 2], [1, 3, 2]])
-
-
-def raised(call, key):
-    with pytest.raises(sf.SpringfitError) as error:
-        call()
-    assert error.value.key == key, str(error.value)
 
 
 def of_meshio(cells=TWO_TRIANGLES[1], **keys):

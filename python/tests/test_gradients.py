@@ -118,9 +118,7 @@ def test_slivers_do_not_depend_on_the_cells_beside_them(objective):
         assert np.sum(w * own.constants) == pytest.approx(parts.sum(), abs=1e-9 * np.abs(parts).sum())
 
 
-def test_second_derivatives_are_those_of_differences():
-    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
-    jax.config.update("jax_enable_x64", True)
+def test_second_derivatives_are_those_of_differences(jax):
     for case, (name, objective, keys) in enumerate([*CASES[:5], ("hex8", "modal", {}), ("quad4", "exact", {}), ("tri3", "frobenius", {})]):
         d = sf.Element(name).dimension
         mesh = sf.Mesh.box(name, size=[1.0, 0.8, 0.7][:d], cells=[1, 1, 1][:d])
@@ -312,9 +310,7 @@ def test_torch_passes_gradients_on():
     assert torch.autograd.gradgradcheck(lambda *given: tuple(small.torch(*given)), given)
 
 
-def test_jax_passes_gradients_on():
-    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
-    jax.config.update("jax_enable_x64", True)
+def test_jax_passes_gradients_on(jax):
     constants, points, _, _ = case("tet4", "exact", {})
 
     @jax.jit
@@ -329,9 +325,7 @@ def test_jax_passes_gradients_on():
     assert float(slopes[1]) == pytest.approx(known.young) and float(slopes[2]) == pytest.approx(known.poisson)
 
 
-def test_jax_maps_over_bodies():
-    jax = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
-    jax.config.update("jax_enable_x64", True)
+def test_jax_maps_over_bodies(jax):
     constants, points, _, rng = case("tet4", "exact", {})
     many = points + 0.01 * rng.uniform(-1, 1, (3, *points.shape))
     moduli = np.array([1e3, 1e4, 1e5])

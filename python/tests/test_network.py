@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import springfit as sf
+from conftest import raised
 
 MATERIAL = sf.Material(young=1e4, poisson=0.3, density=1000.0)
 
@@ -142,9 +143,7 @@ def test_wrong_positions_and_supports_are_refused():
         (lambda: net.solve(fix=[0]), "fix"),
         (lambda: net.solve(fix="zmin", forces=np.zeros(3)), "forces"),
     ]:
-        with pytest.raises(sf.SpringfitError) as error:
-            call()
-        assert error.value.key == key, str(error.value)
+        raised(call, key)
 
 
 def test_mechanisms_are_refused():

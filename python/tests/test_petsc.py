@@ -307,10 +307,7 @@ def test_a_fault_of_one_rank_alone_ends_all(tmp_path):
     assert made.returncode not in (0, 2) and "rank 1 of 2 failed" in made.stderr and "broken" in made.stderr
 
 
-def test_the_springs_of_all_ranks_are_one_network(scenes, tmp_path):
-    command = os.environ.get("SPRINGFIT")
-    if command is None:
-        pytest.skip("SPRINGFIT does not name the command")
+def test_the_springs_of_all_ranks_are_one_network(scenes, tmp_path, command):
     path, _ = scene_of("file", scenes, tmp_path)
     code, out, err = run(3, path, "--out", tmp_path / "out", "--json")
     assert code == 0, err

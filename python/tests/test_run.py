@@ -1,7 +1,6 @@
 """Whole scenes, and sweeps over them."""
 
 import json
-import os
 import subprocess
 import sys
 
@@ -32,10 +31,7 @@ def test_a_scene_as_a_dictionary_and_as_a_file(tmp_path, scenes):
     assert other.record["poisson"] == 0.1 and other.record["fits"][0]["name"] == "first"
 
 
-def test_figures_equal_those_of_the_command(tmp_path, scenes):
-    command = os.environ.get("SPRINGFIT")
-    if command is None:
-        pytest.skip("SPRINGFIT does not name the command")
+def test_figures_equal_those_of_the_command(tmp_path, scenes, command):
     subprocess.run([command, "run", str(scenes / "square_quad.toml"), "--out", str(tmp_path)], check=True, capture_output=True)
     theirs = json.loads((tmp_path / "report.json").read_text())
     ours = sf.run(scenes / "square_quad.toml").record

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import springfit as sf
+from conftest import raised
 
 MATERIAL = sf.Material(young=5e5, poisson=0.3, density=1000.0)
 GRAVITY = np.array([0, 0, -9.81])
@@ -93,9 +94,7 @@ def test_groups_are_supports_loads_and_displacements():
         (lambda: net.solve("xmin", np.full(net.points.shape, np.nan)), "forces[0]"),
         (lambda: net.solve(None), "fix"),
     ]:
-        with pytest.raises(sf.SpringfitError) as error:
-            call()
-        assert error.value.key == key, str(error.value)
+        raised(call, key)
 
 
 def test_what_is_beyond_the_linear_theory_is_a_warning():
@@ -206,9 +205,7 @@ def test_a_motion_calls_back_and_names_its_faults():
         (lambda: net.simulate(dt=1e-3, steps=1, gravity=[1, 2]), "gravity"),
         (lambda: bare.simulate(dt=1e-3, steps=1), "masses"),
     ]:
-        with pytest.raises(sf.SpringfitError) as error:
-            call()
-        assert error.value.key == key, str(error.value)
+        raised(call, key)
 
 
 def test_shapes_may_be_many():

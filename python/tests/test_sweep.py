@@ -2,7 +2,6 @@
 
 import json
 import multiprocessing
-import os
 import subprocess
 import sys
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
@@ -96,10 +95,7 @@ def test_samples_are_those_of_scipy():
     assert qmc.discrepancy(moved) < 2 * qmc.discrepancy(ours)
 
 
-def test_rows_are_those_of_the_command(tmp_path):
-    command = os.environ.get("SPRINGFIT")
-    if command is None:
-        pytest.skip("SPRINGFIT does not name the command")
+def test_rows_are_those_of_the_command(tmp_path, command):
     scene = tmp_path / "scene.toml"
     scene.write_text(
         '[mesh]\nbox = { element = "quad4", size = [1, 1], cells = [3, 3] }\n[material]\nyoung = "10 kPa"\npoisson = 0.3\n'

@@ -1,6 +1,6 @@
 //! What users found to be answered wrongly in silence.
 
-use crate::kit::{self, json, prints, refused, said, springfit};
+use crate::kit::{self, holding, json, prints, refused, said, springfit};
 use std::fs;
 use tempfile::TempDir;
 
@@ -8,6 +8,19 @@ fn folder_with(files: &[(&str, String)]) -> TempDir {
     let folder = TempDir::new().unwrap();
     files.iter().for_each(|(name, text)| fs::write(folder.path().join(name), text).unwrap());
     folder
+}
+
+/// The report of a run of this scene.
+fn report_of(text: &str) -> serde_json::Value {
+    let folder = holding("s.toml", text);
+    prints(folder.path(), &["run", "s.toml", "--out", "out"]);
+    json(&folder.path().join("out/report.json"))
+}
+
+/// What a run of this scene said.
+fn said_of(text: String) -> String {
+    let folder = holding("s.toml", text);
+    kit::ran(folder.path(), &["run", "s.toml", "-v", "--out", "out"]).1
 }
 
 fn bar(element: &str, size: [f64; 3], cells: [usize; 3], more: &str) -> String {
@@ -126,24 +139,17 @@ fn large_cells_of_a_bent_body_are_too_stiff_whatever_their_number_across() {
         ("fine plate", text("hex8", [0.1, 0.1, 0.02], [20, 20, 4], bent), false),
         ("pulled plate", text("hex8", [0.1, 0.1, 0.001], [10, 10, 2], "[1e-6, 0, 0]"), false),
     ] {
-        let folder = folder_with(&[("s.toml", text)]);
+        let folder = holding("s.toml", &text);
         let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
         let report = json(&folder.path().join("out/report.json"));
         let is_told = report["finite_elements_verdict"] == "too stiff";
         assert_eq!(is_told, is_long, "{name}: {}", said(&output));
-        assert_eq!(
-            said(&output).contains("the cells are large for the body, which bends under t (by about "),
-            is_long,
-            "{name}: {}",
-            said(&output)
-        );
+        let words = "the cells are large for the body, which bends under t (by about ";
+        assert_eq!(said(&output).contains(words), is_long, "{name}: {}", said(&output));
         if is_long {
             // The deflection by quadratic elements on the same cells is a fifth larger at least.
             let moved = report["fits"][0]["loads"][0]["largest_displacement"].as_f64().unwrap();
-            let scene = fs::read_to_string(folder.path().join("s.toml")).unwrap().replace("\"cells\"", "\"quadratic\"");
-            fs::write(folder.path().join("s.toml"), scene).unwrap();
-            prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-            let report = json(&folder.path().join("out/report.json"));
+            let report = report_of(&text.replace("\"cells\"", "\"quadratic\""));
             let right = report["measured"][0]["largest"].as_f64().unwrap();
             assert!(right > 1.15 * moved, "{name}: {moved} {right}");
         }
@@ -179,9 +185,8 @@ fn a_density_of_no_solid_is_told() {
     for (density, is_told) in [("7850", false), ("7.85e-9", true), ("7.85e15", true)] {
         let text =
             bar("tet4", [0.06, 0.02, 0.02], [2, 1, 1], "").replace("density = 1000", &format!("density = {density}"));
-        let folder = folder_with(&[("s.toml", text)]);
-        let output = springfit(folder.path(), &["run", "s.toml", "--out", "out"]);
-        assert_eq!(said(&output).contains("is that of no solid"), is_told, "{}", said(&output));
+        let said = said_of(text);
+        assert_eq!(said.contains("is that of no solid"), is_told, "{said}");
     }
 }
 
@@ -239,8 +244,7 @@ fn conditions_that_cut_cells_of_a_material_are_told() {
         let load = format!("[[load]]\nname = \"w\"\nwhere = \"x < {at}\"\ngravity = [0, 0, -9.81]\n");
         let text = bar("hex8", [0.06, 0.02, 0.02], [6, 2, 2], &load)
             .replace("[material]\nyoung = 1e5\npoisson = 0.3\ndensity = 1000\n", &material);
-        let folder = folder_with(&[("s.toml", text)]);
-        let printed = said(&springfit(folder.path(), &["run", "s.toml", "-v", "--out", "out"]));
+        let printed = said_of(text);
         let told = printed.matches("cuts through 4 cells").count();
         assert_eq!(told, if is_told { 2 } else { 0 }, "{at}: {printed}");
     }
@@ -276,8 +280,7 @@ fn one_cell_across_is_too_stiff_with_a_law_and_without_loads() {
     for (law, rest) in [("law = \"stable-neo-hookean\"\n", load), ("", vibrations)] {
         let text = bar("hex8", [0.1, 0.01, 0.01], [10, 1, 1], rest)
             .replace("density = 1000\n", &format!("density = 1000\n{law}"));
-        let folder = folder_with(&[("s.toml", text)]);
-        let printed = said(&springfit(folder.path(), &["run", "s.toml", "-v", "--out", "out"]));
+        let printed = said_of(text);
         assert!(printed.contains("too stiff"), "{printed}");
     }
 }
@@ -291,9 +294,7 @@ fn a_body_is_moved_as_a_whole_at_large_deformation() {
         let text = bar(element, [0.1, 0.02, 0.02], [5, 2, 2], &load)
             .replace("density = 1000\n", "law = \"stable-neo-hookean\"\n")
             .replace("group = \"xmin\"\n[[load]]", "group = \"xmin\"\naxes = [\"y\", \"z\"]\n[[load]]");
-        let folder = folder_with(&[("s.toml", text)]);
-        prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-        let report = json(&folder.path().join("out/report.json"));
+        let report = report_of(&text);
         let fit = &report["fits"][0];
         assert_eq!(fit["status"], "converged", "{fit}");
         let largest = fit["loads"][0]["largest_displacement"].as_f64().unwrap();
@@ -332,17 +333,12 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
              name = \"l\"\ngroup = \"xmax\"\ntraction = [0, 0, 5]\n"
         )
     };
-    let run = |text: String| -> serde_json::Value {
-        let folder = folder_with(&[("s.toml", text)]);
-        prints(folder.path(), &["run", "s.toml", "--out", "out"]);
-        json(&folder.path().join("out/report.json"))
-    };
     let frobenius = "[[fit]]\nobjective = \"frobenius\"\n";
-    let isotropic = run(text("[material]\nyoung = 1e4\npoisson = 0.4999\n", frobenius));
+    let isotropic = report_of(&text("[material]\nyoung = 1e4\npoisson = 0.4999\n", frobenius));
     // The cubic material has the same numbers: λ + 2μ, λ and μ.
     let (mu, lambda): (f64, f64) = (1e4 / (2.0 * 1.4999), 1e4 * 0.4999 / (1.4999 * 0.0002));
     let cubic = format!("[material.cubic]\nc11 = {:?}\nc12 = {lambda:?}\nc44 = {mu:?}\n", lambda + 2.0 * mu);
-    let cubic = run(text(&cubic, frobenius));
+    let cubic = report_of(&text(&cubic, frobenius));
     for key in ["finite_elements_verdict", "measured"] {
         assert!(isotropic[key] == cubic[key] || key == "measured", "{key}: {} {}", isotropic[key], cubic[key]);
     }
@@ -357,14 +353,14 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
             .replace("\nshear", ", shear")
             .replace("\n[material]\n", " }\n")
     };
-    let muscle = run(text(&fibres("[5e4, 1e4]", "[0.495, 0.89]", 4e3), frobenius));
+    let muscle = report_of(&text(&fibres("[5e4, 1e4]", "[0.495, 0.89]", 4e3), frobenius));
     assert_eq!(muscle["finite_elements_verdict"], "locks");
-    let wood = run(text(&fibres("[1e7, 5e5]", "[0.37, 0.4]", 6e5), frobenius));
+    let wood = report_of(&text(&fibres("[1e7, 5e5]", "[0.37, 0.4]", 6e5), frobenius));
     assert_ne!(wood["finite_elements_verdict"], "locks");
     // Half of the bar is nearly incompressible.
     let regions = "[[material]]\nwhere = \"x < 0.025\"\nyoung = 1e4\npoisson = 0.4999\n[[material]]\nyoung = 1e4\npoisson = 0.3\n";
     let both = "[[fit]]\nobjective = \"exact\"\n[[fit]]\nobjective = \"exact\"\nvolume = \"cells\"\n";
-    let report = run(text(regions, both));
+    let report = report_of(&text(regions, both));
     let verdicts = ["exact", "exact cells"].map(|name| {
         let fits = report["fits"].as_array().unwrap().iter();
         fits.clone().find(|fit| fit["name"] == name).unwrap()["verdict"].as_str().unwrap().to_string()
@@ -378,7 +374,7 @@ fn locking_is_seen_of_anisotropic_cells_and_of_regions() {
         let text = text(&material, "[[fit]]\nobjective = \"exact\"\n")
             .replace("hex8", "hex20")
             .replace("[10, 3, 3]", "[3, 1, 1]");
-        let report = run(text + more);
+        let report = report_of(&(text + more));
         let is_noted = report["notes"].to_string().contains("cells of higher order are too stiff on coarse meshes");
         assert_eq!(is_noted, is_told, "{poisson} {more}: {}", report["notes"]);
     }

@@ -171,9 +171,9 @@ fn what_errors_are_relative_to_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let run = |text: &str| {
         fs::write(folder.path().join("s.toml"), text).unwrap();
-        let (output, said) = springfit(folder.path(), "run s.toml --out out");
-        assert!(output.status.success(), "{said}");
-        String::from_utf8_lossy(&output.stdout).into_owned() + &said
+        let (code, said) = kit::ran(folder.path(), &["run", "s.toml", "--out", "out"]);
+        assert_eq!(code, Some(0), "{said}");
+        said
     };
     let said = run(LOCKING);
     for words in [
@@ -233,8 +233,7 @@ fn a_bent_bar_of_one_cell_across_is_compared_with_quadratic_elements() {
     let folder = tempfile::tempdir().unwrap();
     let said = |more: &str| {
         fs::write(folder.path().join("s.toml"), text("tet4", "[0, 0, 1]", more)).unwrap();
-        let (output, said) = springfit(folder.path(), "run s.toml --out out");
-        String::from_utf8_lossy(&output.stdout).into_owned() + &said
+        kit::ran(folder.path(), &["run", "s.toml", "--out", "out"]).1
     };
     let (judged, of_cells) = (said(""), said("reference = { from = \"cells\" }\n"));
     assert!(judged.contains("load, quadratic") && judged.contains("too stiff"), "{judged}");
@@ -266,16 +265,9 @@ fn errors_without_a_reference_are_not_known() {
 /// A load that moves the body by twice its size is refused as a result in the first line.
 #[test]
 fn what_is_far_beyond_the_linear_theory_is_not_trusted() {
-    let folder = holding(
-        "s.toml",
-        SQUARE.to_string()
-            + "fix = [{ group = \"xmin\" }]\nload = [{ name = \"pull\", group = \"xmax\", traction = [3e4, 0] }]\n",
-    );
-    let (output, said) = springfit(folder.path(), "run s.toml --out out");
-    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(
-        printed
-            .starts_with("NOT TRUSTED: the linear finite elements move by more than the body's own size under pull ("),
-        "{printed}{said}"
-    );
+    let load = "load = [{ name = \"pull\", group = \"xmax\", traction = [3e4, 0] }]\n";
+    let folder = holding("s.toml", format!("{SQUARE}fix = [{{ group = \"xmin\" }}]\n{load}"));
+    let (_, told) = kit::ran(folder.path(), &["run", "s.toml", "--out", "out"]);
+    let words = "NOT TRUSTED: the linear finite elements move by more than the body's own size under pull (";
+    assert!(told.starts_with(words), "{told}");
 }

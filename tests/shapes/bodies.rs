@@ -1,5 +1,6 @@
 //! Bodies that tests share, and a writer of their meshes.
 
+use super::Random;
 use springfit_element::element::Element;
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
@@ -89,4 +90,39 @@ pub fn gmsh_text(dimension: usize, points: &[f64], groups: &[(&str, usize, Vec<V
         }
     }
     text + "$EndElements\n"
+}
+
+/// The unit square as squares of two triangles, whose inner points are moved by up to a share of a side; whether the diagonal of a square leads from its
+/// first point to the third.
+pub fn triangles(
+    [nx, ny]: [usize; 2],
+    share: f64,
+    leans: impl Fn(usize, usize) -> bool,
+) -> (Vec<[f64; 2]>, Vec<usize>) {
+    let mut random = Random(7);
+    let mut points = Vec::new();
+    for (i, j) in (0..=ny).flat_map(|j| (0..=nx).map(move |i| (i, j))) {
+        let is_inner = i > 0 && i < nx && j > 0 && j < ny;
+        let mut shift = || if share > 0.0 && is_inner { share * random.next() } else { 0.0 };
+        points.push([(i as f64 + shift()) / nx as f64, (j as f64 + shift()) / ny as f64]);
+    }
+    let mut triangles = Vec::new();
+    for (i, j) in (0..ny).flat_map(|j| (0..nx).map(move |i| (i, j))) {
+        let a = j * (nx + 1) + i;
+        let [b, c, d] = [a + 1, a + nx + 2, a + nx + 1];
+        triangles.extend(if leans(i, j) { [a, b, c, a, c, d] } else { [a, b, d, b, c, d] });
+    }
+    (points, triangles)
+}
+
+/// A surface in space of these triangles.
+pub fn of_triangles(points: Vec<f64>, connectivity: Vec<usize>) -> Mesh {
+    let element = Arc::new(Element::load("tri3").unwrap().in_space(3));
+    Mesh::of_cells(3, points, vec![CellBlock { element, connectivity }])
+}
+
+/// A surface with directors, of thickness t.
+pub fn bending(mesh: Mesh, t: f64) -> Mesh {
+    let count = mesh.cell_count();
+    mesh.with_directors(vec![t * t / 12.0; count]).unwrap()
 }

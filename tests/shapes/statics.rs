@@ -1,9 +1,11 @@
 //! Bodies under loads, and what they do.
 
 use super::bodies::grid;
-use nalgebra::DMatrix;
-use springfit_bodies::model::{Entries, Support};
-use springfit_bodies::solve::System;
+use nalgebra::{DMatrix, DVector};
+use springfit_bodies::model::{Entries, Lumping, Network, Support, lumped_masses, patch_springs};
+use springfit_bodies::solve::{System, lowest_modes};
+use springfit_element::material::Material;
+use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
 use springfit_mesh::mesh::Mesh;
 
 /// The work of the load on the displacements that it causes.
@@ -54,4 +56,55 @@ pub fn support_at(mesh: &Mesh, points: &[usize]) -> Support {
     let mut support = Support::free(mesh);
     support.fix(points, &(0..mesh.dimension).collect::<Vec<_>>(), mesh.dimension);
     support
+}
+
+/// The points where `test` holds, held in all directions, and which these are.
+pub fn held_where(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> (Support, Vec<bool>) {
+    let held: Vec<bool> = (0..mesh.point_count()).map(|p| test(mesh.point(p))).collect();
+    let points: Vec<usize> = (0..held.len()).filter(|p| held[*p]).collect();
+    (support_at(mesh, &points), held)
+}
+
+/// A unit force along the last axis, spread evenly over the sides of triangles or tetrahedra where `test` holds.
+pub fn end_load(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> Vec<f64> {
+    let d = mesh.dimension;
+    let (mut load, mut total) = (vec![0.0; mesh.points.len()], 0.0);
+    for nodes in mesh.blocks[0].cells() {
+        for side in mesh.blocks[0].element.sides() {
+            let side: Vec<usize> = side.nodes.iter().map(|&a| nodes[a]).collect();
+            if !side.iter().all(|p| test(mesh.point(*p))) {
+                continue;
+            }
+            let at = |i: usize| DVector::from_column_slice(mesh.point(side[i]));
+            let edges = DMatrix::from_columns(&(1..d).map(|i| at(i) - at(0)).collect::<Vec<_>>());
+            let measure = (edges.transpose() * &edges).determinant().sqrt();
+            total += measure;
+            // Of a straight side of three nodes in the plane, the middle one has four sixths.
+            let weights: &[f64] = if (d, side.len()) == (2, 3) { &[1.0, 1.0, 4.0] } else { &[1.0; 3] };
+            let whole: f64 = weights[..side.len()].iter().sum();
+            side.iter().zip(weights).for_each(|(p, w)| load[p * d + d - 1] += measure * w / whole);
+        }
+    }
+    load.iter_mut().for_each(|f| *f /= total);
+    load
+}
+
+/// The exact network whose shear springs are on cells.
+pub fn on_cells(mesh: &Mesh, material: Material, volume: VolumeSprings, held: &[bool]) -> Network {
+    let fit = ExactFit { volume, ..ExactFit::default() };
+    let block = &mesh.blocks[0];
+    let cells = fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
+    let mut network = Network::assemble(mesh, &[cells]);
+    if volume == VolumeSprings::Patches {
+        network.others.extend(patch_springs(mesh, material, &fit, held).unwrap());
+    }
+    network
+}
+
+/// The lowest 30 frequencies of a body of unit density.
+pub fn frequencies(mesh: &Mesh, entries: &Entries, support: &Support) -> Vec<f64> {
+    let masses = lumped_masses(mesh, 1.0, 1.0, Lumping::Hrz);
+    let system = System::new(entries, support).unwrap();
+    let factor = system.cholesky().unwrap().unwrap();
+    lowest_modes(&system, &factor, &masses, 3, 30).unwrap().frequencies()
 }
