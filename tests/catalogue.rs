@@ -1,26 +1,16 @@
 //! The shipped elements in meshes that Gmsh, meshio and VTK wrote: node orders, contents, and surfaces and curves in space.
 
-use crate::kit::place;
+use crate::kit::{mesh, place};
 use springfit_bodies::model::{Network, finite_elements, masses};
 use springfit_element::element::{Quadrature, SHIPPED, Tabulation};
 use springfit_element::material::Material;
 use springfit_element::springs::Springs;
 use springfit_element::stiffness::each_cell;
 use springfit_fit::fit::{Balance, Fit, MotionWeight, Objective, Weight, element_errors, fit_cells};
-use springfit_mesh::mesh::{Mesh, MeshSource};
-use std::path::PathBuf;
-
-fn folder() -> PathBuf {
-    place("tests/meshes")
-}
-
-fn mesh(file: &str) -> Mesh {
-    Mesh::resolve(&MeshSource::read(&folder().join(file)).unwrap(), &[], 1.0).unwrap()
-}
 
 /// File, number of cells, and content by Gmsh's own Jacobians.
 fn references() -> Vec<(String, usize, f64)> {
-    let text = std::fs::read_to_string(folder().join("volumes.txt")).unwrap();
+    let text = std::fs::read_to_string(place("tests/meshes/volumes.txt")).unwrap();
     let line = |line: &str| {
         let words: Vec<&str> = line.split_whitespace().collect();
         (words[0].to_string(), words[2].parse().unwrap(), words[3].parse().unwrap())

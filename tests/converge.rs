@@ -1,14 +1,15 @@
 //! Meshes are refined without loss, and limits are those of sequences that have one.
 
-use crate::kit::{place, springfit};
+use crate::kit::{self, place, said, shipped, springfit, told};
 use crate::messages::reads;
-use crate::shapes::{Random, elements};
+use crate::shapes::bodies::boxed;
+use crate::shapes::{Random, elements, single};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{Support, finite_elements};
 use springfit_bodies::solve::System;
 use springfit_element::element::{Cell, Element, Quadrature};
 use springfit_element::material::{Material, Plane};
-use springfit_mesh::mesh::{BoxMesh, CellBlock, CellIndex, Group, Mesh, Selection};
+use springfit_mesh::mesh::{CellBlock, CellIndex, Group, Mesh, Selection};
 use springfit_studies::study::{Convergence, LimitKind, Scene, converge, converge_to, limit_of, most_unknowns, rates};
 use std::collections::HashMap;
 use std::fs;
@@ -20,18 +21,13 @@ fn element(name: &str) -> Arc<Element> {
     Arc::new(Element::load(name).unwrap())
 }
 
-fn mesh_of(dimension: usize, points: Vec<f64>, blocks: Vec<CellBlock>) -> Mesh {
-    Mesh::of_cells(dimension, points, blocks)
-}
+const SIZE: [f64; 3] = [1.0, 1.5, 0.8];
 
 /// Two cells in each direction; a chain of three cells in the plane for one that fills no box.
 fn coarse(element: &Element) -> Mesh {
     let d = element.dimension();
     if d > 1 {
-        let element = Arc::new(element.clone());
-        return BoxMesh { element, size: vec![1.0, 1.5, 0.8][..d].to_vec(), cells: vec![2; d], origin: vec![0.0; d] }
-            .build()
-            .unwrap();
+        return boxed(&Arc::new(element.clone()), &SIZE[..d], &vec![2; d]).unwrap();
     }
     // The middles of cells are nodes, in the order of the element.
     let (mut points, mut connectivity) = (Vec::new(), Vec::new());
@@ -46,7 +42,7 @@ fn coarse(element: &Element) -> Mesh {
             }
         }
     }
-    mesh_of(2, points, vec![CellBlock { element: Arc::new(element.clone().in_space(2)), connectivity }])
+    Mesh::of_cells(2, points, vec![CellBlock { element: Arc::new(element.clone().in_space(2)), connectivity }])
 }
 
 /// Every point moved by up to 1 % of the body.
@@ -107,6 +103,14 @@ fn sides(mesh: &Mesh) -> HashMap<Vec<usize>, usize> {
     sides
 }
 
+/// Where points are, to 1e-9, sorted.
+fn places(mesh: &Mesh) -> Vec<Vec<i64>> {
+    let place = |x: &[f64]| x.iter().map(|x| (x * 1e9).round() as i64).collect();
+    let mut places: Vec<Vec<i64>> = mesh.points.chunks_exact(mesh.dimension).map(place).collect();
+    places.sort_unstable();
+    places
+}
+
 fn divisible() -> impl Iterator<Item = Element> {
     elements().into_iter().filter(|element| element.cell != Cell::Pentagon)
 }
@@ -131,12 +135,7 @@ fn refinement_keeps_the_body_and_leaves_no_node_hanging() {
         assert_eq!(outer(&after), outer(&before) << (d - 1), "{name}");
         // Points that are kept keep their number and place.
         assert_eq!(fine.points[..coarse.points.len()], coarse.points[..], "{name}");
-        let mut places: Vec<Vec<i64>> = fine
-            .points
-            .chunks_exact(fine.dimension)
-            .map(|x| x.iter().map(|x| (x * 1e9).round() as i64).collect())
-            .collect();
-        places.sort_unstable();
+        let places = places(&fine);
         assert!(places.windows(2).all(|pair| pair[0] != pair[1]), "{name}: two points at one place");
         assert_eq!(fine.unused_points, 0);
     }
@@ -150,7 +149,7 @@ fn a_box_is_refined_to_the_box_of_twice_the_cells() {
             (coarse(&element).refined().unwrap(), coarse(&element).refined().unwrap().refined().unwrap());
         for mesh in [&fine, &finer] {
             for (k, axis) in ["x", "y", "z"].iter().enumerate().take(d) {
-                for (group, at) in [(format!("{axis}min"), 0.0), (format!("{axis}max"), [1.0, 1.5, 0.8][k])] {
+                for (group, at) in [(format!("{axis}min"), 0.0), (format!("{axis}max"), SIZE[k])] {
                     // Places are sums of a few products of a point's coordinates.
                     let on: Vec<usize> =
                         (0..mesh.point_count()).filter(|&p| (mesh.point(p)[k] - at).abs() < 1e-14).collect();
@@ -167,21 +166,10 @@ fn a_box_is_refined_to_the_box_of_twice_the_cells() {
             let cells: std::collections::HashSet<CellIndex> = body.cells.iter().copied().collect();
             assert_eq!((cells.len(), body.cells.len()), (mesh.cell_count(), mesh.cell_count()), "{name}");
         }
-        let twice = BoxMesh {
-            element: Arc::new(element.clone()),
-            size: vec![1.0, 1.5, 0.8][..d].to_vec(),
-            cells: vec![4; d],
-            origin: vec![0.0; d],
-        };
         // The same points: the octahedra in tetrahedra may have another diagonal, but its middle is where that of the box is.
-        let key = |mesh: &Mesh| {
-            let mut places: Vec<Vec<i64>> =
-                mesh.points.chunks_exact(d).map(|x| x.iter().map(|x| (x * 1e9).round() as i64).collect()).collect();
-            places.sort_unstable();
-            places
-        };
         if element.cell != Cell::Pyramid && element.cell != Cell::Tetrahedron {
-            assert_eq!(key(&fine), key(&twice.build().unwrap()), "{name}");
+            let twice = boxed(&Arc::new(element.clone()), &SIZE[..d], &vec![4; d]).unwrap();
+            assert_eq!(places(&fine), places(&twice), "{name}");
         }
     }
 }
@@ -197,7 +185,7 @@ fn kinds_of_cells_stay_joined_and_bodies_that_touch_stay_apart() {
         block("pyramid5", &[4, 5, 6, 7, 8]),
         block("tet4", &[5, 9, 6, 8]),
     ];
-    let mut mesh = mesh_of(3, points.clone(), blocks);
+    let mut mesh = Mesh::of_cells(3, points.clone(), blocks);
     // A curve in space, and a point.
     let edge = Group { points: vec![0, 4], edges: vec![vec![0, 4]], ..Group::default() };
     mesh.groups.insert("edge".into(), edge);
@@ -221,17 +209,18 @@ fn kinds_of_cells_stay_joined_and_bodies_that_touch_stay_apart() {
     // A crack: the points of two bodies are at the same places.
     let twice = [&points[..24], &points[..24]].concat();
     let nodes: Vec<usize> = (0..16).collect();
-    let crack = mesh_of(3, twice, vec![block("hex8", &nodes)]).refined().unwrap();
+    let crack = Mesh::of_cells(3, twice, vec![block("hex8", &nodes)]).refined().unwrap();
     assert_eq!(crack.point_count(), 2 * 27);
 }
 
 #[test]
 fn what_cannot_be_divided_is_an_error() {
     let pentagon = element("pentagon5");
-    let mesh =
-        mesh_of(2, pentagon.positions.clone(), vec![CellBlock { element: pentagon, connectivity: (0..5).collect() }]);
-    reads(&mesh.refined().unwrap_err().to_string(), "mesh: expected cells that can be divided …, found pentagon5")
-        .unwrap();
+    reads(
+        &single(&pentagon, &pentagon.positions).refined().unwrap_err().to_string(),
+        "mesh: expected cells that can be divided …, found pentagon5",
+    )
+    .unwrap();
     let mut mesh = coarse(&element("tri3"));
     mesh.groups.get_mut("xmin").unwrap().sides.push(vec![0, 8]);
     reads(&mesh.refined().unwrap_err().to_string(), "mesh: expected sides of cells in group \"xmin\", found 1 sides …")
@@ -441,10 +430,8 @@ fn the_program_writes_its_table_and_plot() {
     let folder = TempDir::new().unwrap();
     let path = place("scenes/specimen_tri.toml");
     let output = springfit(folder.path(), &["converge", path.to_str().unwrap(), "--levels", "3"]);
-    assert!(output.status.success(), "{output:?}");
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("tension: the truth is ") && text.contains("limit"), "{text}");
-    let progress = String::from_utf8(output.stderr).unwrap();
+    let (told, progress) = (told(&output), said(&output));
+    assert!(output.status.success() && told.contains("tension: the truth is ") && told.contains("limit"), "{told}");
     assert!((1..=3).all(|level| progress.contains(&format!("note: level {level} of 3: "))), "{progress}");
     let out = folder.path().join("out/converge-specimen_tri");
     let table = fs::read_to_string(out.join("converge.csv")).unwrap();
@@ -508,9 +495,7 @@ fn what_cannot_converge_is_refused() {
     write("large.toml", body(8) + load);
     write("huge.toml", body(100) + load);
     let refused = |arguments: &[&str], pattern: &str| {
-        let output = springfit(folder.path(), &[&["converge"], arguments].concat());
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-        let error = String::from_utf8(output.stderr).unwrap();
+        let error = kit::refused(folder.path(), &[&["converge"], arguments].concat());
         let line = error.lines().next().unwrap_or_default();
         reads(line, pattern).unwrap_or_else(|e| panic!("{arguments:?}: {e}"));
         assert!(!folder.path().join("out").exists(), "{arguments:?}: something was written");
@@ -584,7 +569,7 @@ fn networks_on_patches_and_cells_are_nearer_to_the_truth() {
 /// structured block, which do not converge.
 #[test]
 fn the_figures_of_the_page_on_exact_networks() {
-    let load = |name: &str| Scene::load(&place(format!("scenes/converge/{name}.toml"))).unwrap();
+    let load = |name: &str| shipped(&format!("converge/{name}"));
     let near =
         |found: Option<f64>, printed: f64| assert!((found.unwrap() - printed).abs() < 0.06, "{found:?} {printed}");
     let study = converge_to(&load("cantilever_tet"), &load("cantilever_truth"), Some(3), &mut |_| {}).unwrap();

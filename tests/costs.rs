@@ -1,7 +1,7 @@
 //! What fits and models cost: which costs a run has, and that each is of what it says.
 
-use crate::kit::outcome;
-use springfit_report::report::{Cost, Figure, Picture, Report, RunFolder, Table, open_scene_outputs, write_outputs};
+use crate::kit::{outcome, write_run};
+use springfit_report::report::{Cost, Figure, Picture, Report, RunFolder, Table};
 use springfit_studies::study::{FitOutcome, Outcome, Scene, Times, run};
 use std::path::Path;
 use tempfile::TempDir;
@@ -94,7 +94,7 @@ fn a_simulated_second_is_that_of_the_steps_that_move_the_network() {
     assert!(costs.csv().lines().next().unwrap().contains("\"simulated second: median, s\""), "{}", costs.csv());
     let scene = Scene::parse(&text, Path::new("s.toml")).unwrap();
     let folder = TempDir::new().unwrap();
-    write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
+    write_run(&scene, &outcome, folder.path());
     let run = RunFolder::at(folder.path());
     match Figure::WorkPrecision.picture(&run, None, None, Some(Cost::Second)).unwrap() {
         Picture::Chart(chart) => {
@@ -155,7 +155,7 @@ fn figures_have_each_cost_and_name_its_kind() {
     let scene = Scene::parse(&format!("{BOX}[output]\ntime = true\n"), Path::new("s.toml")).unwrap();
     let folder = TempDir::new().unwrap();
     let outcome = run(&scene, &mut |_| {}).unwrap();
-    write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
+    write_run(&scene, &outcome, folder.path());
     let run = RunFolder::at(folder.path());
     let axis = |cost: Cost| match Figure::WorkPrecision.picture(&run, None, None, Some(cost)).unwrap() {
         Picture::Chart(chart) => (chart.x.title.clone(), chart.series.len()),
@@ -174,7 +174,7 @@ fn figures_have_each_cost_and_name_its_kind() {
 fn costs_that_were_not_measured_are_asked_for() {
     let scene = Scene::parse(BOX, Path::new("s.toml")).unwrap();
     let folder = TempDir::new().unwrap();
-    write_outputs(&outcome(BOX), scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
+    write_run(&scene, &outcome(BOX), folder.path());
     let run = RunFolder::at(folder.path());
     let wrong = Figure::WorkPrecision.picture(&run, None, None, Some(Cost::Solve)).unwrap_err().to_string();
     assert!(wrong.contains("has no costs of models: springfit run --time measures them"), "{wrong}");

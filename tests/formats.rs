@@ -2,7 +2,7 @@
 //! beside the same meshes in the formats of Gmsh; and damage to them.
 
 use crate::damage::{assert_sound, damaged};
-use crate::kit::place;
+use crate::kit::{mesh, place};
 use crate::shapes::Random;
 use springfit_bodies::model::content;
 use springfit_element::element::{Quadrature, Tabulation};
@@ -37,10 +37,6 @@ const EGGS: [&str; 7] =
 
 fn path(file: &str) -> PathBuf {
     place("tests/meshes").join(file)
-}
-
-fn mesh(file: &str) -> Mesh {
-    Mesh::resolve(&MeshSource::read(&path(file)).unwrap(), &[], 1.0).unwrap()
 }
 
 fn parse(bytes: &[u8], ending: &str) -> springfit_foundation::error::Result<MeshSource> {

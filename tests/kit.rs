@@ -1,10 +1,14 @@
 //! The program as users start it, and what it says; and scenes as the library runs them.
 
 use springfit_foundation::error::Result;
+use springfit_mesh::mesh::{Mesh, MeshSource};
+use springfit_report::report::{open_scene_outputs, write_outputs};
 use springfit_studies::study::{Outcome, Scene, run};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Mutex, OnceLock};
 use tempfile::TempDir;
 
 /// A folder of its own that has a file.
@@ -73,4 +77,31 @@ pub fn outcome(text: &str) -> Outcome {
 /// Why the scene of this text is refused.
 pub fn refusal(text: &str) -> String {
     outcome_in(Path::new(""), text).unwrap_err().to_string()
+}
+
+/// A scene that is shipped.
+pub fn shipped(name: &str) -> Scene {
+    Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
+}
+
+/// What comes of it, which is computed once for all tests.
+pub fn outcome_of(name: &str) -> &'static Outcome {
+    static KNOWN: Mutex<BTreeMap<String, &'static OnceLock<Outcome>>> = Mutex::new(BTreeMap::new());
+    let own = *KNOWN.lock().unwrap().entry(name.into()).or_insert_with(|| Box::leak(Box::default()));
+    own.get_or_init(|| run(&shipped(name), &mut |_| {}).unwrap())
+}
+
+/// A mesh of the tests, as its file has it.
+pub fn source(file: &str) -> MeshSource {
+    MeshSource::read(&place("tests/meshes").join(file)).unwrap()
+}
+
+/// The same with its elements.
+pub fn mesh(file: &str) -> Mesh {
+    Mesh::resolve(&source(file), &[], 1.0).unwrap()
+}
+
+/// The files of a run.
+pub fn write_run(scene: &Scene, outcome: &Outcome, folder: &Path) {
+    write_outputs(outcome, scene.output(), open_scene_outputs(scene, folder).unwrap()).unwrap();
 }

@@ -1,6 +1,6 @@
 //! Scenes whose material has a law: both models at large deformation, and fits to sampled forces.
 
-use crate::kit::place;
+use crate::kit::{outcome_of, shipped};
 use springfit_bodies::solve::Newton;
 use springfit_element::element::Element;
 use springfit_element::material::{Material, Plane};
@@ -8,10 +8,6 @@ use springfit_report::report;
 use springfit_studies::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
 use std::sync::Arc;
 use tempfile::TempDir;
-
-fn scene(name: &str) -> Scene {
-    Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
-}
 
 /// A bar of tetrahedra in a folder of its own, with these fits.
 fn bar(fits: &str, files: &[(&str, &str)]) -> (TempDir, Scene) {
@@ -41,7 +37,7 @@ fn mean(errors: &[f64]) -> f64 {
 #[test]
 fn sampled_fits_beat_those_at_rest_on_the_cubes() {
     for (name, at_rest) in [("cube_tet_large", "divergence"), ("cube_hex_large", "modal")] {
-        let outcome = run(&scene(name), &mut |_| {}).unwrap();
+        let outcome = outcome_of(name);
         let at_rest = ["frobenius", "offdiag", at_rest].map(|fit| errors(&outcome, fit));
         let best = at_rest.iter().map(|e| mean(e)).fold(f64::INFINITY, f64::min);
         let best_of_load = |i: usize| at_rest.iter().map(|e| e[i]).fold(f64::INFINITY, f64::min);
@@ -87,11 +83,11 @@ fn shapes_come_from_loads_and_lists() {
 #[test]
 fn a_scene_without_a_law_leaves_large_deformation_out() {
     let left_out = |name: &str| -> Vec<String> {
-        stages(&scene(name)).into_iter().filter(|(_, why)| why.is_some()).map(|(what, _)| what).collect()
+        stages(&shipped(name)).into_iter().filter(|(_, why)| why.is_some()).map(|(what, _)| what).collect()
     };
     let plain = left_out("cube_tet");
     assert!(plain.contains(&"hyperelastic energy, Newton's method".into()) && plain.contains(&"sampled shapes".into()));
-    let outcome = run(&scene("cube_tet"), &mut |_| {}).unwrap();
+    let outcome = outcome_of("cube_tet");
     assert!(outcome.law.is_none() && outcome.loads.iter().all(|load| load.followed.is_none()));
     assert!(outcome.fits.iter().all(|f| f.kind.sampled().is_none() && f.loads.iter().all(|l| l.followed.is_none())));
     let large = left_out("cube_tet_large");

@@ -1,7 +1,7 @@
 //! Reads one bar of hexahedra and tetrahedra from every kind of mesh file, whole, cut short and damaged.
 
 use crate::damage::{assert_sound, damaged};
-use crate::kit::place;
+use crate::kit::{place, source};
 use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_mesh::mesh::vtk::{Array, Grid, write};
@@ -87,35 +87,35 @@ fn agree(some: &[[f64; 3]], others: &[[f64; 3]]) -> bool {
 
 #[test]
 fn every_format_gives_the_same_bar() {
-    let reference = MeshSource::read(&folder().join(GMSH_BARS[0])).unwrap();
+    let reference = source(GMSH_BARS[0]);
     assert_eq!(reference.points.len(), 20);
     assert_eq!(reference.points[9], [3.1, 0.0, 0.125]);
     let cells = sorted_cells(&reference);
     assert_eq!(cells.len(), 16);
     for file in GMSH_BARS {
-        let mesh = MeshSource::read(&folder().join(file)).unwrap();
+        let mesh = source(file);
         assert_eq!(mesh.format, Format::Gmsh);
         assert!(agree(&mesh.points, &reference.points), "{file}");
         assert_eq!(sorted_cells(&mesh), cells, "{file}");
     }
     // Version 1 has the numbers of groups without their names.
-    let mut first = MeshSource::read(&folder().join("bar_1_ascii.msh")).unwrap();
+    let mut first = source("bar_1_ascii.msh");
     assert!(agree(&first.points, &reference.points));
     for (number, name) in [("2:1", "fixed"), ("2:2", "load"), ("3:3", "body"), ("3:7", "soft part")] {
         let groups = first.blocks.iter_mut().flat_map(|block| &mut block.groups);
         groups.filter(|group| *group == number).for_each(|group| *group = name.into());
     }
     assert_eq!(sorted_cells(&first), cells);
-    let hexahedra = sorted_cells(&MeshSource::read(&folder().join("hex20.msh")).unwrap());
+    let hexahedra = sorted_cells(&source("hex20.msh"));
     for file in ["hex20_v1.msh", "hex20_v40.msh"] {
-        let mut mesh = MeshSource::read(&folder().join(file)).unwrap();
+        let mut mesh = source(file);
         let groups = mesh.blocks.iter_mut().flat_map(|block| &mut block.groups);
         groups.filter(|group| *group == "3:1").for_each(|group| *group = "body".into());
         assert_eq!(sorted_cells(&mesh), hexahedra, "{file}");
     }
-    let vtk_cells = sorted_cells(&MeshSource::read(&folder().join(VTK_BARS[0])).unwrap());
+    let vtk_cells = sorted_cells(&source(VTK_BARS[0]));
     for file in VTK_BARS {
-        let mesh = MeshSource::read(&folder().join(file)).unwrap();
+        let mesh = source(file);
         assert_eq!(mesh.format, Format::Vtk);
         assert!(agree(&mesh.points, &reference.points), "{file}");
         assert_eq!(sorted_cells(&mesh), vtk_cells, "{file}");

@@ -1,6 +1,6 @@
 //! Natural vibrations: against closed forms, and against dense eigenvalues of the same matrices.
 
-use crate::kit::place;
+use crate::kit::shipped;
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::support_at;
@@ -10,7 +10,6 @@ use springfit_bodies::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_element::material::Material;
 use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
-use springfit_studies::study::Scene;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -321,8 +320,7 @@ fn slender_bars_pass() {
 #[test]
 fn modes_of_a_mesh_are_those_of_dense_matrices() {
     for (name, held) in [("cube_tet", "fixed"), ("cube_hex", "zmin")] {
-        let path = place(format!("scenes/{name}.toml"));
-        let scene = Scene::load(&path).unwrap();
+        let scene = shipped(name);
         let mesh = scene.build_mesh().unwrap();
         let material = scene.material(3).unwrap();
         let support = support_at(&mesh, &Selection::Group(held.into()).points(&mesh).unwrap());

@@ -1,6 +1,6 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
-use crate::kit::{self, holding, json, outcome, place, said, springfit};
+use crate::kit::{self, holding, json, outcome, outcome_of, place, said, springfit};
 use crate::messages::reads;
 use springfit_mesh::mesh::MeshSource;
 use springfit_report::report;
@@ -142,14 +142,12 @@ frequencies = 3
 
 #[test]
 fn a_disc_is_the_membrane_of_1607_springs() {
-    let path = place("scenes/membrane.toml");
-    let scene = Scene::load(&path).unwrap();
-    let mesh = scene.build_mesh().unwrap();
+    let outcome = outcome_of("membrane");
+    let mesh = &outcome.mesh;
     assert_eq!((mesh.point_count(), mesh.cell_count(), mesh.dimension), (558, 1050, 3));
     assert_eq!(mesh.groups["rim"].points.len(), 64);
-    let outcome = run(&scene, &mut |_| {}).unwrap();
     assert_eq!(outcome.fits[0].network.len(), 1607);
-    let motion = outcome.motion.unwrap();
+    let motion = outcome.motion.as_ref().unwrap();
     for model in &motion.models {
         assert_eq!((model.steps, &model.ending), (200, &MotionEnding::Complete));
         // The middle is where the instrument is.

@@ -1,6 +1,6 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
-use crate::kit::{outcome, place};
+use crate::kit::{outcome, outcome_of, place};
 use springfit_bodies::model::LengthSpring;
 use springfit_report::report::page::{PageRecord, page_html};
 use springfit_report::report::{Report, open_scene_outputs, write_outputs};
@@ -38,13 +38,12 @@ const LOAD: &str = "[[fix]]\ngroup = \"xmin\"\n[[load]]\ngroup = \"xmax\"\ntract
 
 #[test]
 fn the_page_of_a_cube_is_below_5_mb_and_holds_its_report() {
-    let path = place("scenes/cube_tet.toml");
-    let outcome = run(&Scene::load(&path).unwrap(), &mut |_| {}).unwrap();
-    let page = page(&outcome);
+    let outcome = outcome_of("cube_tet");
+    let page = page(outcome);
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
     let record = record(&page);
-    assert_eq!(record["report"], serde_json::to_value(Report::of(&outcome)).unwrap());
-    let view = PageRecord::of(&outcome).view;
+    assert_eq!(record["report"], serde_json::to_value(Report::of(outcome)).unwrap());
+    let view = PageRecord::of(outcome).view;
     assert_eq!(view.points.0.len(), 3 * 147);
     assert_eq!(view.networks.len(), outcome.fits.len());
     for (network, fit) in view.networks.iter().zip(&outcome.fits) {

@@ -1,9 +1,9 @@
 //! Figures and tables for a paper, from the folder of a run.
 
-use crate::kit::{json, place};
+use crate::kit::{json, outcome_of, place, shipped, write_run};
 use springfit_report::report::{
     Axis, CONVERGENCE_FILES, Chart, Columns, Deformation, Figure, Markup, Moduli, Picture, PictureFormat, RunFolder,
-    Series, Shape, Table, open_outputs, open_scene_outputs, write_convergence, write_outputs,
+    Series, Shape, Table, open_outputs, write_convergence,
 };
 use springfit_studies::study::{Scene, converge, run};
 use std::path::Path;
@@ -16,14 +16,16 @@ fn scene(name: &str, settings: &str) -> Scene {
 
 /// The folder of a run.
 fn folder_of(scene: &Scene) -> TempDir {
-    let outcome = run(scene, &mut |_| {}).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    write_outputs(&outcome, scene.output(), open_scene_outputs(scene, folder.path()).unwrap()).unwrap();
+    write_run(scene, &run(scene, &mut |_| {}).unwrap(), folder.path());
     folder
 }
 
+/// The folder of a run of a shipped scene.
 fn folder(name: &str) -> TempDir {
-    folder_of(&scene(name, ""))
+    let folder = tempfile::tempdir().unwrap();
+    write_run(&shipped(name), outcome_of(name), folder.path());
+    folder
 }
 
 fn chart_of(figure: Figure, run: &RunFolder, of: Option<&str>) -> Chart {
@@ -49,7 +51,7 @@ fn numbers(svg: &str, element: &str, attribute: &str) -> Vec<f64> {
 
 #[test]
 fn figures_have_their_size_titles_and_fill_their_axes() {
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let run = RunFolder::at(cube.path());
     for (columns, width) in [(Columns::One, "width=\"85mm\""), (Columns::Two, "width=\"178mm\"")] {
         for figure in [Figure::WorkPrecision, Figure::Constants, Figure::Moduli] {
@@ -67,7 +69,7 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
     let squares = numbers(&svg, "rect", "y").into_iter().filter(|y| *y > 0.0);
     let heights: Vec<f64> = numbers(&svg, "circle", "cy").into_iter().chain(squares).collect();
     assert!(heights.iter().any(|y| *y < 0.3 * tall), "{heights:?} of {tall}");
-    let motion = folder("membrane.toml");
+    let motion = folder("membrane");
     let chart = chart_of(Figure::Motion, &RunFolder::at(motion.path()), None);
     assert!(chart.series[0].points.len() > 10);
     assert!(chart.svg(Columns::One).unwrap().contains("time, s"));
@@ -75,7 +77,7 @@ fn figures_have_their_size_titles_and_fill_their_axes() {
 
 #[test]
 fn the_constants_of_a_network_are_all_counted() {
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let chart = chart_of(Figure::Constants, &RunFolder::at(cube.path()), Some("offdiag"));
     let counted: f64 = chart.series.iter().flat_map(|series| &series.points).map(|(_, count)| count).sum();
     assert_eq!(counted, 690.0);
@@ -83,7 +85,7 @@ fn the_constants_of_a_network_are_all_counted() {
 
 #[test]
 fn tables_are_latex_and_markdown() {
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let tables = Table::all(&RunFolder::at(cube.path()).report().unwrap());
     for table in &tables {
         let markdown = Markup::Markdown.table(table);
@@ -124,25 +126,22 @@ fn what_a_run_lacks_is_named() {
         error.contains("expected 2") && error.contains("found 1") && error.contains("run the scene again"),
         "{error}"
     );
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let run = RunFolder::at(cube.path());
-    let error = fault(Figure::Motion, &run, None, None);
-    assert!(error.contains("report.json") && error.contains("no motion") && error.contains("[motion]"), "{error}");
-    let error = fault(Figure::WorkPrecision, &run, Some("zzz"), None);
-    assert!(error.contains("tension, shear"), "{error}");
     std::fs::remove_file(cube.path().join("offdiag.json")).unwrap();
-    let error = fault(Figure::Constants, &run, Some("offdiag"), None);
-    assert!(error.contains("offdiag.json") && error.contains("[output] json"), "{error}");
-    let error = fault(Figure::Deformation, &run, Some("exact"), None);
-    assert!(error.contains("mesh.vtu") && error.contains("[output] vtu = true"), "{error}");
-    let error = fault(Figure::Deformation, &run, Some("exact"), Some("zzz"));
-    assert!(error.contains("--load") && error.contains("tension, shear"), "{error}");
-    let error = fault(Figure::Moduli, &run, Some("zzz"), None);
-    assert!(error.contains("--of") && error.contains("exact"), "{error}");
-    let error = fault(Figure::Moduli, &run, None, Some("shear"));
-    assert!(error.contains("--load") && error.contains("deformation"), "{error}");
-    let error = fault(Figure::Convergence, &run, None, None);
-    assert!(error.contains("converge.csv") && error.contains("springfit converge"), "{error}");
+    for (figure, of, load, words) in [
+        (Figure::Motion, None, None, &["report.json", "no motion", "[motion]"][..]),
+        (Figure::WorkPrecision, Some("zzz"), None, &["tension, shear"]),
+        (Figure::Constants, Some("offdiag"), None, &["offdiag.json", "[output] json"]),
+        (Figure::Deformation, Some("exact"), None, &["mesh.vtu", "[output] vtu = true"]),
+        (Figure::Deformation, Some("exact"), Some("zzz"), &["--load", "tension, shear"]),
+        (Figure::Moduli, Some("zzz"), None, &["--of", "exact"]),
+        (Figure::Moduli, None, Some("shear"), &["--load", "deformation"]),
+        (Figure::Convergence, None, None, &["converge.csv", "springfit converge"]),
+    ] {
+        let error = fault(figure, &run, of, load);
+        assert!(words.iter().all(|words| error.contains(words)), "{error}");
+    }
     std::fs::write(cube.path().join("converge.csv"), "load,model\ntension,fem\n").unwrap();
     let error = fault(Figure::Convergence, &run, None, None);
     assert!(error.contains("converge.csv:2") && error.contains("h_m"), "{error}");
@@ -168,7 +167,7 @@ fn damaged_parts_of_a_run_are_named() {
     std::fs::create_dir(&report).unwrap();
     let error = RunFolder::at(damaged.path()).report().unwrap_err().to_string();
     assert!(error.contains("report.json: cannot be read"), "{error}");
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     std::fs::write(cube.path().join("offdiag.json"), "{\"version\": 0}").unwrap();
     let error = fault(Figure::Constants, &RunFolder::at(cube.path()), Some("offdiag"), None);
     assert!(error.contains("offdiag.json") && error.contains("springfit network"), "{error}");
@@ -210,7 +209,7 @@ fn a_report_without_objectives_of_steps_is_read() {
 /// 1/E in a direction of a cube: that of the first axis is the first entry of the inverse.
 #[test]
 fn an_exact_network_has_the_modulus_of_the_material_in_all_directions() {
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let run = RunFolder::at(cube.path());
     let young = run.report().unwrap().young.unwrap();
     let moduli = |of: Option<&str>| -> Moduli {
@@ -233,7 +232,7 @@ fn an_exact_network_has_the_modulus_of_the_material_in_all_directions() {
         }
     }
     assert!(moduli(None).curves.iter().any(|curve| curve.moduli[0].iter().any(|m| (m / young - 1.0).abs() > 0.1)));
-    let square = folder("square_quad.toml");
+    let square = folder("square_quad");
     let Picture::Moduli(plane) = Figure::Moduli.picture(&RunFolder::at(square.path()), None, None, None).unwrap()
     else {
         panic!("no moduli")
@@ -286,7 +285,7 @@ fn a_deformation_shows_the_run_and_covers_what_is_behind() {
         let scene = scene(name, "\n[output]\nvtu = true\n");
         let outcome = run(&scene, &mut |_| {}).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        write_outputs(&outcome, scene.output(), open_scene_outputs(&scene, folder.path()).unwrap()).unwrap();
+        write_run(&scene, &outcome, folder.path());
         let run = RunFolder::at(folder.path());
         let fit = &outcome.fits[1];
         let place = outcome.loads.iter().position(|known| known.name == load).unwrap();
@@ -343,7 +342,7 @@ fn charts_of_convergence_are_those_of_the_study() {
 /// Luminance of colours as grey, Rec. 601: neighbours of the list and of the ramp differ.
 #[test]
 fn greys_are_distinct() {
-    let cube = folder("cube_tet.toml");
+    let cube = folder("cube_tet");
     let svg = Figure::Moduli.picture(&RunFolder::at(cube.path()), None, None, None).unwrap().svg(Columns::One).unwrap();
     let line = |tag: &str| -> Option<(f64, String)> {
         let value = |key: &str| Some(tag.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_string());
@@ -374,7 +373,7 @@ fn formats_are_those_of_the_ending() {
         match PictureFormat::of(Path::new(file)) {
             Ok(found) => {
                 assert_eq!(found, format);
-                let cube = folder("cube_tet.toml");
+                let cube = folder("cube_tet");
                 let picture = Figure::Moduli.picture(&RunFolder::at(cube.path()), None, None, None).unwrap();
                 let bytes = format.bytes(picture.svg(Columns::One).unwrap()).unwrap();
                 assert!(bytes.starts_with(start), "{file}");
@@ -401,12 +400,7 @@ fn a_run_leaves_no_file_of_the_former_one() {
     let folder = tempfile::tempdir().unwrap();
     let write = |settings: &str| {
         let scene = scene("square_quad.toml", settings);
-        write_outputs(
-            &run(&scene, &mut |_| {}).unwrap(),
-            scene.output(),
-            open_scene_outputs(&scene, folder.path()).unwrap(),
-        )
-        .unwrap();
+        write_run(&scene, &run(&scene, &mut |_| {}).unwrap(), folder.path());
     };
     let has = |name: &str| folder.path().join(name).exists();
     std::fs::write(folder.path().join("mine.vtu"), "of the user").unwrap();
@@ -438,20 +432,10 @@ fn a_run_leaves_no_file_of_the_former_one() {
 fn a_run_removes_no_input() {
     let folder = tempfile::tempdir().unwrap();
     let first = scene("square_quad.toml", "\n[output]\nvtu = true\n");
-    write_outputs(
-        &run(&first, &mut |_| {}).unwrap(),
-        first.output(),
-        open_scene_outputs(&first, folder.path()).unwrap(),
-    )
-    .unwrap();
+    write_run(&first, &run(&first, &mut |_| {}).unwrap(), folder.path());
     let text = "[mesh]\nfile = \"mesh.vtu\"\n[material]\nyoung = 1e4\npoisson = 0.3\nplane = \"stress\"\n[[fit]]\nobjective = \"exact\"\n";
     let second = Scene::parse(text, &folder.path().join("scene.toml")).unwrap();
-    write_outputs(
-        &run(&second, &mut |_| {}).unwrap(),
-        second.output(),
-        open_scene_outputs(&second, folder.path()).unwrap(),
-    )
-    .unwrap();
+    write_run(&second, &run(&second, &mut |_| {}).unwrap(), folder.path());
     assert!(folder.path().join("mesh.vtu").exists());
 }
 
@@ -470,7 +454,7 @@ fn fits_without_an_error_are_named() {
 /// A fit has one colour in all figures of a run, whatever others are left out; networks that do not stand are called so.
 #[test]
 fn a_fit_looks_the_same_in_all_figures() {
-    let membrane = folder("membrane.toml");
+    let membrane = folder("membrane");
     let run = RunFolder::at(membrane.path());
     let report = run.report().unwrap();
     let place = |name: &str| {

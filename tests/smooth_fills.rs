@@ -1,6 +1,6 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
-use crate::kit::place;
+use crate::kit::{place, source};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
 use springfit_studies::study::{Scene, run};
@@ -83,7 +83,7 @@ fn organ() -> MeshSource {
 }
 
 fn egg() -> MeshSource {
-    MeshSource::read(&place("tests/meshes/egg.stl")).unwrap()
+    source("egg.stl")
 }
 
 /// Points, edges and sides of the boundary; each edge has two sides.

@@ -1,18 +1,14 @@
 //! Voxels that are divided into tetrahedra.
 
-use crate::kit::{place, ran};
+use crate::kit::{place, ran, source};
 use springfit_element::element::{Element, SHIPPED};
-use springfit_mesh::mesh::{CellIndex, Mesh, MeshSource, Selection, VoxelMesh};
+use springfit_mesh::mesh::{CellIndex, Mesh, Selection, VoxelMesh};
 use std::fs;
 use std::sync::Arc;
 use tempfile::TempDir;
 
 fn element(name: &str) -> Arc<Element> {
     Arc::new(Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap())
-}
-
-fn labels(file: &str) -> MeshSource {
-    MeshSource::read(&place("tests/meshes").join(file)).unwrap()
 }
 
 /// `(b − a)·((c − a) × (d − a))/6`, without its sign.
@@ -30,11 +26,11 @@ fn volume(mesh: &Mesh, cell: &CellIndex) -> f64 {
 fn voxels_are_divided_into_tetrahedra_that_agree() {
     for file in ["labels.npy", "labels.vti", "labels_points.vtk"] {
         for is_mirrored in [false, true] {
-            let mut source = labels(file);
+            let mut source = source(file);
             if is_mirrored {
                 source.points.iter_mut().for_each(|x| x[0] = -x[0]);
             }
-            let cubes = Mesh::resolve(&labels(file), &[], 1e-3).unwrap();
+            let cubes = Mesh::resolve(&source(file), &[], 1e-3).unwrap();
             let mesh = VoxelMesh { element: element("tet4") }.build(&source, 1e-3).unwrap();
             assert_eq!(mesh.cell_count(), 6 * cubes.cell_count(), "{file}");
             assert_eq!(
@@ -67,7 +63,7 @@ fn volume_of_a_voxel(cubes: &Mesh) -> f64 {
 
 #[test]
 fn hexahedra_that_are_no_voxels_are_refused() {
-    let mut source = labels("labels.npy");
+    let mut source = source("labels.npy");
     let node = source.blocks[0].connectivity[6];
     source.points[node][0] += 0.2;
     let message = VoxelMesh { element: element("tet4") }.build(&source, 1.0).unwrap_err().to_string();
@@ -77,8 +73,8 @@ fn hexahedra_that_are_no_voxels_are_refused() {
         ),
         "{message}"
     );
-    let hexahedra = VoxelMesh { element: element("hex8") }.build(&labels("labels.npy"), 1.0).unwrap();
-    assert_eq!(hexahedra.cell_count(), Mesh::resolve(&labels("labels.npy"), &[], 1.0).unwrap().cell_count());
+    let hexahedra = VoxelMesh { element: element("hex8") }.build(&source("labels.npy"), 1.0).unwrap();
+    assert_eq!(hexahedra.cell_count(), Mesh::resolve(&source("labels.npy"), &[], 1.0).unwrap().cell_count());
 }
 
 #[test]

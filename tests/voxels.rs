@@ -1,15 +1,11 @@
 //! Voxels, lattices of points and polygons: files that NumPy and VTK have written (`meshes/grids.py`), arrays of any shape, and faults.
 
 use crate::damage::damaged;
-use crate::kit::place;
+use crate::kit::{place, source};
 use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_mesh::mesh::{Mesh, MeshSource};
 use std::collections::BTreeMap;
-
-fn read(file: &str) -> MeshSource {
-    MeshSource::read(&place("tests/meshes").join(file)).unwrap()
-}
 
 fn mesh(source: &MeshSource) -> Mesh {
     Mesh::resolve(source, &[], 1.0).unwrap()
@@ -77,19 +73,19 @@ fn voxels_with_a_label_are_hexahedra_in_a_group_of_the_label() {
     let expected = boxes([4, 3, 2], "label", |at| at.map(|x| x as f64));
     assert_eq!(expected.len(), 18);
     for file in ["labels.npy", "labels_fortran.npy"] {
-        assert_eq!(cells(&read(file)), expected, "{file}");
+        assert_eq!(cells(&source(file)), expected, "{file}");
     }
     // Steps of 0.5, 0.25 and 2 from (1, 2, 3).
     let place = |at: [usize; 3]| [1.0 + 0.5 * at[0] as f64, 2.0 + 0.25 * at[1] as f64, 3.0 + 2.0 * at[2] as f64];
     let expected = boxes([4, 3, 2], "tissue", place);
     for file in ["labels.vti", "labels_image.vtk", "labels_points.vti", "labels_points.vtk"] {
-        assert_eq!(cells(&read(file)), expected, "{file}");
+        assert_eq!(cells(&source(file)), expected, "{file}");
     }
 }
 
 #[test]
 fn a_plane_image_is_a_mesh_of_squares() {
-    let found = mesh(&read("labels_plane.npy"));
+    let found = mesh(&source("labels_plane.npy"));
     let expected = (0..12).filter(|at| label([at / 3, at % 3, 1]) > 0).count();
     assert_eq!((found.dimension, found.cell_count(), &*found.blocks[0].element.name), (2, expected, "quad4"));
     assert_eq!(found.groups.keys().collect::<Vec<_>>(), ["label=1"]);
@@ -101,7 +97,7 @@ fn cells_between_the_points_of_a_lattice_are_hexahedra() {
     let steps = [[0.0, 1.0, 1.5, 4.0].as_slice(), &[0.0, 2.0, 3.0], &[-1.0, 0.0, 0.5]];
     for (files, shear) in [(["steps.vtr", "steps.vtk"], 0.0), (["sheared.vts", "sheared.vtk"], 0.5)] {
         for file in files {
-            let source = read(file);
+            let source = source(file);
             let found = mesh(&source);
             assert_eq!((found.point_count(), found.cell_count()), (36, 12), "{file}");
             // Points keep the order of the file.
@@ -131,7 +127,7 @@ fn cells_between_the_points_of_a_lattice_are_hexahedra() {
 /// The strip of triangles turns every other one round, so that all have their normals to the same side.
 #[test]
 fn polygons_strips_and_lines_are_cells_with_the_numbers_of_the_whole() {
-    let reference = read("polygons.vtp");
+    let reference = source("polygons.vtp");
     let found = mesh(&reference);
     // Polygonal data are surfaces in space.
     assert_eq!((found.dimension, found.cell_count(), found.reversed), (3, 5, 0));
@@ -141,7 +137,7 @@ fn polygons_strips_and_lines_are_cells_with_the_numbers_of_the_whole() {
     let expected = [("part=1", (1, 3)), ("part=2", (1, 4)), ("part=3", (3, 5)), ("part=7", (0, 1)), ("part=8", (0, 3))];
     assert_eq!(sizes, BTreeMap::from(expected));
     for file in ["polygons.vtk", "polygons_binary.vtk"] {
-        assert_eq!(read(file), reference, "{file}");
+        assert_eq!(source(file), reference, "{file}");
     }
 }
 

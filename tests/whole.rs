@@ -1,6 +1,6 @@
 //! Whole-object fits: their derivatives, what they do for loads that they have not seen, from where, and to what.
 
-use crate::kit::{outcome, outcome_in, place, refusal};
+use crate::kit::{outcome, outcome_in, refusal, shipped};
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::{dense, support_at};
 use rand::rngs::StdRng;
@@ -21,10 +21,6 @@ use springfit_studies::study::{Controls, Event, LoadOutcome, Outcome, Scene, run
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use tempfile::TempDir;
-
-fn load(name: &str) -> Scene {
-    Scene::load(&place(format!("scenes/{name}.toml"))).unwrap()
-}
 
 /// The scene of that text, whose files are in a folder.
 fn scene_in(folder: &Path, text: &str) -> Scene {
@@ -97,7 +93,7 @@ fn quietly(object: &Object, wanted: &Wanted, settings: &WholeSettings) -> WholeF
 /// kinds, loads with prescribed displacements, frequencies, displacements known in part.
 #[test]
 fn derivatives_are_those_of_differences() {
-    let body = Body::new(&load("tissue_tri"), "fixed");
+    let body = Body::new(&shipped("tissue_tri"), "fixed");
     let fits = body.fits(PLAIN, true);
     let network = Network::assemble(&body.mesh, &fits);
     let mut targets = body.made();
@@ -136,7 +132,7 @@ fn derivatives_in_moduli_are_those_of_differences() {
         ("tissue_tri", "fixed", ShearSprings::Edges, VolumeSprings::Patches),
         ("tissue_quad", "fixed", ShearSprings::Cells, VolumeSprings::Cells),
     ] {
-        let body = Body::new(&load(scene), held);
+        let body = Body::new(&shipped(scene), held);
         let mut targets = body.made();
         targets.truncate(2);
         let frequencies = body.frequencies(2);
@@ -187,7 +183,7 @@ fn derivatives_in_moduli_are_those_of_differences() {
 /// varies from cell to cell within one region, and the measured moduli of the groups come back by their names.
 #[test]
 fn domains_of_edges_share_the_moduli_of_groups() {
-    let mut body = Body::new(&load("cube_tet"), "fixed");
+    let mut body = Body::new(&shipped("cube_tet"), "fixed");
     let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
     let is_upper: Vec<bool> = body.mesh.blocks[0].cells().map(|cell| height(cell) > 0.01).collect();
     let upper = (0..is_upper.len()).filter(|&cell| is_upper[cell]).map(|cell| CellIndex { block: 0, cell }).collect();
@@ -227,7 +223,7 @@ fn domains_of_edges_share_the_moduli_of_groups() {
 /// of every cell come back.
 #[test]
 fn moduli_of_two_halves_come_back() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let parts = ModuliParts::new(&body.mesh, body.material, &ExactFit::default(), &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Element);
     let object = Object::of_moduli(parts.clone(), unknowns.clone(), None).unwrap();
@@ -331,7 +327,7 @@ fn varied_loads_of_two_seeds_have_none_in_common() {
 /// ten cases, with all points known and with those of the surface alone.
 #[test]
 fn intervals_of_moduli_hold_the_truth() {
-    let mut body = Body::new(&load("cube_tet"), "fixed");
+    let mut body = Body::new(&shipped("cube_tet"), "fixed");
     let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
     let upper: Vec<CellIndex> = body.mesh.blocks[0]
         .cells()
@@ -401,7 +397,7 @@ fn intervals_of_moduli_hold_the_truth() {
 /// A path with a bump in the error of its validation: it goes on, and its choice is the least error of all.
 #[test]
 fn the_path_goes_to_its_end() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let fits = body.fits(PLAIN, false);
     let network = Network::assemble(&body.mesh, &fits);
     for seed in 0..3 {
@@ -487,7 +483,7 @@ fn moved_by_another(body: &Body) -> (Network, Vec<Target>) {
 /// A network that moves exactly so is found again as far as its displacements go, by both methods.
 #[test]
 fn what_a_network_did_is_found() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let (network, trained) = moved_by_another(&body);
     let wanted = Wanted { trained, ..Wanted::default() };
     let object = Object::new(&network, &body.mesh.points, Unknowns::per_spring(&network), None).unwrap();
@@ -509,7 +505,7 @@ fn what_a_network_did_is_found() {
 /// the fit from those of the others.
 #[test]
 fn a_load_that_no_network_follows_does_not_decide() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let (network, mut trained) = moved_by_another(&body);
     trained[0].displacement = trained[1].displacement.clone();
     let wanted = Wanted { trained, ..Wanted::default() };
@@ -531,7 +527,7 @@ fn made_tractions_are_in_balance() {
     for (name, held) in
         [("cylinder_hole_tet", "fixed"), ("cube_hex", "zmin"), ("tissue_quad", "fixed"), ("tissue_tri", "fixed")]
     {
-        let body = Body::new(&load(name), held);
+        let body = Body::new(&shipped(name), held);
         let d = body.mesh.dimension;
         let loads = made_loads(&body.mesh, &body.support, body.material.thickness());
         assert_eq!(loads.len(), if d == 3 { 12 } else { 6 }, "{name}");
@@ -572,7 +568,7 @@ type Limits<'a> = (&'a str, [&'a str; 2], [f64; 2], Option<[f64; 2]>);
 
 fn held_out_errors_fall_of(limits: &[Limits]) {
     for &(name, held_out, limit, with_volume) in limits {
-        let outcome = run(&load(&format!("{name}_whole")), &mut |_| {}).unwrap();
+        let outcome = run(&shipped(&format!("{name}_whole")), &mut |_| {}).unwrap();
         print!("{}", report::tables(&outcome));
         let fit = |name: &str| outcome.fits.iter().find(|fit| fit.fit.name == name).unwrap();
         let error = |name: &str, load: &str| rms(&fit(name).loads, load);
@@ -683,7 +679,7 @@ fn frequencies_are_fitted() {
 /// not fitted.
 #[test]
 fn the_path_is_as_good_as_a_scan() {
-    let body = Body::new(&load("cube_hex"), "zmin");
+    let body = Body::new(&shipped("cube_hex"), "zmin");
     let high = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64 > 0.01;
     let own = |cell: &[usize]| {
         let young = if high(cell) { 4.0 } else { 1.0 } * body.material.young();
@@ -965,7 +961,7 @@ fn fits_of_nothing_end() {
 /// A requested ρ is used whatever its range is, and the fit knows if that is beyond the allowed one.
 #[test]
 fn a_range_beyond_the_allowed_one_is_known() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let (network, trained) = moved_by_another(&body);
     // From equal constants, whose range is 1.
     let network = network.scaled(&network.lengths.iter().map(|spring| 1.0 / spring.constant).collect::<Vec<f64>>());
@@ -982,7 +978,7 @@ fn a_range_beyond_the_allowed_one_is_known() {
 /// A seed gives the same loads, another one others.
 #[test]
 fn random_loads_repeat() {
-    let body = Body::new(&load("cube_tet"), "fixed");
+    let body = Body::new(&shipped("cube_tet"), "fixed");
     let [a, b, c] = [1, 1, 2].map(|seed| body.random(2, seed));
     assert_eq!(a, b);
     assert_ne!(a[0].forces, c[0].forces);

@@ -2,8 +2,8 @@
 
 use super::markdown::root;
 use super::printed::compare;
+use crate::kit::outcome_of;
 use springfit_report::report::deformed;
-use springfit_studies::study::{Scene, run};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
@@ -17,8 +17,7 @@ fn words(svg: &str) -> String {
 #[test]
 fn the_picture_shows_the_errors_of_a_fresh_run() {
     let path = root().join("docs/src/figures/cube_tet-exact.svg");
-    let outcome = run(&Scene::load(&root().join("scenes/cube_tet.toml")).unwrap(), &mut |_| {}).unwrap();
-    let picture = deformed(&outcome, "tension", &["frobenius", "offdiag k>=0", "exact"]).unwrap();
+    let picture = deformed(outcome_of("cube_tet"), "tension", &["frobenius", "offdiag k>=0", "exact"]).unwrap();
     if std::env::var_os("SPRINGFIT_WRITE_BOOK").is_some() {
         std::fs::write(path, picture).unwrap();
         return;
