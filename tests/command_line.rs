@@ -36,14 +36,18 @@ fn printed(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Str
     text(&output.stdout)
 }
 
+/// What a run in the repository prints.
+fn told(arguments: &[&str]) -> String {
+    printed(Path::new(ROOT), &[], arguments)
+}
+
 fn folder_with_scene() -> TempDir {
-    let folder = holding("s.toml", SQUARE);
-    folder
+    holding("s.toml", SQUARE)
 }
 
 /// The subcommands, as the help lists them.
 fn commands() -> Vec<String> {
-    let help = printed(Path::new(ROOT), &[], &["--help"]);
+    let help = told(&["--help"]);
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     // A line that goes on has more blanks.
     let begins = |line: &&str| !line.starts_with("   ");
@@ -55,12 +59,15 @@ fn commands() -> Vec<String> {
         .collect()
 }
 
+/// No line of help is wider than a page of 120 columns.
 #[test]
-fn every_help_has_examples_of_its_own_options() {
+fn every_help_fits_the_page_and_has_examples_of_its_own_options() {
     let commands = commands();
     assert!(commands.len() >= 14, "{commands:?}");
     for command in &commands {
-        let help = printed(Path::new(ROOT), &[], &[command, "--help"]);
+        let help = told(&[command, "--help"]);
+        let longest = help.lines().max_by_key(|line| line.chars().count()).unwrap_or_default();
+        assert!(longest.chars().count() <= 120, "{command}: {longest}");
         let examples = help.split("\nExamples:\n").nth(1).unwrap_or_else(|| panic!("{command} has no examples"));
         let own: Vec<&str> = examples.lines().filter(|line| line.contains(&format!("springfit {command}"))).collect();
         assert!(!own.is_empty(), "{command}: {examples}");
@@ -73,7 +80,7 @@ fn every_help_has_examples_of_its_own_options() {
             }
         }
     }
-    let help = printed(Path::new(ROOT), &[], &["--help"]);
+    let help = told(&["--help"]);
     for words in ["Exit codes:", "  0 ", "  1 ", "  2 ", "  130 ", "NO_COLOR", "COLUMNS"] {
         assert!(help.contains(words), "{words}");
     }
@@ -81,7 +88,7 @@ fn every_help_has_examples_of_its_own_options() {
 
 #[test]
 fn the_help_of_fit_groups_its_options_and_lists_all_published_methods() {
-    let help = printed(Path::new(ROOT), &[], &["fit", "--help"]);
+    let help = told(&["fit", "--help"]);
     for heading in ["Material:", "Fit:", "Mesh:", "Exact networks:", "Sampled fits:", "Output:", "Messages:"] {
         assert!(help.lines().any(|line| line == heading), "{heading}");
     }
@@ -90,28 +97,18 @@ fn the_help_of_fit_groups_its_options_and_lists_all_published_methods() {
     }
 }
 
-/// No line of help is wider than a page of 120 columns.
-#[test]
-fn help_fits_the_page() {
-    for command in commands() {
-        let help = printed(Path::new(ROOT), &[], &[&command, "--help"]);
-        let longest = help.lines().max_by_key(|line| line.chars().count()).unwrap_or_default();
-        assert!(longest.chars().count() <= 120, "{command}: {longest}");
-    }
-}
-
 #[test]
 fn completions_and_manual_pages_name_every_command() {
     let names = commands();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let script = printed(Path::new(ROOT), &[], &["completions", shell]);
+        let script = told(&["completions", shell]);
         let missing: Vec<_> = names.iter().filter(|name| !script.contains(name.as_str())).collect();
         assert!(missing.is_empty() && script.contains("checkpoint"), "{shell}: {missing:?}");
     }
-    let page = printed(Path::new(ROOT), &[], &["man"]);
+    let page = told(&["man"]);
     assert!(page.contains(".TH springfit 1") && page.contains("Exit codes"), "{page}");
     for name in &names {
-        let page = printed(Path::new(ROOT), &[], &["man", name]);
+        let page = told(&["man", name]);
         assert!(page.contains(&format!("springfit\\-{name}")), "{page}");
     }
     let output = springfit(Path::new(ROOT), &[], &["man", "rn"]);
@@ -121,16 +118,16 @@ fn completions_and_manual_pages_name_every_command() {
 
 #[test]
 fn what_is_shipped_is_listed() {
-    let elements = printed(Path::new(ROOT), &[], &["elements"]);
-    let materials = printed(Path::new(ROOT), &[], &["materials"]);
+    let elements = told(&["elements"]);
+    let materials = told(&["materials"]);
     let names = |list: &str| -> Vec<String> {
         let list: Value = serde_json::from_str(list).unwrap();
         list.as_array().unwrap().iter().map(|entry| entry["name"].as_str().unwrap().to_string()).collect()
     };
-    let listed = names(&printed(Path::new(ROOT), &[], &["elements", "--json"]));
+    let listed = names(&told(&["elements", "--json"]));
     assert_eq!(listed, SHIPPED.iter().map(|element| element.name).collect::<Vec<_>>());
     assert!(listed.iter().all(|name| elements.lines().any(|line| line.trim_start().starts_with(name.as_str()))));
-    let listed = names(&printed(Path::new(ROOT), &[], &["materials", "--json"]));
+    let listed = names(&told(&["materials", "--json"]));
     assert_eq!(listed.len(), fs::read_dir(Path::new(ROOT).join("materials")).unwrap().count());
     assert!(listed.iter().all(|name| materials.contains(name.as_str())));
 }
@@ -369,7 +366,7 @@ fn every_shipped_scene_can_be_explained() {
     let scenes: Vec<PathBuf> = scenes.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     assert!(scenes.len() > 15);
     for scene in scenes {
-        let told = printed(Path::new(ROOT), &[], &["run", scene.to_str().unwrap(), "--explain", "--json"]);
+        let told = self::told(&["run", scene.to_str().unwrap(), "--explain", "--json"]);
         let forecast: Value = serde_json::from_str(&told).unwrap();
         let stages = forecast["stages"].as_array().unwrap();
         assert!(

@@ -29,8 +29,7 @@ fn comparing(text: &str) -> springfit_foundation::error::Result<Comparing> {
 }
 
 fn folder_with(text: &str) -> TempDir {
-    let folder = holding("c.toml", text);
-    folder
+    holding("c.toml", text)
 }
 
 fn cases(folder: &Path) -> Vec<CaseRecord> {

@@ -8,7 +8,7 @@ use springfit_element::material::{BlockValues, CellMap, Hooke, Material, State};
 use springfit_element::springs::{Measure, Springs};
 use springfit_fit::fit::{Fit, Objective, element_errors, fit_cells, fit_element};
 use springfit_report::report::Report;
-use springfit_studies::study::{Outcome, Scene, run};
+use springfit_studies::study::{Outcome, Scene};
 use tempfile::TempDir;
 
 /// The largest displacement along the last axis under the first load.
@@ -41,22 +41,24 @@ traction = [0, 0, 10.0]
 
 const EXACT: &str = "[[fit]]\nobjective = \"exact\"\n";
 
+/// Materials without a Poisson's ratio: what chooses the cells of each, and its Young's modulus.
+fn layers(parts: &[(&str, &str)]) -> String {
+    let of = |(part, young): &(&str, &str)| format!("[[material]]\n{part}\nyoung = {young}\npoisson = 0\n");
+    parts.iter().map(of).collect()
+}
+
 /// `u = σ Σ L_i/E_i`, for bars in series; without Poisson's ratio the state is uniaxial everywhere.
 #[test]
 fn layers_in_series_add_their_compliances() {
-    let two =
-        "[[material]]\nwhere = \"z <= 1.00001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
-    let three = "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 2e3\npoisson = 0\n\
-                 [[material]]\nwhere = \"z > 1.99999\"\nyoung = \"1 MPa\"\npoisson = 0\n\
-                 [[material]]\nyoung = 5e3\npoisson = 0\n";
-    let stiff =
-        "[[material]]\nwhere = \"z < 1.00001\"\nyoung = 1e3\npoisson = 0\n[[material]]\nyoung = 1e6\npoisson = 0\n";
+    let two = layers(&[("where = \"z <= 1.00001\"", "2e3"), ("", "7e3")]);
+    let three = layers(&[("where = \"z < 1.00001\"", "2e3"), ("where = \"z > 1.99999\"", "\"1 MPa\""), ("", "5e3")]);
+    let stiff = layers(&[("where = \"z < 1.00001\"", "1e3"), ("", "1e6")]);
     for element in ["hex8", "tet4", "hex20", "wedge6"] {
         for (materials, compliance) in [
-            (two, 1.0 / 2e3 + 2.0 / 7e3),
-            (three, 1.0 / 2e3 + 1.0 / 5e3 + 1.0 / 1e6),
+            (&two, 1.0 / 2e3 + 2.0 / 7e3),
+            (&three, 1.0 / 2e3 + 1.0 / 5e3 + 1.0 / 1e6),
             // 1 : 1000
-            (stiff, 1.0 / 1e3 + 2.0 / 1e6),
+            (&stiff, 1.0 / 1e3 + 2.0 / 1e6),
         ] {
             let outcome = outcome(&bar(element, [2, 1, 3], materials, EXACT));
             assert_close(end(&outcome), 10.0 * compliance, 1e-10);
@@ -71,10 +73,9 @@ fn layers_in_series_add_their_compliances() {
 /// `F = ε Σ E_i A_i` of bars side by side under one strain.
 #[test]
 fn layers_in_parallel_add_their_stiffnesses() {
-    let materials =
-        "[[material]]\nwhere = \"x < 0.25001\"\nyoung = 2e3\npoisson = 0\n[[material]]\nyoung = 7e3\npoisson = 0\n";
+    let materials = layers(&[("where = \"x < 0.25001\"", "2e3"), ("", "7e3")]);
     let text =
-        bar("hex8", [4, 1, 3], materials, EXACT).replace("traction = [0, 0, 10.0]", "displacement = [0, 0, 0.3]");
+        bar("hex8", [4, 1, 3], &materials, EXACT).replace("traction = [0, 0, 10.0]", "displacement = [0, 0, 0.3]");
     let outcome = outcome(&text);
     let (mesh, u) = (&outcome.mesh, &outcome.loads[0].fem);
     let mut force = 0.0;
@@ -204,17 +205,14 @@ fn arrays_of_a_grid_are_read() {
         assert!(text.contains(mesh));
         let text = text.replace(mesh, "file = \"two.vtk\"").replace("group = \"zmin\"", "where = \"z < 1e-9\"");
         let text = text.replace("group = \"zmax\"", "where = \"z > 2.999\"");
-        let scene = Scene::parse(&text, &folder.path().join("scene.toml")).unwrap();
-        run(&scene, &mut |_| ()).unwrap()
+        outcome_in(folder.path(), &text).unwrap()
     };
     let cells = solve("[material]\nyoung = { file = \"two.vtk\", array = \"E\" }\npoisson = 0\n");
     assert_close(end(&cells), 10.0 * (1.0 / 2e3 + 2.0 / 7e3), 1e-10);
     // Numbers of points: means over the cells, here 2 kPa and 4 kPa.
     let points = solve("[material]\nyoung = { file = \"two.vtk\", array = \"T\", unit = \"kPa\" }\npoisson = 0\n");
     assert_close(end(&points), 10.0 * (1.0 / 2e3 + 2.0 / 4e3), 1e-10);
-    let sets = solve(
-        "[[material]]\ngroup = \"part=4\"\nyoung = 2e3\npoisson = 0\n[[material]]\ngroup = \"part=9\"\nyoung = 7e3\npoisson = 0\n",
-    );
+    let sets = solve(&layers(&[("group = \"part=4\"", "2e3"), ("group = \"part=9\"", "7e3")]));
     assert_close(end(&sets), 10.0 * (1.0 / 2e3 + 2.0 / 7e3), 1e-10);
     assert_eq!(sets.material.regions(), ["part=4", "part=9"]);
 }
@@ -427,8 +425,7 @@ fn a_field_on_a_hundred_thousand_cells() {
              [material]\nyoung = {young}\npoisson = \"0.3 + 0.1*x\"\ndensity = 1000\n\
              [[fit]]\nobjective = \"offdiag\"\n[[fit]]\nobjective = \"exact\"\n"
         );
-        let scene = Scene::parse(&text, &folder.path().join("scene.toml")).unwrap();
-        run(&scene, &mut |_| ()).unwrap()
+        outcome_in(folder.path(), &text).unwrap()
     };
     let file = scene("{ file = \"map.csv\", interpolation = \"nearest\" }");
     let expression = scene("\"1e4*(1 + sin(20*x)*cos(30*y)*z/2)\"");

@@ -6,7 +6,6 @@ use springfit_studies::study::{InMemory, Scene, Sweep};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::Output;
 use tempfile::TempDir;
 
 const SCENE: &str = r#"[mesh]
@@ -40,25 +39,16 @@ fn values(table: &str) -> Value {
     sweep.studies().iter().map(|study| serde_json::to_value(study.values()).unwrap()).collect()
 }
 
-fn springfit(folder: &Path, arguments: &str) -> Output {
-    kit::springfit(folder, &arguments.split_whitespace().collect::<Vec<_>>())
-}
-
 fn folder_with(table: &str) -> TempDir {
-    let folder = holding("s.toml", format!("{SCENE}{table}"));
-    folder
+    holding("s.toml", format!("{SCENE}{table}"))
 }
 
 fn done(folder: &Path, arguments: &str) -> String {
-    let output = springfit(folder, arguments);
-    assert!(output.status.success(), "{arguments}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
+    kit::prints(folder, &arguments.split_whitespace().collect::<Vec<_>>())
 }
 
 fn refused(folder: &Path, arguments: &str) -> String {
-    let output = springfit(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments}: {output:?}");
-    String::from_utf8(output.stderr).unwrap()
+    kit::refused(folder, &arguments.split_whitespace().collect::<Vec<_>>())
 }
 
 fn read(folder: &Path, name: &str) -> String {
@@ -164,6 +154,25 @@ fn a_list_of_studies_is_taken_as_it_is() {
 
 #[test]
 fn wrong_sweeps_are_refused() {
+    let refuses = |table: &str, key: &str, words: &str| {
+        let error = sweep(table).unwrap_err();
+        assert!(error.key().unwrap_or_default().contains(key) && error.to_string().contains(words), "{table}: {error}");
+    };
+    for (values, key, words) in [
+        ("poisson = 0.3", "poisson", "a list of values"),
+        ("poisson = []", "poisson", "at least one value"),
+        ("poisson = { from = 0 }", "poisson.to", "a number"),
+        ("poisson = { from = 0, to = nan, count = 2 }", "poisson.to", "finite"),
+        ("poisson = { from = 0, to = 0.4 }", "poisson.count", "the number of values"),
+        ("poisson = { from = 0, to = 0.4, count = 0 }", "poisson.count", "from 1"),
+        ("poisson = { from = 0, to = 0.4, numbers = 4 }", "poisson.numbers", "expected one of \"from\""),
+        ("poisson = { from = 0, to = 0.4, step = -0.1 }", "poisson.step", "leads from"),
+        ("poisson = { from = 0, to = 0.4, step = 0.1, count = 3 }", "poisson.count", "step"),
+        ("young = { from = 0, to = 4, count = 3, spacing = \"log\" }", "young.spacing", "above 0"),
+        ("young = { from = \"1 kPa\", to = \"3 MPa\", count = 3 }", "young.to", "the unit"),
+    ] {
+        refuses(&format!("[sweep.over]\nmaterial.{values}\n"), &format!("sweep.over.material.{key}"), words);
+    }
     for (table, key, words) in [
         ("[sweep]\n", "sweep", "missing field \"over\""),
         ("[sweep.over]\n", "sweep.over", "at least one key"),
@@ -172,49 +181,6 @@ fn wrong_sweeps_are_refused() {
         ("[sweep]\nover = [1]\n", "sweep.over[0]", "a table"),
         ("[sweep]\nover = [{ \"a b\" = 1 }]\n", "sweep.over[0].a b", "a key such as"),
         ("[sweep.over]\n\"fit[x].tied\" = [true]\n", "sweep.over.fit[x].tied", "a key such as"),
-        ("[sweep.over]\nmaterial.poisson = 0.3\n", "sweep.over.material.poisson", "a list of values"),
-        ("[sweep.over]\nmaterial.poisson = []\n", "sweep.over.material.poisson", "at least one value"),
-        ("[sweep.over]\nmaterial.poisson = { from = 0 }\n", "sweep.over.material.poisson.to", "a number"),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = nan, count = 2 }\n",
-            "sweep.over.material.poisson.to",
-            "finite",
-        ),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = 0.4 }\n",
-            "sweep.over.material.poisson.count",
-            "the number of values",
-        ),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = 0.4, count = 0 }\n",
-            "sweep.over.material.poisson.count",
-            "from 1",
-        ),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = 0.4, numbers = 4 }\n",
-            "sweep.over.material.poisson.numbers",
-            "expected one of \"from\"",
-        ),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = 0.4, step = -0.1 }\n",
-            "sweep.over.material.poisson.step",
-            "leads from",
-        ),
-        (
-            "[sweep.over]\nmaterial.poisson = { from = 0, to = 0.4, step = 0.1, count = 3 }\n",
-            "sweep.over.material.poisson.count",
-            "step",
-        ),
-        (
-            "[sweep.over]\nmaterial.young = { from = 0, to = 4, count = 3, spacing = \"log\" }\n",
-            "sweep.over.material.young.spacing",
-            "above 0",
-        ),
-        (
-            "[sweep.over]\nmaterial.young = { from = \"1 kPa\", to = \"3 MPa\", count = 3 }\n",
-            "sweep.over.material.young.to",
-            "the unit",
-        ),
         ("[sweep.over]\nsweep.samples = [1, 2]\n", "sweep.over", "outside"),
         ("[sweep]\nsamples = 3\n[sweep.over]\nmaterial.poisson = [0]\n", "sweep.samples", "random"),
         ("[sweep]\ndesign = \"sobol\"\n[sweep.over]\nmaterial.poisson = [0]\n", "sweep.samples", "number of studies"),
@@ -231,8 +197,7 @@ fn wrong_sweeps_are_refused() {
         ),
         ("[sweep.over]\nmaterial.poissn = [0.1, 0.2]\n", "material.poissn", "did you mean"),
     ] {
-        let error = sweep(table).unwrap_err();
-        assert!(error.key().unwrap_or_default().contains(key) && error.to_string().contains(words), "{table}: {error}");
+        refuses(table, key, words);
     }
     let error = sweep("").unwrap_err();
     assert!(error.key() == Some("sweep") && error.to_string().contains("[sweep]"), "{error}");
@@ -394,7 +359,7 @@ fn a_sweep_is_drawn_over_its_key() {
     // A sweep of fewer values tells of the studies that the folder has besides.
     let scene = read(folder, "s.toml").replace("[0.0, 0.2, 0.4]", "[0.0, 0.4]");
     fs::write(folder.join("s.toml"), scene).unwrap();
-    let told = String::from_utf8(springfit(folder, "sweep s.toml --out exact --resume").stderr).unwrap();
+    let told = kit::ran(folder, &["sweep", "s.toml", "--out", "exact", "--resume"]).1;
     assert!(told.contains("the folder has 2 studies of other values"), "{told}");
 }
 

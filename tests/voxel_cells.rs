@@ -1,6 +1,6 @@
 //! Voxels that are divided into tetrahedra.
 
-use crate::kit::{place, ran, source};
+use crate::kit::{self, place, ran};
 use springfit_element::element::{Element, SHIPPED};
 use springfit_mesh::mesh::{CellIndex, Mesh, Selection, VoxelMesh};
 use std::fs;
@@ -26,11 +26,11 @@ fn volume(mesh: &Mesh, cell: &CellIndex) -> f64 {
 fn voxels_are_divided_into_tetrahedra_that_agree() {
     for file in ["labels.npy", "labels.vti", "labels_points.vtk"] {
         for is_mirrored in [false, true] {
-            let mut source = source(file);
+            let mut source = kit::source(file);
             if is_mirrored {
                 source.points.iter_mut().for_each(|x| x[0] = -x[0]);
             }
-            let cubes = Mesh::resolve(&source(file), &[], 1e-3).unwrap();
+            let cubes = Mesh::resolve(&kit::source(file), &[], 1e-3).unwrap();
             let mesh = VoxelMesh { element: element("tet4") }.build(&source, 1e-3).unwrap();
             assert_eq!(mesh.cell_count(), 6 * cubes.cell_count(), "{file}");
             assert_eq!(
@@ -63,7 +63,7 @@ fn volume_of_a_voxel(cubes: &Mesh) -> f64 {
 
 #[test]
 fn hexahedra_that_are_no_voxels_are_refused() {
-    let mut source = source("labels.npy");
+    let mut source = kit::source("labels.npy");
     let node = source.blocks[0].connectivity[6];
     source.points[node][0] += 0.2;
     let message = VoxelMesh { element: element("tet4") }.build(&source, 1.0).unwrap_err().to_string();
@@ -73,8 +73,8 @@ fn hexahedra_that_are_no_voxels_are_refused() {
         ),
         "{message}"
     );
-    let hexahedra = VoxelMesh { element: element("hex8") }.build(&source("labels.npy"), 1.0).unwrap();
-    assert_eq!(hexahedra.cell_count(), Mesh::resolve(&source("labels.npy"), &[], 1.0).unwrap().cell_count());
+    let hexahedra = VoxelMesh { element: element("hex8") }.build(&kit::source("labels.npy"), 1.0).unwrap();
+    assert_eq!(hexahedra.cell_count(), Mesh::resolve(&kit::source("labels.npy"), &[], 1.0).unwrap().cell_count());
 }
 
 #[test]
