@@ -1,5 +1,7 @@
 //! What a network is as a material: the elasticity tensor from samples of its cells.
 
+use crate::kit::outcome_in;
+use crate::shapes::bodies::vtk_text;
 use crate::shapes::{Random, elements, materials, single, valid};
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 use springfit_bodies::model::Network;
@@ -358,18 +360,6 @@ fn a_thickness_that_varies_is_no_modulus() {
 /// is the material at any thickness, and is not recommended about itself.
 #[test]
 fn sheets_that_meet_or_lie_over_others_are_the_material() {
-    let grid = |text: &str, points: &[[f64; 3]], cells: &[[usize; 4]]| {
-        let lines = |rows: Vec<String>| rows.join("\n");
-        let points_text = lines(points.iter().map(|[x, y, z]| format!("{x} {y} {z}")).collect());
-        let cells_text = lines(cells.iter().map(|[a, b, c, d]| format!("4 {a} {b} {c} {d}")).collect());
-        let (n, m) = (points.len(), cells.len());
-        format!(
-            "# vtk DataFile Version 3.0\n{text}\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {n} double\n{points_text}\nCELLS {m} {}\n\
-             {cells_text}\nCELL_TYPES {m}\n{}\n",
-            5 * m,
-            "9\n".repeat(m)
-        )
-    };
     let z = 0.166667;
     let mut tee: Vec<[f64; 3]> =
         [4.0, 6.0, 8.0, 10.0, 12.0, 14.0].iter().flat_map(|y| [[2.0, *y, z], [2.0, *y, -z]]).collect();
@@ -390,14 +380,14 @@ fn sheets_that_meet_or_lie_over_others_are_the_material() {
     }
     let folder = tempfile::tempdir().unwrap();
     for (name, points, cells) in [("tee", &tee, &of_tee), ("sheet", &sheet, &of_sheet)] {
-        std::fs::write(folder.path().join("m.vtk"), grid(name, points, cells)).unwrap();
+        let cells: Vec<_> = cells.iter().map(|nodes| (9, nodes.to_vec())).collect();
+        std::fs::write(folder.path().join("m.vtk"), vtk_text(points.as_flattened(), &cells)).unwrap();
         for thickness in ["1e-6", "1e-3", "0.1", "10"] {
             let text = format!(
                 "[mesh]\nfile = \"m.vtk\"\n[material]\nyoung = 1e4\npoisson = 0.3\nthickness = {thickness}\n\
                  [[fit]]\nobjective = \"exact\"\n"
             );
-            let scene = Scene::parse(&text, &folder.path().join("s.toml")).unwrap();
-            let outcome = run(&scene, &mut |_| {}).unwrap();
+            let outcome = outcome_in(folder.path(), &text).unwrap();
             let material = Material::for_body(2, 1e4, 0.3, None, Some(1.0)).unwrap();
             is_material(&outcome.fits[0].as_material, material, &format!("{name} {thickness}"));
             let notes = springfit_report::report::notes(&outcome).join("\n");

@@ -1,6 +1,6 @@
 //! Scenes in motion: against closed forms, as files, and every wrong key.
 
-use crate::kit::{self, holding, json, outcome, outcome_of, place, said, springfit};
+use crate::kit::{self, holding, json, outcome, outcome_of, place, prints, said, springfit};
 use crate::messages::reads;
 use springfit_mesh::mesh::MeshSource;
 use springfit_report::report;
@@ -174,10 +174,8 @@ fn a_motion_is_written_for_paraview_and_over_time() {
     // The reader of meshes knows no cells that are sets of points, as springs on a volume are.
     let text = edited(&text, ", \"bulk\"]", "]");
     let folder = holding("scene.toml", &text);
-    let seen = springfit(folder.path(), &["run", "scene.toml"]);
-    assert!(seen.status.success(), "{}", said(&seen));
+    let printed = prints(folder.path(), &["run", "scene.toml"]);
     let out = folder.path().join("out/scene");
-    let printed = String::from_utf8(seen.stdout).unwrap();
     for stem in ["motion-finite-elements", "motion-springs"] {
         assert!(printed.contains(&format!("{stem}.pvd")) && printed.contains(&format!("{stem}.csv")), "{printed}");
         let sets = sets(&fs::read_to_string(out.join(format!("{stem}.pvd"))).unwrap());

@@ -1,7 +1,7 @@
 //! Pressures on faces, at rest and on faces that move; and cavities that are filled to a given volume.
 
 use crate::kit::{json, outcome, ran, refusal};
-use crate::shapes::bodies::{grid, mapped, patch, sphere};
+use crate::shapes::bodies::{grid, mapped, patch, sphere, vtk_text};
 use crate::shapes::statics::support_at;
 use crate::shapes::{Random, distorted, elements, single};
 use springfit_bodies::model::{
@@ -680,19 +680,8 @@ fn pressures_of_a_scene_follow_where_there_is_a_law() {
 fn a_scene_fills_a_cavity() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = sphere("hex8", 1.0, 1.3, [3, 1]);
-    let mut text = format!(
-        "# vtk DataFile Version 3.0\nball\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n",
-        mesh.point_count()
-    );
-    mesh.points.chunks_exact(3).for_each(|x| text += &format!("{:?} {:?} {:?}\n", x[0], x[1], x[2]));
-    text += &format!("CELLS {} {}\n", mesh.cell_count(), 9 * mesh.cell_count());
-    for cell in mesh.blocks[0].cells() {
-        text += "8";
-        cell.iter().for_each(|node| text += &format!(" {node}"));
-        text += "\n";
-    }
-    text += &format!("CELL_TYPES {}\n{}", mesh.cell_count(), "12\n".repeat(mesh.cell_count()));
-    std::fs::write(folder.path().join("ball.vtk"), text).unwrap();
+    let cells: Vec<_> = mesh.blocks[0].cells().map(|nodes| (12, nodes.to_vec())).collect();
+    std::fs::write(folder.path().join("ball.vtk"), vtk_text(&mesh.points, &cells)).unwrap();
     let mesh = "mesh = { file = \"ball.vtk\" }\n";
     let scene = |volume: &str| {
         format!(

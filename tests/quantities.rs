@@ -1,6 +1,6 @@
 //! Quantities with units, and what is assumed of a body that an input does not describe.
 
-use crate::kit::{holding, json, said, springfit};
+use crate::kit::{self, holding, json, prints, said, springfit};
 use springfit_foundation::quantity::Quantity;
 use springfit_foundation::symbolic::Scope;
 use std::fs;
@@ -53,8 +53,7 @@ fn options_and_keys_take_the_same_units() {
     let fit = |young: &str, scale: &str, thickness: &str, density: &str, name: &str| {
         let options = ["fit", "roof.msh", "--young", young, "--poisson", "0.3", "--scale", scale];
         let more = ["--thickness", thickness, "--density", density, "--objective", "offdiag", "-o", name];
-        let output = springfit(folder.path(), &[&options[..], &more].concat());
-        assert!(output.status.success(), "{}", said(&output));
+        prints(folder.path(), &[&options[..], &more].concat());
         let mut network = springfit_report::report::read_network(&folder.path().join(name)).unwrap();
         // They differ in the command alone.
         assert!(network.provenance.command.take().is_some_and(|command| command.contains(young)));
@@ -65,9 +64,7 @@ fn options_and_keys_take_the_same_units() {
     let scene = "[mesh]\nfile = \"roof.msh\"\nscale = \"mm\"\n[material]\nyoung = \"5 kPa\"\npoisson = 0.3\nthickness = \"0.5 mm\"\n\
                  density = \"1060 kg/m^3\"\n[[fit]]\nobjective = \"offdiag\"\n";
     fs::write(folder.path().join("roof.toml"), scene).unwrap();
-    let output = springfit(folder.path(), &["run", "roof.toml"]);
-    assert!(output.status.success(), "{}", said(&output));
-    let head = String::from_utf8_lossy(&output.stdout).into_owned();
+    let head = prints(folder.path(), &["run", "roof.toml"]);
     assert!(head.contains("4 points, 2 tri3, 0.100 x 0.100 x 0.050 m; E = 5000 Pa"), "{head}");
 }
 
@@ -92,9 +89,8 @@ fn a_thickness_is_not_assumed_in_silence() {
     }
     let scene = "[mesh]\nfile = \"roof.msh\"\n[material]\nyoung = 1\npoisson = 0.3\n[[fit]]\nobjective = \"offdiag\"\n";
     fs::write(folder.path().join("roof.toml"), scene).unwrap();
-    let refused = springfit(folder.path(), &["run", "roof.toml"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused).starts_with("error: roof.toml:3: material.thickness: "), "{}", said(&refused));
+    let refused = kit::refused(folder.path(), &["run", "roof.toml"]);
+    assert!(refused.starts_with("error: roof.toml:3: material.thickness: "), "{}", refused);
     fs::write(folder.path().join("flat.toml"), scene.replace("roof", "flat")).unwrap();
     let noted = springfit(folder.path(), &["run", "flat.toml"]);
     assert!(noted.status.success() && said(&noted).contains("assumed to be 1 m"), "{}", said(&noted));
@@ -237,8 +233,7 @@ fn a_fill_takes_a_length_with_a_unit() {
     fs::write(folder.path().join("cube.obj"), text).unwrap();
     let network = |fill: &str, name: &str| {
         let options = ["fit", "cube.obj", "--scale", "mm", "--fill", fill, "--young", "1 kPa", "--poisson", "0.3"];
-        let output = springfit(folder.path(), &[&options[..], &["-o", name]].concat());
-        assert!(output.status.success(), "{}", said(&output));
+        prints(folder.path(), &[&options[..], &["-o", name]].concat());
         fs::read_to_string(folder.path().join(name)).unwrap()
     };
     let plain = network("4", "plain.csv");
@@ -252,9 +247,8 @@ fn a_fill_takes_a_length_with_a_unit() {
     let output = springfit(folder.path(), &["groups", "cube.toml"]);
     assert!(String::from_utf8_lossy(&output.stdout).contains("216 points"), "{}", said(&output));
     let options = ["fit", "cube.obj", "--fill", "4 kPa", "--young", "1 kPa", "--poisson", "0.3", "-o", "k.csv"];
-    let refused = springfit(folder.path(), &options);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said(&refused).starts_with("error: --fill: expected a length"), "{}", said(&refused));
+    let refused = kit::refused(folder.path(), &options);
+    assert!(refused.starts_with("error: --fill: expected a length"), "{}", refused);
 }
 
 /// A body of a hundred metres, or of a hundredth of a millimetre, whose unit nobody has stated has a note wherever a mesh is read.

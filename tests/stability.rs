@@ -1,6 +1,6 @@
 //! What is promised in stiff and extreme cases, and the gate for poor cells.
 
-use crate::kit::{holding, said, springfit};
+use crate::kit::{holding, prints, said, springfit};
 use crate::messages::reads;
 use crate::shapes::{elements, with_angles};
 use springfit_element::element::Element;
@@ -110,9 +110,7 @@ fn trouble_names_its_way_out_and_what_is_stable_is_no_trouble() {
 #[test]
 fn the_program_writes_its_table_and_maps() {
     let folder = TempDir::new().unwrap();
-    let output = springfit(folder.path(), &["stability", "tri3"]);
-    assert!(output.status.success(), "{output:?}");
-    let text = String::from_utf8(output.stdout).unwrap();
+    let text = prints(folder.path(), &["stability", "tri3"]);
     assert!(text.contains("Poisson's ratio") && text.contains(", 0 lost"), "{text}");
     let out = folder.path().join("out/stability-tri3");
     let table = fs::read_to_string(out.join("stability.csv")).unwrap();

@@ -1,6 +1,6 @@
 //! Whole-object fits at large deformation: derivatives in moduli, loads that stretch a body so far, and coarse networks for finer bodies.
 
-use crate::shapes::bodies::grid;
+use crate::shapes::bodies::{grid, vtk_text};
 use crate::shapes::statics::support_at;
 use crate::whole::compare_with_differences;
 use nalgebra::{DMatrix, DVector, Matrix3};
@@ -253,22 +253,9 @@ fn drawn(folder: &Path, seed: u64, (element, cells): (&str, [usize; 3]), referen
             *own = (*own - width / 2.0) * (1.0 + swell[k] * (std::f64::consts::PI * s).sin()) + bow[k] * width * s * s;
         }
     }
-    let (nodes, kind) = if element == "tet4" { (4, 10) } else { (8, 12) };
-    let mut text = format!(
-        "# vtk DataFile Version 3.0\nbar\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n",
-        mesh.point_count()
-    );
-    mesh.points.chunks_exact(3).for_each(|x| writeln!(text, "{:?} {:?} {:?}", x[0], x[1], x[2]).unwrap());
-    let block = &mesh.blocks[0];
-    let count = block.cells().len();
-    writeln!(text, "CELLS {count} {}", count * (nodes + 1)).unwrap();
-    for cell in block.cells() {
-        let list: Vec<String> = cell.iter().map(usize::to_string).collect();
-        writeln!(text, "{nodes} {}", list.join(" ")).unwrap();
-    }
-    writeln!(text, "CELL_TYPES {count}").unwrap();
-    (0..count).for_each(|_| writeln!(text, "{kind}").unwrap());
-    std::fs::write(folder.join("bar.vtk"), text).unwrap();
+    let kind = if element == "tet4" { 10 } else { 12 };
+    let cells: Vec<_> = mesh.blocks[0].cells().map(|nodes| (kind, nodes.to_vec())).collect();
+    std::fs::write(folder.join("bar.vtk"), vtk_text(&mesh.points, &cells)).unwrap();
     let scene = format!(
         "[mesh]\nfile = \"bar.vtk\"\n[material]\nyoung = 1e4\npoisson = {poisson}\nlaw = \"stable-neo-hookean\"\n\
          [reference]\n{reference}\n[[fix]]\nwhere = \"x < 1e-9\"\n{fits}"

@@ -2,6 +2,7 @@
 
 use super::springfit;
 use crate::kit::outcome_in;
+use crate::shapes::bodies::vtk_text;
 use springfit_mesh::mesh::{Mesh, MeshSource, Selection};
 use std::fmt::Write;
 use std::fs;
@@ -105,16 +106,10 @@ fn a_support_means_the_points_of_its_name() {
 fn a_tag_of_surfaces_and_of_volumes_means_the_surface() {
     let folder = tempfile::tempdir().unwrap();
     let (nodes, cells) = bar(4);
-    let mut text =
-        format!("# vtk DataFile Version 3.0\ntags\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n", nodes.len());
-    nodes.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
-    text += "CELLS 6 46\n4 0 1 2 3\n4 16 17 18 19\n";
-    for nodes in &cells {
-        let listed: Vec<String> = nodes.iter().map(|n| (n - 1).to_string()).collect();
-        writeln!(text, "8 {}", listed.join(" ")).unwrap();
-    }
-    text +=
-        "CELL_TYPES 6\n9 9 12 12 12 12\nCELL_DATA 6\nSCALARS gmsh:physical KIND 1\nLOOKUP_TABLE default\n1 2 1 1 2 2\n";
+    let sides = [(9, (0..4).collect()), (9, (16..20).collect())].into_iter();
+    let cubes = cells.iter().map(|nodes| (12, nodes.iter().map(|n| n - 1).collect()));
+    let text = vtk_text(nodes.as_flattened(), &sides.chain(cubes).collect::<Vec<_>>())
+        + "CELL_DATA 6\nSCALARS gmsh:physical KIND 1\nLOOKUP_TABLE default\n1 2 1 1 2 2\n";
     for kind in ["int", "double"] {
         let conditions =
             "[[fix]]\ngroup = \"gmsh:physical=1\"\n[[load]]\nwhere = \"x > 4 - 1e-9\"\nforce = [1, 0, 0]\n";
@@ -430,35 +425,17 @@ fn content_decides_and_not_the_ending() {
 /// Pieces that share no node and lie in each other are told, and pieces that touch are not.
 #[test]
 fn pieces_inside_each_other_are_told() {
-    let two = |kind: usize, shift: f64| {
-        let (cell, corners): (u8, &[[f64; 3]]) = match kind {
-            0 => (10, &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
-            _ => (
-                12,
-                &[
-                    [0., 0., 0.],
-                    [1., 0., 0.],
-                    [1., 1., 0.],
-                    [0., 1., 0.],
-                    [0., 0., 1.],
-                    [1., 0., 1.],
-                    [1., 1., 1.],
-                    [0., 1., 1.],
-                ],
-            ),
-        };
-        let n = corners.len();
-        let mut text =
-            format!("# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n", 2 * n);
-        for s in [0.0, shift] {
-            corners.iter().for_each(|x| text += &format!("{} {} {}\n", x[0] + s, x[1], x[2]));
-        }
-        let nodes = |first: usize| (first..first + n).map(|p| p.to_string()).collect::<Vec<_>>().join(" ");
-        text += &format!("CELLS 2 {}\n{n} {}\n{n} {}\nCELL_TYPES 2\n{cell} {cell}\n", 2 * n + 2, nodes(0), nodes(n));
+    let (nodes, cubes) = bar(1);
+    let cube = cubes[0].map(|node| nodes[node - 1]);
+    let two = |kind: u8, shift: f64| {
+        let corners = if kind == 12 { &cube[..] } else { &[cube[0], cube[1], cube[3], cube[4]] };
+        let (n, moved) = (corners.len(), corners.iter().map(|[x, y, z]| [x + shift, *y, *z]));
+        let points: Vec<[f64; 3]> = corners.iter().copied().chain(moved).collect();
+        let text = vtk_text(points.as_flattened(), &[(kind, (0..n).collect()), (kind, (n..2 * n).collect())]);
         springfit_report::report::mesh_notes(&read(&text, "vtk")).join("\n")
     };
     let words = "have parts of another piece of the mesh inside: the body is there twice";
-    for kind in [0, 1] {
+    for kind in [10, 12] {
         assert!(
             two(kind, 0.3).contains(&format!("2 cells {words}")) || two(kind, 0.3).contains("1 cell has parts"),
             "{}",

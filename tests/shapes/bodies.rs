@@ -126,3 +126,18 @@ pub fn bending(mesh: Mesh, t: f64) -> Mesh {
     let count = mesh.cell_count();
     mesh.with_directors(vec![t * t / 12.0; count]).unwrap()
 }
+
+/// Points, `[points × 3]`, and cells, each with its type, as a legacy file of VTK.
+pub fn vtk_text(points: &[f64], cells: &[(u8, Vec<usize>)]) -> String {
+    let lines = |lines: &mut dyn Iterator<Item = String>| lines.map(|line| line + "\n").collect::<String>();
+    let listed = |nodes: &[usize]| nodes.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+    let (count, size) = (cells.len(), cells.iter().map(|(_, nodes)| nodes.len() + 1).sum::<usize>());
+    format!(
+        "# vtk DataFile Version 3.0\nbody\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n{}CELLS {count} {size}\n{}\
+         CELL_TYPES {count}\n{}",
+        points.len() / 3,
+        lines(&mut points.chunks_exact(3).map(|x| format!("{:?} {:?} {:?}", x[0], x[1], x[2]))),
+        lines(&mut cells.iter().map(|(_, nodes)| format!("{} {}", nodes.len(), listed(nodes)))),
+        lines(&mut cells.iter().map(|(kind, _)| kind.to_string()))
+    )
+}
