@@ -3,7 +3,7 @@
 
 use crate::kit::{outcome, outcome_in, refusal};
 use crate::messages::reads;
-use crate::shapes::{elements, geometry};
+use crate::shapes::{elements, geometry, loaded};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
 use springfit_element::element::Element;
 use springfit_element::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
@@ -233,7 +233,7 @@ fn fits_are_least_squares_of_the_whole_matrix() {
 fn the_spectral_fit_is_the_least_two_norm() {
     let mut seed = 17;
     for name in ["tri3", "quad4", "tet4", "hex8"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let (d, n) = (element.dimension(), element.nodes());
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut seed);
@@ -311,7 +311,7 @@ fn constants_turn_with_cell_and_material() {
     let mut seed = 31;
     let law = Anisotropy::orthotropic(YOUNG, POISSON, SHEAR).unwrap();
     for name in ["tet4", "hex8"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut seed);
         let q = rotation(&mut seed);

@@ -1,8 +1,8 @@
 //! Meshes from arrays are those that they were taken from, and wrong arrays are errors.
 
 use crate::kit::place;
-use crate::shapes::Random;
-use springfit_element::element::{Element, SHIPPED};
+use crate::shapes::{Random, elements};
+use springfit_element::element::Element;
 use springfit_mesh::mesh::{BoxMesh, Gate, Group, Mesh, MeshArrays, MeshSource};
 use std::collections::BTreeMap;
 use std::fs;
@@ -20,7 +20,7 @@ fn arrays_of(mesh: &Mesh) -> MeshArrays {
 }
 
 fn boxes() -> Vec<Mesh> {
-    let all = SHIPPED.iter().map(|file| Arc::new(Element::shipped(file).unwrap()));
+    let all = elements().into_iter().map(Arc::new);
     let boxed = |element: Arc<Element>| {
         let d = element.dimension();
         let (size, cells, origin) = (vec![1.0, 1.2, 0.9], vec![3, 2, 2], vec![0.3, 0.0, -0.1]);

@@ -1,8 +1,8 @@
 //! The errors e_rms and e_max of whole bodies are those of reference, and a run says which networks are not stable.
 
 use crate::kit::{outcome, shipped};
+use crate::shapes::loaded;
 use springfit_bodies::solve::Standing;
-use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_fit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
 use springfit_studies::study::{Event, FitOutcome, NamedFit, compare_element, run};
@@ -177,7 +177,7 @@ fn a_fit_from_no_file_is_named_in_errors() {
 /// mean of the shapes.
 #[test]
 fn no_method_beats_the_certified_optimum() {
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     let material = Material::for_body(2, 1e4, 0.3, None, None).unwrap();
     let outcomes = compare_element(&element, material, 5, 50, &mut |_| {}).unwrap();
     let certified = outcomes.iter().find(|o| o.name == "spectral" && o.solver == "native").unwrap();

@@ -1,8 +1,8 @@
 //! `[compare]` and `springfit compare`: which cases and fits there are, what files say of them, and what is refused.
 
 use crate::kit::{self, holding, json, prints, said, springfit};
+use crate::shapes::loaded;
 use serde_json::json;
-use springfit_element::element::Element;
 use springfit_element::material::Material;
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells};
@@ -84,7 +84,7 @@ fn values_are_those_of_the_fit() {
     .unwrap();
     let record = found.record(&found.cases()[0], &mut |_| {});
     let method = &record.methods[0];
-    let element = Element::load("tet4").unwrap();
+    let element = loaded("tet4");
     let (points, cells) = (random_shapes(&element, 8, 2010).unwrap(), (0..32).collect::<Vec<usize>>());
     let material = Material::for_body(3, 1e4, 0.3, None, None).unwrap();
     let springs = Springs::select(&element, None).unwrap();

@@ -1,7 +1,7 @@
 //! Functions that are condensed in each cell: Wilson's modes and bubbles, against hand-made matrices, bending and the patch test.
 
 use crate::kit::{place, ran, refused};
-use crate::shapes::{Random, distorted, geometry};
+use crate::shapes::{Random, distorted, geometry, loaded};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
@@ -79,7 +79,7 @@ fn wilsons_quadrilateral_is_the_one_that_is_made_by_hand() {
 #[test]
 fn a_condensed_bubble_is_the_inner_node_of_quad9_taken_out() {
     let (bubble, nine) = (example("quad8_bubble"), Element::load("quad9").unwrap());
-    let corners = Element::load("quad4").unwrap();
+    let corners = loaded("quad4");
     let mut random = Random(4);
     for _ in 0..20 {
         let x = distorted(&corners, &mut random);

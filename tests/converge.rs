@@ -3,7 +3,7 @@
 use crate::kit::{self, place, said, shipped, springfit, told};
 use crate::messages::reads;
 use crate::shapes::bodies::boxed;
-use crate::shapes::{Random, elements, single};
+use crate::shapes::{Random, elements, loaded, single};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{Support, finite_elements};
 use springfit_bodies::solve::System;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 use tempfile::TempDir;
 
 fn element(name: &str) -> Arc<Element> {
-    Arc::new(Element::load(name).unwrap())
+    loaded(name)
 }
 
 const SIZE: [f64; 3] = [1.0, 1.5, 0.8];

@@ -1,6 +1,6 @@
 //! What a change of units, place, direction or numbering does to constants: exactly what it must, or rounding.
 
-use crate::shapes::{Random, distorted, elements, materials};
+use crate::shapes::{Random, distorted, elements, loaded, materials};
 use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -218,7 +218,7 @@ fn expect_finite(
 /// were found with 80 digits for `E = 10 kPa`, `ν = 0.3` in plane stress; they grow as the inverse of the height.
 #[test]
 fn relative_fits_of_thin_triangles_are_optima() {
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     let springs = Springs::select(&element, None).unwrap();
     let moduli = springfit_element::material::Material::for_body(2, 10e3, 0.3, None, None).unwrap().moduli();
     let (sine, cosine) = 0.7f64.sin_cos();
@@ -242,7 +242,7 @@ fn rational(value: f64) -> BigRational {
 #[test]
 fn twice_the_digits_are_right() {
     for name in ["tri3", "quad4", "tet4"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut Random(3));
         let moduli = moduli(&element, 2);
@@ -267,7 +267,7 @@ fn twice_the_digits_are_right() {
 #[test]
 fn slivers_keep_all_digits() {
     for name in ["tri3", "quad4", "tet4"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let (springs, d) = (Springs::select(&element, None).unwrap(), element.dimension());
         let moduli = moduli(&element, 2);
         let exact_moduli = Moduli { lambda: rational(moduli.lambda), mu: rational(moduli.mu) };

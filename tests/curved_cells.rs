@@ -1,7 +1,8 @@
 //! Curved cells that fold between their quadrature points: against dense sampling, on all shipped elements.
 
+use crate::shapes::elements;
 use nalgebra::DMatrix;
-use springfit_element::element::{Cell, Element, JacobianBounds, Quadrature, SHIPPED, Tabulation};
+use springfit_element::element::{Cell, Element, JacobianBounds, Quadrature, Tabulation};
 use springfit_mesh::mesh::{Below, Gate, MeshArrays};
 use springfit_report::report;
 use std::collections::BTreeMap;
@@ -9,7 +10,7 @@ use std::sync::Arc;
 
 /// The elements whose nodes are not their corners alone, in the plane and in space.
 fn curved() -> Vec<Arc<Element>> {
-    let all = SHIPPED.iter().map(|file| Element::shipped(file).unwrap());
+    let all = elements().into_iter();
     all.filter(|element| element.dimension() > 1 && !element.has_corners_alone()).map(Arc::new).collect()
 }
 
@@ -152,7 +153,7 @@ fn straight_cells_and_quarter_points_do_not_fold() {
         let bounds = JacobianBounds::of(&element).unwrap();
         assert!(!bounds.folds(&element.positions), "{}", element.name);
     }
-    let corners_alone = SHIPPED.iter().map(|file| Element::shipped(file).unwrap()).filter(Element::has_corners_alone);
+    let corners_alone = elements().into_iter().filter(Element::has_corners_alone);
     corners_alone.for_each(|element| assert!(JacobianBounds::of(&element).is_none(), "{}", element.name));
     let plane = curved().into_iter().find(|element| element.cell == Cell::Triangle && element.nodes() == 6).unwrap();
     let bounds = JacobianBounds::of(&plane).unwrap();

@@ -1,6 +1,6 @@
 //! Closed forms: against the numerical fits of every element, the matrix of the paper, and published formulas.
 
-use crate::shapes::elements;
+use crate::shapes::{elements, loaded};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use springfit_element::element::Element;
@@ -15,7 +15,7 @@ fn ratio(above: i64, below: i64) -> BigRational {
 }
 
 fn form(name: &str, groups: Option<&[String]>, sides: bool) -> ClosedForm {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let springs = Springs::select(&element, groups).unwrap();
     ClosedForm::new(&element, &springs, sides).unwrap()
 }
@@ -132,7 +132,7 @@ fn orthotropic_formulas_agree_with_numerical_fits_and_isotropic_formulas() {
         ("wedge6", false),
         ("hex8", false),
     ] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let d = element.dimension();
         let every: Vec<String> = element.springs.iter().map(|g| g.name.clone()).collect();
         let springs = Springs::select(&element, with_bulk.then_some(&every[..])).unwrap();
@@ -396,7 +396,7 @@ fn constants_in_engineering_moduli_are_those_in_lame_s() {
 fn formulas_of_exact_networks_agree_with_their_numbers() {
     let lengths = [ratio(7, 5), ratio(9, 4), ratio(4, 7), ratio(1, 3)];
     for name in ["bar2", "tri3", "tri6", "quad4", "tet4", "hex8", "wedge6"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let d = element.dimension();
         let form = form(name, None, true);
         let at = [&lengths[..d], &lengths[3..]].concat();

@@ -1,7 +1,7 @@
 //! Digits that ill-conditioned problems keep: contrast, bounded and tied constants on flat shapes, springs on functions.
 
 use crate::kit::place;
-use crate::shapes::{Random, distorted};
+use crate::shapes::{Random, distorted, loaded};
 use springfit_bodies::dynamics::{LinearSolver, Motion, Options, Simulation};
 use springfit_bodies::model::{LengthSpring, Network, Support};
 use springfit_bodies::solve::System;
@@ -16,6 +16,7 @@ use springfit_foundation::error::ErrorKind;
 use springfit_foundation::scalar::{DoubleDouble, Real};
 use springfit_foundation::symbolic::{Differentiable, Jet, Scope};
 use springfit_studies::study::{Family, StabilityRow, Verdict, stability};
+use std::sync::Arc;
 
 /// Springs in a row of constants 1 and `ratio` alternately, pulled at the end: what is left, and the error of the end's way, which is
 /// `Σ 1/k`.
@@ -89,7 +90,7 @@ fn definiteness_is_the_same_for_every_solver() {
 }
 
 struct Case {
-    element: Element,
+    element: Arc<Element>,
     springs: Springs,
     x: Vec<f64>,
     moduli: Moduli,
@@ -97,7 +98,7 @@ struct Case {
 
 /// A shipped element, with some unevenness, of which the last coordinate is `flat` times as long.
 fn flattened(name: &str, flat: f64) -> Case {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let d = element.dimension();
     let uneven = |i: usize| 1.0 + 0.03 * ((7 * i + 3) % 11) as f64;
     let x = element.positions.iter().enumerate();
@@ -240,7 +241,7 @@ fn agrees<T: Differentiable>(jet: &Jet<T>, plain: &Jet, text: &str) {
 fn optima_of_needles_are_proved() {
     let mut random = Random(5);
     for name in ["tri3", "quad4", "tet4", "wedge6"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let (d, springs) = (element.dimension(), Springs::select(&element, None).unwrap());
         let moduli = Material::for_body(d, 1e4, 0.3, (d == 2).then_some(Plane::Strain), None).unwrap().moduli();
         for aspect in [30.0, 100.0, 300.0, 1000.0] {

@@ -1,7 +1,7 @@
 //! The public functions of the fits, called with what is wrong: they return errors and do not panic, and no constant that they
 //! return is infinite or not a number.
 
-use crate::shapes::Random;
+use crate::shapes::{Random, loaded};
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Moduli, State};
 use springfit_element::springs::{Force, Springs};
@@ -28,10 +28,10 @@ struct Case {
 }
 
 fn case(name: &str) -> Case {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let material = Material::for_body(element.dimension(), 1e4, 0.3, None, None).unwrap();
     let springs = Springs::select(&element, None).unwrap();
-    Case { x: element.positions.clone(), springs, moduli: material.moduli(), element: Arc::new(element) }
+    Case { x: element.positions.clone(), springs, moduli: material.moduli(), element }
 }
 
 /// A fit of each objective, constants alone, tied and bounded, and by a search; and those whose springs pull at rest.

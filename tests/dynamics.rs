@@ -2,8 +2,8 @@
 
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
-use crate::shapes::single;
 use crate::shapes::statics::{dense, product, support_at};
+use crate::shapes::{loaded, single};
 use springfit_bodies::dynamics::largest_square;
 use springfit_bodies::dynamics::{
     Account, Curve, Dampers, Damping, Drive, Integrator, LinearSolver, Motion, Options, Simulation, StepOutcome,
@@ -18,7 +18,6 @@ use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Higher, Objective, Weight, fit_cells};
 use springfit_mesh::mesh::{DiscMesh, Mesh};
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 const IMPLICIT: [Integrator; 3] =
     [Integrator::ImplicitEuler, Integrator::Bdf2, Integrator::Newmark { beta: 0.25, gamma: 0.5 }];
@@ -67,7 +66,7 @@ pub fn cube(element: &str, side: usize) -> (Mesh, Network) {
 
 /// A dome of triangles, a fifth as high as its radius in m, 10 kPa and 0.5 mm thick, and its springs on lengths.
 fn dome(rings: usize, radius: f64) -> (Mesh, Network) {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let mesh = DiscMesh { element, radius, height: radius / 5.0, rings: DiscMesh::even(rings) }.build().unwrap();
     let block = &mesh.blocks[0];
     let springs = Springs::select(&block.element, None).unwrap();
@@ -707,7 +706,7 @@ fn explicit_steps_have_a_limit() {
 #[test]
 fn lumped_masses_are_positive() {
     for shipped in SHIPPED {
-        let element = Element::shipped(shipped).unwrap();
+        let element = loaded(shipped.name);
         let d = element.dimension();
         // The reference cell itself, pulled to another shape.
         let points: Vec<f64> =
@@ -728,7 +727,7 @@ fn lumped_masses_are_positive() {
 /// The membrane of the literature (a disc: 558 − 1607 + 1050 = 1), and Euler's formula for any rings.
 #[test]
 fn discs_have_the_points_asked_for() {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let disc = |rings, height| DiscMesh { element: element.clone(), radius: 2.0, height, rings }.build().unwrap();
     let edges = |mesh: &Mesh| {
         let sides = mesh.blocks[0].cells().flat_map(|c| [[c[0], c[1]], [c[1], c[2]], [c[2], c[0]]]);
@@ -757,7 +756,7 @@ fn discs_have_the_points_asked_for() {
     assert_near(area, 27.0 * 4.0 * (PI / 27.0).sin(), 1e-10);
     let error = |rings, element| DiscMesh { element, radius: 1.0, height: 0.0, rings }.build().unwrap_err().to_string();
     reads(&error(vec![6, 2], element.clone()), "rings: … 2000000 … found [6, 2]").unwrap();
-    let quad = Arc::new(Element::load("quad4").unwrap());
+    let quad = loaded("quad4");
     reads(&error(vec![6], quad), "element: … found quad4").unwrap();
 }
 

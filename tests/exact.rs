@@ -3,14 +3,13 @@
 
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::dense;
-use crate::shapes::{Random, elements, geometry, materials, single, valid};
+use crate::shapes::{Random, elements, geometry, loaded, materials, single, valid};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit_bodies::model::{
     Body, Elastic, Lumping, Network, Support, fibre_springs, finite_elements, lumped_masses, patch_springs,
 };
 use springfit_bodies::solve::{System, lowest_modes};
-use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Moduli, Plane, State};
 use springfit_element::springs::Measure;
 use springfit_fit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
@@ -108,7 +107,7 @@ fn tangents_at_rest_are_the_stiffness() {
 #[test]
 fn volumetric_rules_are_kept() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/elements/hex8_selective.toml");
-    let element = Arc::new(Element::load(path).unwrap());
+    let element = loaded(path);
     let material = Material::new(1e4, 0.4999, State::Solid).unwrap();
     let mesh = single(&element, &valid(&element, &mut Random(33)));
     let r = dense(mesh.points.len(), &finite_elements(&mesh, material.moduli()));
@@ -489,7 +488,7 @@ fn fibres_are_springs() {
     for law in [shipped, mine] {
         assert_eq!(ExactEnergy::of_law(&law), Some(ExactEnergy::NeoHookean));
         for element in ["tet4", "hex8"] {
-            let element = Arc::new(Element::load(element).unwrap());
+            let element = loaded(element);
             let mut random = Random(39);
             let mesh = single(&element, &valid(&element, &mut random));
             let fit = ExactFit { energy: ExactEnergy::NeoHookean, large: true, ..POINTS };
@@ -510,7 +509,7 @@ fn fibres_are_springs() {
     }
     let plane = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
     let out_of_plane = Energy::parse(&turned.replace("ln(J)^2", "ln(J)^2 "), plane).unwrap();
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let error = fibre_springs(&single(&element, &element.positions.clone()), plane, &out_of_plane).unwrap_err();
     assert!(error.to_string().contains("in the plane of one without strain across it"), "{error}");
     for (name, known) in [("neo-hookean", true), ("stable-mooney-rivlin", true), ("yeoh", false), ("ogden", false)] {

@@ -2,8 +2,9 @@
 
 use crate::fills::brick;
 use crate::kit::{said, springfit};
+use crate::shapes::loaded;
 use crate::smooth_fills::ball;
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::Element;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
 use std::fs;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ fn fill(
     boundary: FillBoundary,
     layers: FillLayers,
 ) -> springfit_foundation::error::Result<(Mesh, Filled)> {
-    let element = Element::shipped(SHIPPED.iter().find(|s| s.name == "tet4").unwrap()).unwrap();
+    let element = Element::clone(&loaded("tet4"));
     let mesh =
         FillMesh { element: Arc::new(element), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
             .build(source, 1.0)?;

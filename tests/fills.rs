@@ -1,14 +1,15 @@
 //! Closed surfaces that are filled with cells.
 
 use crate::kit::{outcome, place};
+use crate::shapes::loaded;
 use springfit_bodies::model::{Action, nodal_forces};
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::Element;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Selection};
 use springfit_report::report::{Report, notes_beside_summary};
 use std::sync::Arc;
 
 fn element(name: &str) -> Arc<Element> {
-    Arc::new(Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap())
+    loaded(name)
 }
 
 fn fill(source: &MeshSource, name: &str, cell: f64) -> springfit_foundation::error::Result<Mesh> {

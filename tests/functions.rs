@@ -1,7 +1,7 @@
 //! Functions of the program in place of an energy and of laws of force: what they give is what the same expressions give.
 
 use crate::messages::reads;
-use crate::shapes::{Random, distorted};
+use crate::shapes::{Random, distorted, loaded};
 use nalgebra::Matrix3;
 use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material};
@@ -98,7 +98,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn an_energy_that_is_a_function_gives_the_springs_of_the_same_expression() {
     for name in ["tri3", "quad4", "tet4", "hex8"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let material = Material::for_body(element.dimension(), 2.0, 0.3, None, None).unwrap();
         let known = Energy::load("neo-hookean", material).unwrap();
         let fit = settings(Force::Linear);
@@ -115,7 +115,7 @@ fn an_energy_that_is_a_function_gives_the_springs_of_the_same_expression() {
 
 #[test]
 fn laws_that_are_functions_are_those_of_the_same_expressions() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let material = Material::for_body(3, 2.0, 0.3, None, None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
     let groups = Springs::select(&element, None).unwrap().names().len();
@@ -170,7 +170,7 @@ fn laws_that_are_functions_are_those_of_the_same_expressions() {
 /// A function that is linear where it is tried and not at the optimum.
 #[test]
 fn a_function_that_is_not_linear_everywhere_is_refused() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let material = Material::for_body(3, 2e6, 0.3, None, None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
     let bent = function(&["k"], |s, p| if p[0].abs() < 3e4 { p[0] * s } else { 1.5 * p[0] * s });

@@ -1,7 +1,6 @@
 //! Published and derived figures for single elements.
 
-use crate::shapes::geometry;
-use springfit_element::element::Element;
+use crate::shapes::{geometry, loaded};
 use springfit_element::material::{Material, State};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
@@ -16,7 +15,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 
 /// The constants of each spring of the element with nodes at `x`.
 fn constants(element: &str, x: &[f64], material: Material, objective: Objective) -> Vec<f64> {
-    let element = Element::load(element).unwrap();
+    let element = loaded(element);
     let springs = Springs::select(&element, None).unwrap();
     fit_element(&element, &springs, x, material.moduli(), &Fit::new(objective)).unwrap()
 }
@@ -53,7 +52,7 @@ fn square_stiffness_is_equation_19() {
         vec![d, s],
         vec![d],
     ];
-    let element = Element::load("quad4").unwrap();
+    let element = loaded("quad4");
     let geometry = geometry(&element, &SQUARE);
     let stiffness = geometry.stiffness(material.moduli());
     let ours = [3, 2, 1, 0];
@@ -97,12 +96,12 @@ fn regular_tetrahedron_matches_published_constants() {
 }
 
 fn unit_cube() -> Vec<f64> {
-    let element = Element::load("hex8").unwrap();
+    let element = loaded("hex8");
     element.positions.iter().map(|x| (x + 1.0) / 2.0).collect()
 }
 
 fn relative_frobenius(name: &str, x: &[f64], material: Material, groups: Option<&[String]>) -> f64 {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let springs = Springs::select(&element, groups).unwrap();
     let cell: Vec<usize> = (0..element.nodes()).collect();
     let fit = Fit::new(Objective::Frobenius(Weight::None));
@@ -180,7 +179,7 @@ fn simplex_closed_form_off_the_diagonal() {
     let x = [0.1, 0., 0.2, 1.3, -0.1, 0., 0.4, 1.1, 0.1, 0.3, 0.2, 0.9];
     let material = Material::new(7.0, 0.37, State::Solid).unwrap();
     let (l, m) = (material.moduli().lambda, material.moduli().mu);
-    let element = Element::load("tet4").unwrap();
+    let element = loaded("tet4");
     let geometry = geometry(&element, &x);
     let k = constants("tet4", &x, material, Objective::Frobenius(Weight::OffDiagonal));
     for (k, nodes) in k.iter().zip(&element.springs[0].nodes) {

@@ -1,6 +1,6 @@
 //! Loads and masses are integrals by rules of their own, whatever the rule of the stiffness.
 
-use crate::shapes::{Random, elements, geometry, single};
+use crate::shapes::{Random, elements, geometry, loaded, single};
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use springfit_bodies::model::{Action, Component, Lumping, lumped_masses, masses, nodal_forces};
@@ -9,7 +9,6 @@ use springfit_element::stiffness::Geometry;
 use springfit_foundation::symbolic::Scope;
 use springfit_mesh::mesh::{BoxMesh, Selection};
 use springfit_studies::study::random_shapes;
-use std::sync::Arc;
 
 /// Reference positions under an affine map.
 fn affine(element: &Element, random: &mut Random) -> Vec<f64> {
@@ -68,7 +67,7 @@ fn varying_loads_are_exact() {
 #[test]
 fn resultants_and_moments_are_those_of_the_load() {
     for name in ["tet4", "tet10", "hex8", "hex20", "hex27", "wedge6", "tri3", "tri6", "quad4", "quad9"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let d = element.dimension();
         let mesh = BoxMesh { element, size: vec![1.0; d], cells: vec![2; d], origin: vec![0.0; d] }.build();
         let Ok(mesh) = mesh else { continue };
@@ -149,7 +148,7 @@ fn consistent_masses_are_exact_fractions() {
 #[test]
 fn the_rule_of_the_stiffness_does_not_matter() {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/elements/tet4.toml")).unwrap();
-    let own = Element::load("tet4").unwrap();
+    let own = loaded("tet4");
     let rule = "rule   = \"simplex\"\ndegree = 1";
     assert!(text.contains(rule));
     let text = text.replace(

@@ -1,12 +1,11 @@
 //! Scenes whose material has a law: both models at large deformation, and fits to sampled forces.
 
 use crate::kit::{outcome_of, shipped};
+use crate::shapes::loaded;
 use springfit_bodies::solve::Newton;
-use springfit_element::element::Element;
 use springfit_element::material::{Material, Plane};
 use springfit_report::report;
 use springfit_studies::study::{Outcome, STRETCHES, Scene, compare_stretches, run, stages};
-use std::sync::Arc;
 use tempfile::TempDir;
 
 /// A bar of tetrahedra in a folder of its own, with these fits.
@@ -116,7 +115,7 @@ fn a_load_that_is_not_reached_is_told() {
 /// The study of one element: a triangle in plane strain is met exactly by springs that pull as their length.
 #[test]
 fn the_study_of_stretches_has_all_its_parts() {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let material = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
     let study = compare_stretches(&element, material, "neo-hookean", 0.35, &mut |_| {}).unwrap();
     let exact = study.fits.iter().find(|fit| fit.name == "sampled k c, volume").unwrap();

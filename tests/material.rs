@@ -2,7 +2,7 @@
 
 use crate::kit::outcome_in;
 use crate::shapes::bodies::vtk_text;
-use crate::shapes::{Random, elements, materials, single, valid};
+use crate::shapes::{Random, elements, loaded, materials, single, valid};
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 use springfit_bodies::model::Network;
 use springfit_element::element::Element;
@@ -34,7 +34,7 @@ fn rod(element: &Arc<Element>, cells: usize) -> Mesh {
 }
 
 fn shipped(name: &str) -> Arc<Element> {
-    Arc::new(Element::load(name).unwrap())
+    loaded(name)
 }
 
 /// The points that are not on the boundary of a box, each moved by up to a fifth of the size of its cells.

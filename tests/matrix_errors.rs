@@ -1,7 +1,7 @@
 //! The matrix errors of cells, computed side by side, are those of the matrices.
 
 use crate::shapes::statics::dense;
-use crate::shapes::{Random, distorted, elements, materials};
+use crate::shapes::{Random, distorted, elements, loaded, materials};
 use nalgebra::DMatrix;
 use springfit_bodies::model::{Network, finite_elements};
 use springfit_element::element::Element;
@@ -110,7 +110,7 @@ fn errors_of_cells_side_by_side_are_those_of_their_matrices() {
 fn rounded_differences_have_a_bound_and_wrong_constants_their_error() {
     let mut random = Random(5);
     for name in ["tri3", "tet4"] {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let (n, d) = (element.nodes(), element.dimension());
         let points: Vec<f64> = (0..CELLS).flat_map(|_| distorted(&element, &mut random)).collect();
         let nodes: Vec<usize> = (0..CELLS * n).collect();

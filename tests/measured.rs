@@ -2,7 +2,7 @@
 //! against what was written, matrices against elements.
 
 use crate::kit::{self, holding, place, prints};
-use crate::shapes::elements;
+use crate::shapes::{elements, loaded};
 use nalgebra::DMatrix;
 use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, State};
@@ -562,7 +562,7 @@ fn matrices_of_elements_have_the_constants_of_the_elements() {
 
 #[test]
 fn a_matrix_is_proved_before_it_is_fitted() {
-    let element = Element::load("hex8").unwrap();
+    let element = loaded("hex8");
     let x = shifted(&element);
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
     let r = plain::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())).unwrap();

@@ -3,15 +3,15 @@
 use crate::kit::shipped;
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
+use crate::shapes::loaded;
 use crate::shapes::statics::support_at;
 use nalgebra::DMatrix;
 use springfit_bodies::model::{ConsistentMasses, LengthSpring, Network, Support, finite_elements, masses};
 use springfit_bodies::solve::{Factor, Modes, System, eigenvalues, lowest_modes};
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::SHIPPED;
 use springfit_element::material::Material;
 use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// A model held somewhere.
 struct Model {
@@ -227,7 +227,7 @@ fn a_bar_with_the_consistent_matrix_swings_as_linear_elements_do() {
 fn modes_with_a_mass_matrix_are_those_of_dense_matrices() {
     let mut bodies = 0;
     for file in SHIPPED {
-        let element = Arc::new(Element::shipped(file).unwrap());
+        let element = loaded(file.name);
         let (name, d) = (element.name.to_string(), element.dimension());
         let (size, cells) = (vec![1.0; d], vec![if element.nodes() > 10 { 1 } else { 2 }; d]);
         let Ok(mut mesh) = (BoxMesh { element, size, cells, origin: vec![0.0; d] }).build() else { continue };

@@ -1,6 +1,6 @@
 //! Moduli that networks have as materials, against published and derived figures.
 
-use crate::shapes::{elements, materials};
+use crate::shapes::{elements, loaded, materials};
 use springfit_element::element::Element;
 use springfit_element::material::{Material, Plane};
 use springfit_element::springs::Springs;
@@ -18,7 +18,7 @@ const FROBENIUS: Fit = Fit {
 };
 
 fn lattice(name: &str, material: Material) -> Lattice {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let springs = Springs::select(&element, None).unwrap();
     Lattice::fit(&element, &springs, &vec![1.0; element.dimension()], material, &FROBENIUS).unwrap()
 }
@@ -81,7 +81,7 @@ fn cubes_have_the_published_moduli() {
     let found = lattice("hex8", material).of_springs().unwrap();
     assert!((found.young - 0.726).abs() < 5e-4 && (found.poisson - 0.273).abs() < 5e-4, "{found:?}");
     assert!((found.zener - 1.20).abs() < 5e-3, "{found:?}");
-    let element = Element::load("hex8").unwrap();
+    let element = loaded("hex8");
     let springs = Springs::select(&element, None).unwrap();
     let [edge, diagonal] = [(4.0 * 0.25 + 1.0) / (8.0 * 1.25), 3.0 / (8.0 * 1.25)];
     let constant = |&[a, b]: &[usize; 2]| {

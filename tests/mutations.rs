@@ -1,10 +1,10 @@
 //! Meshes that random changes have spoilt: each fault is an error, or is counted by its name. No sound mesh has one.
 
 use crate::kit::place;
-use crate::shapes::Random;
 use crate::shapes::statics::support_at;
+use crate::shapes::{Random, elements, loaded};
 use springfit_bodies::model::unheld_bodies;
-use springfit_element::element::{Cell, Element, SHIPPED, Side};
+use springfit_element::element::{Cell, Side};
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{
     Annotations, Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock,
@@ -61,7 +61,7 @@ fn source_of(mesh: &Mesh) -> MeshSource {
 /// The shipped meshes, and a box of every element that fills one and that Gmsh has.
 fn sound() -> Vec<(String, MeshSource)> {
     let mut all = Vec::new();
-    for element in SHIPPED.iter().map(|s| Arc::new(Element::shipped(s).unwrap())) {
+    for element in elements().into_iter().map(Arc::new) {
         let d = element.dimension();
         let (size, cells, origin) = (vec![1.0, 1.2, 0.9], vec![3, 2, 2], vec![0.3, 0.0, -0.1]);
         let [size, origin] = [size, origin].map(|list| list[..d].to_vec());
@@ -359,7 +359,7 @@ fn hanging_nodes_are_counted() {
 /// through some of its cells.
 #[test]
 fn a_mesh_folded_in_part_names_the_cells() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let spec = BoxMesh { element, size: vec![3.0; 3], cells: vec![3; 3], origin: vec![0.0; 3] };
     let whole = spec.build().unwrap();
     let inner = (0..whole.point_count()).find(|&p| whole.point(p) == [1.0; 3]).unwrap();

@@ -2,8 +2,9 @@
 
 use crate::kit::outcome;
 use crate::report::{LARGE, LINEAR};
+use crate::shapes::loaded;
 use springfit_bodies::model::{Elastic, MeasureSpring, displaced};
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::SHIPPED;
 use springfit_element::springs::Law;
 use springfit_foundation::symbolic::Scope;
 use springfit_report::report::{
@@ -279,7 +280,7 @@ fn arrays_are_those_that_numpy_reads() {
 fn springs_name_the_groups_that_they_come_from() {
     let mut others = 0;
     for shipped in SHIPPED.iter() {
-        let element = Element::shipped(shipped).unwrap();
+        let element = loaded(shipped.name);
         let d = element.dimension();
         let [sizes, cells] = [vec!["1"; d].join(", "), vec!["2"; d].join(", ")];
         let mesh = format!("box = {{ element = \"{}\", size = [{sizes}], cells = [{cells}] }}", shipped.name);

@@ -1,7 +1,7 @@
 //! A prepared network pulls as the network does: on every element, with all kinds of springs, wherever its points are.
 
 use crate::shapes::bodies::grid;
-use crate::shapes::{Random, elements, materials, single, valid};
+use crate::shapes::{Random, elements, loaded, materials, single, valid};
 use rayon::prelude::*;
 use springfit_bodies::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
 use springfit_element::element::{Element, SpringKind};
@@ -152,7 +152,7 @@ fn prepared_networks_pull_as_networks_in_space() {
 }
 
 fn cube() -> Mesh {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     boxed(&element, &mut Random(73)).unwrap()
 }
 

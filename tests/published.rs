@@ -5,7 +5,7 @@
 use crate::messages::reads;
 use crate::shapes::statics::dense;
 
-use crate::shapes::{Random, bodies, distorted, elements, materials, rigid_motions, single};
+use crate::shapes::{Random, bodies, distorted, elements, loaded, materials, rigid_motions, single};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, Network};
 use springfit_element::element::{Cell, Element, SpringKind};
@@ -51,21 +51,21 @@ fn fitted(method: Method, element: &Element, x: &[f64], cells: &[usize], materia
 
 /// The constants of one cell.
 fn constants(method: Method, name: &str, x: &[f64], material: Material) -> Vec<f64> {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let cell: Vec<usize> = (0..element.nodes()).collect();
     fitted(method, &element, x, &cell, material).constants
 }
 
 /// `‖R − K‖_F/‖R‖_F` of one cell.
 fn error(method: Method, name: &str, x: &[f64], material: Material) -> f64 {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let cell: Vec<usize> = (0..element.nodes()).collect();
     let fits = fitted(method, &element, x, &cell, material);
     element_errors(&element, x, &cell, material.moduli(), &fits).unwrap().frobenius[0]
 }
 
 fn best(name: &str, x: &[f64], material: Material, weight: Weight) -> Vec<f64> {
-    let element = Element::load(name).unwrap();
+    let element = loaded(name);
     let springs = Springs::select(&element, None).unwrap();
     fit_element(&element, &springs, x, material.moduli(), &Fit::new(Objective::Frobenius(weight))).unwrap()
 }
@@ -90,7 +90,7 @@ fn network(method: Method, mesh: &Mesh, material: Material) -> Network {
 
 /// The moduli of the springs as a material, in a box repeated without end.
 fn moduli(method: Method, name: &str, size: &[f64], material: Material) -> EffectiveModuli {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let mesh = boxed(&element, size, 1);
     let fits = fitted(method, &element, &mesh.points, &mesh.blocks[0].connectivity, material);
     let any = Fit::new(Objective::Frobenius(Weight::None));
@@ -122,7 +122,7 @@ fn van_gelder_is_the_fit_off_the_diagonal_at_one_third() {
     for nu in [0.0, THIRD] {
         all_close(&constants(Method::VanGelder, "tri3", &TRIANGLE, stress(nu)), 3f64.sqrt() / 4.0, 1e-15);
     }
-    let triangle = Element::load("tri3").unwrap();
+    let triangle = loaded("tri3");
     let mut random = Random(1);
     for _ in 0..20 {
         let x = distorted(&triangle, &mut random);
@@ -158,7 +158,7 @@ fn van_gelder_in_space_is_volume_over_squared_length() {
 fn lloyds_constants_are_fits_of_regular_cells() {
     assert!(error(Method::Lloyd, "tri3", &TRIANGLE, stress(THIRD)) < 1e-14);
     // What the best constant leaves at other ratios, which Lloyd's does not beat.
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     for (nu, least) in [(0.3, 0.035), (0.25, 0.088), (0.49, 0.164), (0.0, 0.33)] {
         let mut fits = fitted(Method::Lloyd, &element, &TRIANGLE, &[0, 1, 2], stress(nu));
         let own = error(Method::Lloyd, "tri3", &TRIANGLE, stress(nu));
@@ -194,7 +194,7 @@ fn squares_of_lloyd_have_the_published_moduli() {
 fn preserving_forces_give_the_bulk_modulus() {
     for nu in [THIRD, 0.4, 0.45, 0.5] {
         for (name, x) in [("tri3", TRIANGLE.to_vec()), ("quad4", unit("quad4"))] {
-            let element = Element::load(name).unwrap();
+            let element = loaded(name);
             let mesh = single(&element, &x);
             let k = dense(x.len(), &network(Method::LloydPreserving, &mesh, stress(nu)).stiffness(&x));
             let u = DVector::from_column_slice(&x);
@@ -316,7 +316,7 @@ fn delingettes_springs_are_the_finite_element() {
 #[test]
 fn biquadratic_springs_have_the_energy_of_saint_venant_and_kirchhoff() {
     for (name, d, factorial) in [("tri3", 2, 2.0), ("tet4", 3, 6.0)] {
-        let simplex = Element::load(name).unwrap();
+        let simplex = loaded(name);
         let all = materials(d);
         let mut random = Random(3);
         for round in 0..100 {
@@ -380,7 +380,7 @@ fn methods_refuse_what_they_have_no_formula_for() {
     }
     assert_eq!(refused, Method::all().count() * elements().len() - applicable().len());
     let fit = |method: Method, name: &str, groups: Option<&[String]>, material: Material| {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let cell: Vec<usize> = (0..element.nodes()).collect();
         let springs = Springs::select(&element, groups).unwrap();
         published::fit(method, &element, &springs, &element.positions, &cell, material).unwrap_err().to_string()
@@ -439,7 +439,7 @@ points = 2
 #[test]
 fn what_a_method_assumes_is_told() {
     let of = |method: Method, name: &str, x: &[f64], material: Material| {
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let cell: Vec<usize> = (0..element.nodes()).collect();
         unmet(method, &element, x, &cell, material).unwrap()
     };

@@ -2,7 +2,7 @@
 
 use crate::fits::{Case, LARGE, case, cases, weights};
 use crate::shapes::statics::dense;
-use crate::shapes::{Random, distorted, geometry, materials};
+use crate::shapes::{Random, distorted, geometry, loaded, materials};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, Network, RestTension};
 use springfit_element::element::Element;
@@ -18,7 +18,6 @@ use springfit_numerics::dense::least_squares;
 use springfit_report::report::Report;
 use springfit_studies::study::{NamedFit, Scene, run};
 use std::path::Path;
-use std::sync::Arc;
 
 /// A cell with what its springs measure at rest and the second derivatives, `[nodes·dimension × nodes·dimension]`.
 struct Pulling {
@@ -419,7 +418,7 @@ fn nonnegative_optima_are_those_of_an_active_set_method() {
 #[test]
 fn zero_rest_lengths_make_simplices_exact() {
     for name in ["tri3", "tet4"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
         let springs = Springs::select(&element, Some(&every)).unwrap();
         let mut random = Random(23);
@@ -494,7 +493,7 @@ fn springs_know_no_direction_and_no_unit() {
 
 /// A box of jittered cells with all springs that the element has.
 fn body(name: &str) -> (Mesh, Springs) {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let d = element.dimension();
     let spec = BoxMesh { element: element.clone(), size: vec![0.3; d], cells: vec![2; d], origin: vec![0.1; d] };
     let mut mesh = spec.build().unwrap();
@@ -632,7 +631,7 @@ fn fits_into_used_memory_are_as_new() {
 
 #[test]
 fn what_cannot_have_tensions_is_refused() {
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     let springs = Springs::select(&element, None).unwrap();
     let moduli = materials(2)[0].moduli();
     let refused = |fit: Fit, element: &Element, points: &[f64]| {
@@ -660,7 +659,7 @@ fn what_cannot_have_tensions_is_refused() {
     // Tensions also resist motions out of the plane of a surface, which its stiffness does not know.
     let error = refused(
         frobenius(Weight::None, Rest::Free),
-        &element.in_space(3),
+        &Element::clone(&element).in_space(3),
         &[0.0, 0.0, 0.0, 1.0, 0.0, 0.2, 0.2, 0.9, 0.1],
     );
     assert_eq!((error.key(), error.kind()), (Some("rest"), ErrorKind::Unsupported), "{error}");

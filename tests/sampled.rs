@@ -5,7 +5,7 @@ use crate::messages::reads;
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::support_at;
 
-use crate::shapes::{Random, distorted, geometry};
+use crate::shapes::{Random, distorted, geometry, loaded};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Action, Body, Elastic, Network, nodal_forces};
 use springfit_bodies::solve::{Ending, Newton};
@@ -51,7 +51,7 @@ const CUBIC: &str = "k1*(0.125 - (0.5 - s)^3) + k2*(0.75*s - s^3) + k3*((0.5 + s
 #[test]
 fn small_shapes_give_the_fit_of_the_tangent() {
     for name in ["tri3", "quad4", "tet4"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut Random(4));
         let d = element.dimension();
@@ -100,7 +100,7 @@ fn small_shapes_give_the_fit_of_the_tangent() {
 #[test]
 fn the_fit_is_the_least_of_its_sum() {
     for name in ["tri3", "quad4", "tet4", "hex8"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, Some(&every(&element))).unwrap();
         let x = distorted(&element, &mut Random(8));
         for energy in ["neo-hookean", "corotational", "ogden"] {
@@ -124,7 +124,7 @@ fn the_fit_is_the_least_of_its_sum() {
 
 #[test]
 fn samplings_out_of_range_are_told() {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(2, 1.0, 0.3, None, None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
@@ -163,7 +163,7 @@ fn samplings_out_of_range_are_told() {
 /// A law that is linear in its parameters has the same optimum by steps within bounds that do not bind.
 #[test]
 fn steps_within_bounds_find_the_direct_optimum() {
-    let element = Arc::new(Element::load("hex8").unwrap());
+    let element = loaded("hex8");
     let springs = Springs::select(&element, Some(&every(&element))).unwrap();
     let x = distorted(&element, &mut Random(5));
     let direct = SampledFit { force: law(CUBIC, &springs), nonnegative: true, ..SampledFit::default() };
@@ -179,7 +179,7 @@ fn steps_within_bounds_find_the_direct_optimum() {
 #[test]
 fn free_rest_lengths_are_positive_and_better() {
     for name in ["tri3", "quad4", "tet4", "hex8"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, Some(&every(&element))).unwrap();
         let d = element.dimension();
         let size = [1.0, 0.8, 1.3][..d].to_vec();
@@ -207,7 +207,7 @@ fn free_rest_lengths_are_positive_and_better() {
 /// In the norms that are not least squares the fit is the least as well: no other constants around do better.
 #[test]
 fn other_norms_are_least_in_themselves() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let springs = Springs::select(&element, None).unwrap();
     let x = distorted(&element, &mut Random(8));
     let sampling = Sampling { shapes: 60, ..Sampling::default() };
@@ -233,7 +233,7 @@ fn other_norms_are_least_in_themselves() {
 #[test]
 fn springs_are_a_neo_hookean_simplex_exactly() {
     for name in ["tri3", "tet4"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, Some(&every(&element))).unwrap();
         assert_eq!(springs.names(), ["edge", "bulk"]);
         let d = element.dimension();
@@ -334,7 +334,7 @@ fn sampled_springs_follow_large_deformations() {
 /// shapes that are hardly deformed do not drown the others.
 #[test]
 fn fits_that_shapes_do_not_determine_are_told() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let springs = Springs::select(&element, None).unwrap();
     let x = distorted(&element, &mut Random(3));
     let material = Material::new(1.0, 0.3, State::Solid).unwrap();

@@ -2,8 +2,7 @@
 
 use crate::messages::reads;
 use crate::sampled::{law, sampled};
-use crate::shapes::{Random, distorted};
-use springfit_element::element::Element;
+use crate::shapes::{Random, distorted, loaded};
 use springfit_element::material::{Energy, Material};
 use springfit_element::springs::{Force, Springs};
 use springfit_fit::fit::{
@@ -36,7 +35,7 @@ impl<F: Fn(f64) -> Result<(f64, f64)> + Send + Sync> ResidualFunction for Each<F
 }
 
 fn fitted(name: &str, fit: &SampledFit) -> Result<SampledFits> {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(element.dimension(), 1.0, 0.3, None, None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
@@ -85,7 +84,7 @@ fn hubers_function_is_the_norm_of_this_name() {
         let fit = SampledFit { nonnegative, weights: Weights::Relative, ..settings() };
         let known = fitted(name, &SampledFit { norm: Norm::Huber { share: 0.5 }, ..fit.clone() }).unwrap();
         // With relative weights each shape has a force of one, in dimension × nodes components.
-        let element = Element::load(name).unwrap();
+        let element = loaded(name);
         let delta = 0.5 / ((element.dimension() * element.nodes()) as f64).sqrt();
         let huber = move |r: f64| match r.abs() <= delta {
             true => Ok((0.5 * r * r, r)),
@@ -118,7 +117,7 @@ fn wrong_functions_are_refused() {
         by(settings(), |r| Ok((r * r, r))),
         "norm: expected the gradient of the value of \"own\", found one with the slope …",
     );
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     let force = law("k*(exp(a*s) - 1)", &Springs::select(&element, None).unwrap());
     let fit = by(SampledFit { force, ..settings() }, |r| Ok((r * r, 2.0 * r)));
     refused(fit, "norm: expected the 2-norm for a law … found the function \"own\"");
@@ -128,7 +127,7 @@ fn wrong_functions_are_refused() {
 /// at other parameters have the error that the fit has with these parameters.
 #[test]
 fn every_start_has_its_end() {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let springs = Springs::select(&element, None).unwrap();
     let mut are_apart = 0;
     for seed in 1..6 {

@@ -1,18 +1,16 @@
 //! The search of sampled fits whose laws are not linear in their parameters: it converges, and to the optimum.
 
 use crate::sampled::{law, sampled};
-use crate::shapes::{Random, distorted};
-use springfit_element::element::Element;
+use crate::shapes::{Random, distorted, loaded};
 use springfit_element::material::{Energy, Material};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{DeformationFamily, SampledFit, Sampling, Source, Weights, fit_sampled};
-use std::sync::Arc;
 
 /// Generic cells, each node moved at random: at least 95 of 100 searches end at an optimum that no step improves.
 #[test]
 fn nonlinear_laws_converge_in_generic_cells() {
     for (name, count) in [("tri3", 40), ("tet4", 40), ("hex8", 6)] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, None).unwrap();
         for text in ["k*(exp(a*s) - 1)", "a*s/(1 + b*s^2)"] {
             let force = law(text, &springs);
@@ -35,7 +33,7 @@ fn nonlinear_laws_converge_in_generic_cells() {
 #[test]
 fn the_search_finds_the_optimum_of_a_grid() {
     for name in ["tri3", "tet4", "hex8"] {
-        let element = Arc::new(Element::load(name).unwrap());
+        let element = loaded(name);
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut Random(7));
         let source = Source::Families(vec![DeformationFamily::Uniaxial]);
@@ -63,7 +61,7 @@ fn the_search_finds_the_optimum_of_a_grid() {
 /// The energy of a rod whose force is `k (exp(a s) − 1)`: the search finds k and a again, from every start.
 #[test]
 fn an_exponential_law_is_found_again() {
-    let element = Arc::new(Element::load("bar2").unwrap());
+    let element = loaded("bar2");
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(1, 7.5, 0.0, None, None).unwrap();
     let part = |l: &str| format!("3*(exp(2.5*({l} - 1))/2.5 - {l})");

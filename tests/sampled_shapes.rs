@@ -1,9 +1,8 @@
 //! The shapes of a sampled fit: what each family deforms, how designs fill their ranges, sets with weights, and shapes that are held out.
 
 use crate::messages::reads;
-use crate::shapes::{Random, distorted};
+use crate::shapes::{Random, distorted, loaded};
 use nalgebra::{Matrix3, Vector3};
-use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material, Plane};
 use springfit_element::springs::Springs;
 use springfit_element::stiffness::{EnergyFunction, Hyperelastic, StressFunction};
@@ -35,7 +34,7 @@ impl StressFunction for Recorder {
 
 /// The F of a tetrahedron at each shape of the fit, in their order.
 fn gradients(sampling: Sampling) -> Vec<Matrix3<f64>> {
-    let element = Arc::new(Element::load("tet4").unwrap());
+    let element = loaded("tet4");
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(3, 1.0, 0.3, None, None).unwrap();
     let recorder = Arc::new(Recorder::default());
@@ -224,7 +223,7 @@ fn the_first_shapes_are_those_of_a_longer_sequence() {
 }
 
 fn fitted(name: &str, fit: &SampledFit) -> Result<SampledFits> {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let springs = Springs::select(&element, None).unwrap();
     let plane = (element.dimension() == 2).then_some(Plane::Strain);
     let material = Material::for_body(element.dimension(), 1.0, 0.3, plane, None).unwrap();
@@ -367,7 +366,7 @@ fn flat_and_inverted_shapes_of_a_list_are_named() {
         assert!(least >= 0.045 - 1e-12 && found.reduced <= 1, "{least} {}", found.reduced);
     }
     // States of the body, of which the second turns the cell over.
-    let element = Element::load("tri3").unwrap();
+    let element = loaded("tri3");
     let x = distorted(&element, &mut Random(4));
     let turned: Vec<f64> = x.iter().enumerate().map(|(i, x)| if i % 2 == 0 { -x } else { *x }).collect();
     let source = Source::States(Arc::new(vec![x.iter().map(|x| 1.2 * x).collect(), turned]));

@@ -1,6 +1,6 @@
 //! Which shapes of a list a sampled fit sees.
 
-use springfit_element::element::Element;
+use crate::shapes::loaded;
 use springfit_element::material::{Energy, Material, Plane};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{SampledFit, SampledFits, Sampling, Source, fit_sampled};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// error alone. Of lists of five and more each fifth shape is held out.
 #[test]
 fn lists_are_split() {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();
@@ -41,7 +41,7 @@ fn lists_are_split() {
 /// theirs. States are used equally often. The tolerance is rounding of sums of 160 terms.
 #[test]
 fn rows_count_once() {
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let springs = Springs::select(&element, None).unwrap();
     let material = Material::for_body(2, 1.0, 0.3, Some(Plane::Strain), None).unwrap();
     let energy = Energy::load("neo-hookean", material).unwrap();

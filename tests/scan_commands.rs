@@ -3,12 +3,10 @@
 use crate::fills::brick;
 use crate::kit::{said, springfit, told};
 use crate::scans::{Triangle, blob, box_with_dent, ring, source, sphere, unwelded};
-use crate::shapes::Random;
-use springfit_element::element::{Element, SHIPPED};
+use crate::shapes::{Random, loaded};
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing};
 use std::f64::consts::PI;
 use std::fs;
-use std::sync::Arc;
 use tempfile::TempDir;
 
 fn off(triangles: &[Triangle]) -> String {
@@ -142,7 +140,7 @@ fn points_are_about_as_many_as_asked_for() {
             ("tet4", FillBoundary::Smooth),
             ("tet10", FillBoundary::Stepped),
         ] {
-            let element = Arc::new(Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap());
+            let element = loaded(name);
             let (spacing, layers) = (FillSpacing::Points(wanted), FillLayers::Refuse);
             let mesh =
                 FillMesh { element, spacing, boundary, layers, repair: false }.build(&source(&scan), 1.0).unwrap();

@@ -1,8 +1,8 @@
 //! Damaged scans of bodies whose volumes are known: what a repair makes of them, and what it says of it.
 
-use crate::shapes::Random;
+use crate::shapes::{Random, loaded};
 use crate::smooth_fills::{ball, torus};
-use springfit_element::element::{Element, SHIPPED};
+use springfit_element::element::Element;
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Repair};
 use std::f64::consts::PI;
@@ -36,7 +36,7 @@ fn volume(triangles: &[Triangle]) -> f64 {
 }
 
 fn fill(scan: &[Triangle], spacing: FillSpacing, boundary: FillBoundary) -> Result<(Mesh, Filled)> {
-    let element = Element::shipped(SHIPPED.iter().find(|s| s.name == "tet4").unwrap()).unwrap();
+    let element = Element::clone(&loaded("tet4"));
     let layers = FillLayers::Union;
     let mesh =
         FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: true }.build(&source(scan), 1.0)?;

@@ -1,6 +1,6 @@
 //! General searches that may switch springs off.
 
-use crate::shapes::geometry;
+use crate::shapes::{geometry, loaded};
 use nalgebra::DMatrix;
 use springfit_element::element::Element;
 use springfit_element::material::{Material, Moduli};
@@ -133,7 +133,7 @@ fn searches_begin_no_lower_and_repeat() {
 /// stiff as a fit of them alone makes them.
 #[test]
 fn groups_go_as_a_whole() {
-    let element = Element::load("hex8").unwrap();
+    let element = loaded("hex8");
     let springs = Springs::select(&element, None).unwrap();
     let faces = Springs::select(&element, Some(&["face diagonal".into()])).unwrap();
     let moduli = Material::for_body(3, 1.0, 0.3, None, None).unwrap().moduli();

@@ -1,7 +1,6 @@
 //! What a condition selects is chosen once, on the mesh of the scene, and is the same part of the body on every finer mesh.
 
-use crate::shapes::elements;
-use springfit_element::element::Element;
+use crate::shapes::{elements, loaded};
 use springfit_foundation::symbolic::{Predicate, Scope};
 use springfit_mesh::mesh::{BoxMesh, Group, Mesh, Selection};
 use springfit_studies::study::{Outcome, Scene, converge, run};
@@ -137,7 +136,7 @@ fn finer_meshes_have_the_parts_of_the_coarse_one() {
         }
     }
     assert_eq!(elevated, 6);
-    let quadratic = Element::load("tet10").unwrap();
+    let quadratic = loaded("tet10");
     assert_eq!(quadratic.nodes(), 10);
 }
 

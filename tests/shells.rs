@@ -1,14 +1,13 @@
 //! Shells: the strains of surfaces in space on the domains of edges, with directors and without.
 
-use crate::shapes::Random;
 use crate::shapes::bodies::{bending, of_triangles, triangles};
 use crate::shapes::statics::product;
+use crate::shapes::{Random, loaded};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use springfit_bodies::model::{
     Body, Elastic, Entries, Network, Support, bending_springs, edge_springs, exact_network, finite_elements,
 };
 use springfit_bodies::solve::System;
-use springfit_element::element::Element;
 use springfit_element::material::{Anisotropy, CellMap, Energy, Hooke, LinearMaterial, Material, MaterialMap, Plane};
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings};
 use springfit_mesh::mesh::{CellBlock, Mesh};
@@ -167,7 +166,7 @@ fn largest(f: &[f64]) -> f64 {
 fn a_flat_sheet_has_the_stiffness_of_the_plane() {
     for (kind, poisson) in KINDS.into_iter().flat_map(|kind| [-0.4, 0.0, 0.3, 0.49].map(|nu| (kind, nu))) {
         let (points, triangles) = patch(kind, 5);
-        let element = Arc::new(Element::load("tri3").unwrap());
+        let element = loaded("tri3");
         let plane = Mesh::of_cells(2, points.concat(), vec![CellBlock { element, connectivity: triangles.clone() }]);
         let material = membrane(3e4, poisson, 0.02);
         let of_plane = ExactFit { energy: ExactEnergy::default(), ..EDGES };
@@ -398,7 +397,7 @@ fn what_has_no_strains_is_refused() {
     assert!(error.key() == Some("volume") && error.to_string().contains("\"points\""), "{error}");
     // Bodies that fill their space have springs on contents alone.
     let (points, triangles) = patch(Kind::Right, 2);
-    let element = Arc::new(Element::load("tri3").unwrap());
+    let element = loaded("tri3");
     let plane = Mesh::of_cells(2, points.concat(), vec![CellBlock { element, connectivity: triangles }]);
     for shear in [ShearSprings::Edges, ShearSprings::Cells] {
         let error = exact_network(&plane, &material.into(), &ExactFit { shear, ..EDGES }, &[]).unwrap_err();

@@ -1,10 +1,9 @@
 //! Sides of cells: those on the boundary and those of groups, as a search through all sides finds them.
 
-use crate::shapes::Random;
-use springfit_element::element::{Element, SHIPPED};
+use crate::shapes::{Random, loaded};
+use springfit_element::element::SHIPPED;
 use springfit_mesh::mesh::{BoxMesh, CellIndex, Mesh, MeshSource, Selection, SideIndex};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// The sides of each set of points, in the order of the cells.
 fn sets(mesh: &Mesh) -> BTreeMap<Vec<usize>, Vec<SideIndex>> {
@@ -29,7 +28,7 @@ fn place(side: &SideIndex) -> (usize, usize, usize) {
 fn sides_of_one_cell_are_the_boundary() {
     let mut random = Random(31);
     for shipped in SHIPPED.iter() {
-        let element = Arc::new(Element::shipped(shipped).unwrap());
+        let element = loaded(shipped.name);
         let d = element.dimension();
         let spec = BoxMesh { element, size: vec![1.0; d], cells: vec![3; d], origin: vec![0.0; d] };
         let Ok(mut mesh) = spec.build() else { continue };

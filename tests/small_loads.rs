@@ -1,17 +1,16 @@
 //! Newton's method under loads of any size: the rounding of the internal forces is no end of it.
 
+use crate::shapes::loaded;
 use crate::shapes::statics::support_at;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
 use springfit_bodies::solve::{Ending, Equilibrium, Newton, System};
-use springfit_element::element::Element;
 use springfit_element::material::{Energy, Material};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{Fit, Objective, Weight, fit_cells};
 use springfit_mesh::mesh::{BoxMesh, Mesh, Selection};
-use std::sync::Arc;
 
 fn block(name: &str, origin: f64) -> Mesh {
-    let element = Arc::new(Element::load(name).unwrap());
+    let element = loaded(name);
     let d = element.dimension();
     BoxMesh { element, size: vec![1.0; d], cells: vec![2; d], origin: vec![origin; d] }.build().unwrap()
 }

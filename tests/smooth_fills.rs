@@ -1,7 +1,8 @@
 //! Closed surfaces that are filled with tetrahedra up to the surface.
 
 use crate::kit::{place, source};
-use springfit_element::element::{Element, SHIPPED};
+use crate::shapes::loaded;
+use springfit_element::element::Element;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
 use springfit_studies::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
@@ -14,7 +15,7 @@ fn fill(
     cell: f64,
     boundary: FillBoundary,
 ) -> springfit_foundation::error::Result<Mesh> {
-    let element = Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap();
+    let element = Element::clone(&loaded(name));
     let (spacing, layers) = (FillSpacing::Edge(cell), FillLayers::Refuse);
     FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: false }.build(source, 1.0)
 }

@@ -1,7 +1,7 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
 use crate::kit::place;
-use crate::shapes::{Random, distorted, elements, geometry, materials, text_with_angles, with_angles};
+use crate::shapes::{Random, distorted, elements, geometry, loaded, materials, text_with_angles, with_angles};
 use springfit_element::element::{Cell, Element, SHIPPED, SpringKind};
 use springfit_element::material::{Material, Plane};
 use springfit_element::springs::{Law, Measure, Springs};
@@ -119,7 +119,7 @@ fn laws_of_force_have_the_forces_and_tangents_of_differences() {
 /// Formulas of the same thing agree: a length as a formula, the volume of a tetrahedron as its content.
 #[test]
 fn formulas_agree_with_closed_forms() {
-    let tetrahedron = Arc::new(Element::load("tet4").unwrap());
+    let tetrahedron = loaded("tet4");
     let mut random = Random(3);
     for _ in 0..10 {
         let x = distorted(&tetrahedron, &mut random);
@@ -189,7 +189,7 @@ fn couplings_make_simplices_exact() {
 #[test]
 fn area_and_volume_springs_hold_the_ratio_of_poisson() {
     let root = 3f64.sqrt();
-    let triangle = Element::load("tri3").unwrap();
+    let triangle = loaded("tri3");
     let x = [0.0, 0.0, 1.0, 0.0, 0.5, root / 2.0];
     for nu in [0.0, 0.2, 0.3, 1.0 / 3.0, 0.45, 0.49, 0.4999] {
         let material = Material::for_body(2, 1e4, nu, Some(Plane::Stress), None).unwrap();
@@ -198,7 +198,7 @@ fn area_and_volume_springs_hold_the_ratio_of_poisson() {
             assert!(error < 1e-12, "{nu} {objective:?}: {error}");
         }
     }
-    let tetrahedron = Element::load("tet4").unwrap();
+    let tetrahedron = loaded("tet4");
     let x = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.5, root / 2.0, 0.0, 0.5, root / 6.0, (2.0f64 / 3.0).sqrt()];
     for (nu, without, with) in [(0.3, 0.235, 0.166), (0.45, 0.570, 0.045), (0.49, 0.662, 0.009)] {
         let material = Material::for_body(3, 1e4, nu, None, None).unwrap();
@@ -257,7 +257,7 @@ fn complete_angles_are_those_of_all_sides() {
 
 #[test]
 fn selective_integration_does_not_lock() {
-    let full = Element::load("hex8").unwrap();
+    let full = loaded("hex8");
     let selective = example("hex8_selective");
     let bending = |element: &Element, nu: f64| {
         let x = element.positions.clone();

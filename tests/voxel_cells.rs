@@ -1,14 +1,15 @@
 //! Voxels that are divided into tetrahedra.
 
 use crate::kit::{self, place, ran};
-use springfit_element::element::{Element, SHIPPED};
+use crate::shapes::loaded;
+use springfit_element::element::Element;
 use springfit_mesh::mesh::{CellIndex, Mesh, Selection, VoxelMesh};
 use std::fs;
 use std::sync::Arc;
 use tempfile::TempDir;
 
 fn element(name: &str) -> Arc<Element> {
-    Arc::new(Element::shipped(SHIPPED.iter().find(|s| s.name == name).unwrap()).unwrap())
+    loaded(name)
 }
 
 /// `(b − a)·((c − a) × (d − a))/6`, without its sign.

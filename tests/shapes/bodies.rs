@@ -1,6 +1,6 @@
 //! Bodies that tests share, and a writer of their meshes.
 
-use super::Random;
+use super::{Random, loaded};
 use springfit_element::element::Element;
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{BoxMesh, CellBlock, Mesh};
@@ -17,7 +17,7 @@ pub fn boxed(element: &Arc<Element>, size: &[f64], cells: &[usize]) -> Result<Me
 
 /// A box of cells at the origin.
 pub fn grid(name: &str, size: &[f64], cells: &[usize]) -> Mesh {
-    boxed(&Arc::new(Element::load(name).unwrap()), size, cells).unwrap()
+    boxed(&loaded(name), size, cells).unwrap()
 }
 
 /// A body whose points are moved by a map.
