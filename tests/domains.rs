@@ -3,7 +3,9 @@
 
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{compliance, end_load, frequencies, held_where, membrane, on_cells, product};
+use crate::shapes::statics::{
+    assert_derivatives_along, compliance, end_load, frequencies, held_where, membrane, on_cells,
+};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::model::{Elastic, Entries, Network, Support, edge_springs, finite_elements, patch_springs};
 use springfit_element::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
@@ -210,20 +212,7 @@ fn forces_and_tangents_are_derivatives() {
     let x: Vec<f64> = mesh.points.iter().map(|x| 1.05 * x + 0.05 * random.next()).collect();
     for energy in ENERGIES {
         let network = network(&mesh, solid(3, 0.4), ExactFit { energy, large: true, ..EDGES }, &[]);
-        let response = network.respond(&x).unwrap();
-        let direction: Vec<f64> = x.iter().map(|_| random.next()).collect();
-        let h = 1e-5;
-        let moved = |h: f64| x.iter().zip(&direction).map(|(x, v)| x + h * v).collect::<Vec<f64>>();
-        let slope = (at(&network, &moved(h)) - at(&network, &moved(-h))) / (2.0 * h);
-        let along: f64 = response.force.iter().zip(&direction).map(|(f, v)| f * v).sum();
-        assert!((slope / along - 1.0).abs() < 1e-7, "{energy:?}: {slope} {along}");
-        let product = product(&response.tangent, &direction);
-        let force = |h: f64| network.respond(&moved(h)).unwrap().force;
-        let (after, before) = (force(h), force(-h));
-        let size = product.iter().fold(0.0f64, |most, k| most.max(k.abs()));
-        for (k, (a, b)) in product.iter().zip(after.iter().zip(&before)) {
-            assert!((k - (a - b) / (2.0 * h)).abs() < 1e-6 * size, "{energy:?}");
-        }
+        assert_derivatives_along(&format!("{energy:?}"), &network, &x, &mut random, [1e-7, 1e-6]);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::messages::reads;
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::{dense, product, support_at};
+use crate::shapes::statics::{assert_derivatives, dense, product, support_at};
 use crate::shapes::{loaded, single};
 use springfit_bodies::dynamics::largest_square;
 use springfit_bodies::dynamics::{
@@ -776,20 +776,9 @@ fn forces_and_tangents_are_derivatives() {
     assert_near(network.energy(&x).unwrap(), response.energy, 1e-13 * response.energy);
     assert!(response.tangent.iter().all(|e| e.row >= e.col));
     let tangent = dense(n, &response.tangent);
-    let h = 1e-8;
-    for j in 0..n {
-        let at = |by: f64| {
-            let mut x = x.clone();
-            x[j] += by;
-            network.respond(&x).unwrap()
-        };
-        let (plus, minus) = (at(h), at(-h));
-        assert_near((plus.energy - minus.energy) / (2.0 * h), force[j], 1e-6 * largest(&force));
-        for i in 0..n {
-            let slope = (plus.force[i] - minus.force[i]) / (2.0 * h);
-            assert_near(slope, tangent[(i, j)], 1e-6 * tangent.amax());
-        }
-    }
+    let at = |x: &[f64]| network.respond(x).map(|now| (now.energy, now.force)).unwrap();
+    let near = [largest(&force), tangent.amax()].map(|size| 1e-6 * size);
+    assert_derivatives("cube", &x, (1e-8, near), at, |i, j| tangent[(i, j)]);
     // Two points that meet: the spring between them has no direction.
     let (pair, _) = pair(1.0);
     assert!(pair.respond(&[0.0; 4]).is_none() && !pair.forces(&[0.0; 4], &mut [0.0; 4]));

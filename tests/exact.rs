@@ -2,7 +2,7 @@
 //! motion; and networks with volume springs on cells and patches, which do not lock.
 
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::dense;
+use crate::shapes::statics::{assert_derivatives, dense};
 use crate::shapes::{Random, elements, geometry, loaded, materials, single, valid};
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
@@ -187,19 +187,8 @@ fn measures_have_the_derivatives_of_differences() {
         assert!((jet.value - measure.value(x, d)).abs() < 1e-14 * (1.0 + jet.value.abs()), "{name}");
         let gradient = measure.gradient(x, d);
         assert!(gradient.iter().zip(&jet.gradient).all(|(a, b)| (a - b).abs() < 1e-14 * (1.0 + b.abs())), "{name}");
-        for i in 0..x.len() {
-            let moved = |h: f64| {
-                let mut x = x.to_vec();
-                x[i] += h;
-                (measure.value(&x, d), measure.gradient(&x, d))
-            };
-            let (ahead, behind) = (moved(1e-5), moved(-1e-5));
-            assert!(((ahead.0 - behind.0) / 2e-5 - gradient[i]).abs() < 1e-8, "{name} {i}");
-            for j in 0..x.len() {
-                let bend = (ahead.1[j] - behind.1[j]) / 2e-5;
-                assert!((bend - jet.hessian[i * x.len() + j]).abs() < 1e-8, "{name} {i} {j}");
-            }
-        }
+        let at = |x: &[f64]| (measure.value(x, d), measure.gradient(x, d));
+        assert_derivatives(name, x, (1e-5, [1e-8; 2]), at, |i, j| jet.hessian[i * x.len() + j]);
     };
     let mut random = Random(35);
     for element in elements().into_iter().filter(|e| e.nodes() < 10) {

@@ -1,7 +1,7 @@
 //! Large deformation: forces and tangents of elements, Newton's method on both models.
 
 use crate::shapes::bodies::grid;
-use crate::shapes::statics::support_at;
+use crate::shapes::statics::{assert_derivatives, support_at};
 use crate::shapes::{Random, distorted, elements, geometry};
 use nalgebra::Matrix3;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
@@ -9,11 +9,16 @@ use springfit_bodies::solve::{Ending, Newton, System};
 use springfit_element::element::SpringKind;
 use springfit_element::material::{Energy, Material, Plane, SHIPPED, State};
 use springfit_element::springs::Springs;
+use springfit_element::stiffness::ElementResponse;
 use springfit_fit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
 use springfit_mesh::mesh::{Mesh, Selection};
 
 fn cube(name: &str, cells: usize) -> Mesh {
     grid(name, &[1.0; 3], &[cells; 3])
+}
+
+fn of(response: ElementResponse) -> (f64, Vec<f64>) {
+    (response.energy, response.force.as_slice().to_vec())
 }
 
 /// Central differences of step 1e-6 of the sizes here err by 1e-9 of the tangent.
@@ -31,27 +36,10 @@ fn element_forces_and_tangents_are_those_of_differences() {
                 let energy = Energy::load(name, material).unwrap();
                 let x: Vec<f64> = rest.iter().map(|x| x * 1.1 + 0.08 * random.next()).collect();
                 let at = |x: &[f64]| geometry.respond(&energy, material.state(), x).unwrap();
-                let now = at(&x);
-                let size = now.tangent.norm();
-                for i in 0..x.len() {
-                    let moved = |h: f64| {
-                        let mut x = x.clone();
-                        x[i] += h;
-                        at(&x)
-                    };
-                    let (ahead, behind) = (moved(1e-6), moved(-1e-6));
-                    let slope = (ahead.energy - behind.energy) / 2e-6;
-                    assert!((slope - now.force[i]).abs() < 1e-7 * size, "{} {name}", element.name);
-                    for j in 0..x.len() {
-                        let slope = (ahead.force[j] - behind.force[j]) / 2e-6;
-                        let tangent = now.tangent[(j, i)];
-                        assert!(
-                            (slope - tangent).abs() < 1e-7 * size,
-                            "{} {name} {plane:?}: {slope} {tangent}",
-                            element.name
-                        );
-                    }
-                }
+                let tangent = at(&x).tangent;
+                let near = 1e-7 * tangent.norm();
+                let name = format!("{} {name} {plane:?}", element.name);
+                assert_derivatives(&name, &x, (1e-6, [near; 2]), |x| of(at(x)), |i, j| tangent[(i, j)]);
             }
         }
     }
@@ -93,19 +81,9 @@ fn membranes_and_rods_in_space_have_the_forces_of_their_energy() {
                 assert!(geometry.forces(&energy, material.state(), &x, f64::NEG_INFINITY, &mut forces));
                 for i in 0..x.len() {
                     assert!((forces[i] - now.force[i]).abs() < 1e-12 * size, "{} {name}", element.name);
-                    let moved = |h: f64| {
-                        let mut x = x.clone();
-                        x[i] += h;
-                        at(&x)
-                    };
-                    let (ahead, behind) = (moved(1e-6), moved(-1e-6));
-                    let slope = (ahead.energy - behind.energy) / 2e-6;
-                    assert!((slope - now.force[i]).abs() < 1e-7 * size, "{} {name} in {space}", element.name);
-                    for j in 0..x.len() {
-                        let (slope, own) = ((ahead.force[j] - behind.force[j]) / 2e-6, now.tangent[(j, i)]);
-                        assert!((slope - own).abs() < 1e-7 * size, "{} {name} in {space}: {slope} {own}", element.name);
-                    }
                 }
+                let name = format!("{} {name} in {space}", element.name);
+                assert_derivatives(&name, &x, (1e-6, [1e-7 * size; 2]), |x| of(at(x)), |i, j| now.tangent[(i, j)]);
                 tested += 1;
             }
         }

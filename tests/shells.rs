@@ -1,7 +1,7 @@
 //! Shells: the strains of surfaces in space on the domains of edges, with directors and without.
 
 use crate::shapes::bodies::{bending, of_triangles, triangles};
-use crate::shapes::statics::product;
+use crate::shapes::statics::{assert_derivatives_along, product};
 use crate::shapes::{Random, loaded};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use springfit_bodies::model::{
@@ -256,20 +256,9 @@ fn shaken() -> (Mesh, Network, Vec<f64>) {
 #[test]
 fn forces_and_tangents_are_derivatives() {
     let (_, network, x) = shaken();
-    let response = network.respond(&x).unwrap();
     let mut random = Random(4);
     for _ in 0..5 {
-        let direction: Vec<f64> = x.iter().map(|_| random.next()).collect();
-        let moved = |h: f64| x.iter().zip(&direction).map(|(x, v)| x + h * v).collect::<Vec<f64>>();
-        let h = 1e-5;
-        let slope = (network.energy(&moved(h)).unwrap() - network.energy(&moved(-h)).unwrap()) / (2.0 * h);
-        let along: f64 = response.force.iter().zip(&direction).map(|(f, v)| f * v).sum();
-        assert!((slope / along - 1.0).abs() < 1e-7, "{slope} {along}");
-        let force = |h: f64| network.respond(&moved(h)).unwrap().force;
-        let (after, before, product) = (force(h), force(-h), product(&response.tangent, &direction));
-        for (k, (a, b)) in product.iter().zip(after.iter().zip(&before)) {
-            assert!((k - (a - b) / (2.0 * h)).abs() < 1e-7 * largest(&product), "{k}");
-        }
+        assert_derivatives_along("roof", &network, &x, &mut random, [1e-7; 2]);
     }
 }
 

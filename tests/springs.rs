@@ -1,10 +1,11 @@
 //! Every kind of spring: its force and tangent against differences, and what it adds to a fit.
 
 use crate::kit::place;
+use crate::shapes::statics::assert_derivatives;
 use crate::shapes::{Random, distorted, elements, geometry, loaded, materials, text_with_angles, with_angles};
 use springfit_element::element::{Cell, Element, SHIPPED, SpringKind};
 use springfit_element::material::{Material, Plane};
-use springfit_element::springs::{Law, Measure, Springs};
+use springfit_element::springs::{Law, Measure, SpringResponse, Springs};
 use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Search, Solver, Weight, element_errors, fit_cells,
 };
@@ -15,27 +16,19 @@ fn example(name: &str) -> Element {
     Element::load(path.to_str().unwrap()).unwrap()
 }
 
+/// The energy and its gradient, against which a spring pulls.
+fn pulled(response: SpringResponse) -> (f64, Vec<f64>) {
+    (response.energy, response.force.iter().map(|f| -f).collect())
+}
+
 /// Central differences of step 1e-5 of functions of size one err by 1e-10, and the forces' own rounding is as large.
 fn check_derivatives(measure: &Measure, x: &[f64], rest: f64, d: usize, name: &str) {
     let k = 3.0;
     let response = measure.respond(k, rest, x, d);
     assert!((measure.value(x, d) - measure.jet(x, d).value).abs() < 1e-14 * (1.0 + rest.abs()), "{name}");
     let size = response.tangent.iter().fold(0.0f64, |a, t| a.max(t.abs()));
-    for i in 0..x.len() {
-        let moved = |h: f64| {
-            let mut x = x.to_vec();
-            x[i] += h;
-            measure.respond(k, rest, &x, d)
-        };
-        let (ahead, behind) = (moved(1e-5), moved(-1e-5));
-        let slope = (ahead.energy - behind.energy) / 2e-5;
-        assert!((slope + response.force[i]).abs() < 1e-7 * size, "{name}: force {i}");
-        for j in 0..x.len() {
-            let slope = (ahead.force[j] - behind.force[j]) / 2e-5;
-            let tangent = response.tangent[j * x.len() + i];
-            assert!((slope + tangent).abs() < 1e-7 * size, "{name}: tangent {j} {i}: {slope} {tangent}");
-        }
-    }
+    let at = |x: &[f64]| pulled(measure.respond(k, rest, x, d));
+    assert_derivatives(name, x, (1e-5, [1e-7 * size; 2]), at, |i, j| response.tangent[i * x.len() + j]);
 }
 
 /// At rest, and where every length has changed by up to half.
@@ -98,20 +91,8 @@ fn laws_of_force_have_the_forces_and_tangents_of_differences() {
         for stretch in [1.0, 1.4] {
             let x = x.map(|x| x * stretch);
             let response = respond(&x);
-            for i in 0..x.len() {
-                let moved = |h: f64| {
-                    let mut x = x;
-                    x[i] += h;
-                    respond(&x)
-                };
-                let (ahead, behind) = (moved(1e-5), moved(-1e-5));
-                let slope = (ahead.energy - behind.energy) / 2e-5;
-                assert!((slope + response.force[i]).abs() < 1e-7, "{text}: force {i}: {slope} {}", response.force[i]);
-                for j in 0..x.len() {
-                    let slope = (ahead.force[j] - behind.force[j]) / 2e-5;
-                    assert!((slope + response.tangent[j * x.len() + i]).abs() < 1e-7, "{text}: tangent {j} {i}");
-                }
-            }
+            let tangent = |i: usize, j: usize| response.tangent[i * x.len() + j];
+            assert_derivatives(text, &x, (1e-5, [1e-7; 2]), |x| pulled(respond(x)), tangent);
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Bodies under loads, and what they do.
 
+use super::Random;
 use super::bodies::grid;
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Entries, Lumping, Network, Support, lumped_masses, patch_springs};
+use springfit_bodies::model::{Elastic, Entries, Lumping, Network, Support, lumped_masses, patch_springs};
 use springfit_bodies::solve::{System, lowest_modes};
 use springfit_element::material::Material;
 use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
@@ -49,6 +50,50 @@ pub fn product(entries: &Entries, u: &[f64]) -> Vec<f64> {
         }
     }
     f
+}
+
+/// Asserts that `at`, which returns an energy and its gradient, has at `x` this gradient and this `tangent`: central differences of ± `h` are off
+/// by less than `near` of the gradient and of the tangent.
+pub fn assert_derivatives(
+    name: &str,
+    x: &[f64],
+    (h, near): (f64, [f64; 2]),
+    at: impl Fn(&[f64]) -> (f64, Vec<f64>),
+    tangent: impl Fn(usize, usize) -> f64,
+) {
+    let (_, gradient) = at(x);
+    for i in 0..x.len() {
+        let [ahead, behind] = [h, -h].map(|by| {
+            let mut x = x.to_vec();
+            x[i] += by;
+            at(&x)
+        });
+        let slope = (ahead.0 - behind.0) / (2.0 * h);
+        assert!((slope - gradient[i]).abs() < near[0], "{name}: gradient {i}: {slope} {}", gradient[i]);
+        for j in 0..x.len() {
+            let (slope, own) = ((ahead.1[j] - behind.1[j]) / (2.0 * h), tangent(j, i));
+            assert!((slope - own).abs() < near[1], "{name}: tangent {j} {i}: {slope} {own}");
+        }
+    }
+}
+
+/// Asserts the same of a network along a random direction, to these parts of the slope of the energy and of the largest change of the forces.
+pub fn assert_derivatives_along(name: &str, network: &Network, x: &[f64], random: &mut Random, near: [f64; 2]) {
+    let response = network.respond(x).unwrap();
+    let direction: Vec<f64> = x.iter().map(|_| random.next()).collect();
+    let h = 1e-5;
+    let [after, before] = [h, -h].map(|h| {
+        let moved: Vec<f64> = x.iter().zip(&direction).map(|(x, v)| x + h * v).collect();
+        (network.energy(&moved).unwrap(), network.respond(&moved).unwrap().force)
+    });
+    let slope = (after.0 - before.0) / (2.0 * h);
+    let along: f64 = response.force.iter().zip(&direction).map(|(f, v)| f * v).sum();
+    assert!((slope / along - 1.0).abs() < near[0], "{name}: {slope} {along}");
+    let product = product(&response.tangent, &direction);
+    let size = product.iter().fold(0.0f64, |most, k| most.max(k.abs()));
+    for (k, (a, b)) in product.iter().zip(after.1.iter().zip(&before.1)) {
+        assert!((k - (a - b) / (2.0 * h)).abs() < near[1] * size, "{name}: {k}");
+    }
 }
 
 /// Some points held in all directions.
