@@ -2,6 +2,7 @@
 
 use crate::damage::{assert_sound, damaged};
 use crate::kit::{place, source};
+use crate::messages::reads;
 use crate::shapes::Random;
 use proptest::prelude::*;
 use springfit_mesh::mesh::vtk::{Array, Grid, write};
@@ -266,48 +267,52 @@ fn a_name_may_stand_for_groups_of_several_dimensions() {
 
 #[test]
 fn gmsh_errors_say_what_was_expected_and_found() {
-    let with_nodes = |nodes: &str| gmsh_error(&format!("{FORMAT}{nodes}{ELEMENTS}"));
-    let with_elements = |elements: &str| gmsh_error(&format!("{FORMAT}{NODES}{elements}"));
-    let damaged = NODES.replace("1 0 0\n0 1", "1 abc 0\n0 1");
-    assert_eq!(with_nodes(&damaged), "line 11: $Nodes: expected a number, found \"abc\"");
-    let short = NODES.replace("0 1 0\n$", "$");
-    assert_eq!(with_nodes(&short), "line 12: $Nodes: expected 3 nodes, found 2");
-    let long = NODES.replace("$End", "4 4 4\n$End");
-    assert_eq!(with_nodes(&long), "line 13: $Nodes: expected $EndNodes, found \"4\"");
-    assert_eq!(with_nodes(&NODES.replace("\n8\n", "\n7\n")), "$Nodes: node 7 occurs twice");
-    assert_eq!(with_nodes(""), "line 4: $Elements: expected $Nodes before it");
-    let cut = format!("{FORMAT}{}", &NODES[..NODES.len() - 16]);
-    assert_eq!(gmsh_error(&cut), "the file ends inside $Nodes: expected 3 nodes, found 2");
-    let unknown = ELEMENTS.replace("8 7", "8 6");
-    assert_eq!(with_elements(&unknown), "line 17: $Elements: element 1 names node 6, which $Nodes lacks");
-    let kind = ELEMENTS.replace("2 1 2 1", "2 1 999 1");
-    assert_eq!(with_elements(&kind), "line 16: $Elements: element type 999 is unknown");
-    assert_eq!(with_elements(""), "the file ends before $Elements");
-    assert_eq!(gmsh_error(""), "the file ends before $MeshFormat");
-    assert_eq!(gmsh_error("solid a\n"), "line 1: expected a section such as $MeshFormat, found \"solid\"");
-    let version = "line 2: $MeshFormat: expected version 4.1, 4.0 or 2.2, found \"3\"; \
-                   what converts it: gmsh old.msh -save -format msh41 -o new.msh";
-    assert_eq!(gmsh_error("$MeshFormat\n3 0 8\n$EndMeshFormat\n"), version);
-    let binary = gmsh_error("$MeshFormat\n4 1 8\n");
-    assert!(
-        binary.contains("expected a file of version 4.0 in text, found a binary one; what converts it"),
-        "{binary}"
-    );
-    let parametric = gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 1\n1 1 1 1\n1 0 0 0 0.5\n$EndNodes\n");
-    assert!(parametric.contains("$Nodes: expected nodes of version 4.0 without parameters, found 1"), "{parametric}");
-    let wrong = gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 2\n1 1 0 1\n1 0 0 0\n$EndNodes\n");
-    assert!(wrong.contains("expected 2 nodes, found 1"), "{wrong}");
     const FIRST: &str = "$NOD\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$ENDNOD\n";
-    let first = |elements: &str| gmsh_error(&format!("{FIRST}$ELM\n1\n{elements}\n$ENDELM\n"));
-    assert_eq!(first("1 2 5 1 4 1 2 3"), "line 9: $ELM: expected 3 nodes of element 1 with type 2, found 4");
-    assert_eq!(first("1 2 5 1 3 1 2 4"), "line 9: $ELM: element 1 names node 4, which $Nodes lacks");
-    assert_eq!(gmsh_error("$ELM\n"), "line 1: $ELM: expected $NOD before it");
-    assert_eq!(gmsh_error(&format!("{FIRST}{FIRST}")), "line 7: $NOD: stands in the file a second time");
-    let parts = gmsh_error("$MeshFormat\n4 0 8\n$EndMeshFormat\n$PartitionedEntities\n");
-    assert!(
-        parts.starts_with("line 4: $PartitionedEntities: partitioned meshes of this version are not supported"),
-        "{parts}"
-    );
+    let with_nodes = |from: &str, to: &str| format!("{FORMAT}{}{ELEMENTS}", NODES.replace(from, to));
+    let with_elements = |from: &str, to: &str| format!("{FORMAT}{NODES}{}", ELEMENTS.replace(from, to));
+    let of_version_4 = |rest: &str| format!("$MeshFormat\n4 0 8\n$EndMeshFormat\n{rest}");
+    let first = |elements: &str| format!("{FIRST}$ELM\n1\n{elements}\n$ENDELM\n");
+    for (text, expected) in [
+        (with_nodes("1 0 0\n0 1", "1 abc 0\n0 1"), "line 11: $Nodes: expected a number, found \"abc\""),
+        (with_nodes("0 1 0\n$", "$"), "line 12: $Nodes: expected 3 nodes, found 2"),
+        (with_nodes("$End", "4 4 4\n$End"), "line 13: $Nodes: expected $EndNodes, found \"4\""),
+        (with_nodes("\n8\n", "\n7\n"), "$Nodes: node 7 occurs twice"),
+        (format!("{FORMAT}{ELEMENTS}"), "line 4: $Elements: expected $Nodes before it"),
+        (format!("{FORMAT}{}", &NODES[..NODES.len() - 16]), "the file ends inside $Nodes: expected 3 nodes, found 2"),
+        (with_elements("8 7", "8 6"), "line 17: $Elements: element 1 names node 6, which $Nodes lacks"),
+        (with_elements("2 1 2 1", "2 1 999 1"), "line 16: $Elements: element type 999 is unknown"),
+        (format!("{FORMAT}{NODES}"), "the file ends before $Elements"),
+        (String::new(), "the file ends before $MeshFormat"),
+        ("solid a\n".into(), "line 1: expected a section such as $MeshFormat, found \"solid\""),
+        (
+            "$MeshFormat\n3 0 8\n$EndMeshFormat\n".into(),
+            "line 2: $MeshFormat: expected version 4.1, 4.0 or 2.2, found \"3\"; \
+             what converts it: gmsh old.msh -save -format msh41 -o new.msh",
+        ),
+        (first("1 2 5 1 4 1 2 3"), "line 9: $ELM: expected 3 nodes of element 1 with type 2, found 4"),
+        (first("1 2 5 1 3 1 2 4"), "line 9: $ELM: element 1 names node 4, which $Nodes lacks"),
+        ("$ELM\n".into(), "line 1: $ELM: expected $NOD before it"),
+        (FIRST.repeat(2), "line 7: $NOD: stands in the file a second time"),
+    ] {
+        assert_eq!(gmsh_error(&text), expected);
+    }
+    for (text, expected) in [
+        (
+            "$MeshFormat\n4 1 8\n".into(),
+            "…expected a file of version 4.0 in text, found a binary one; what converts it…",
+        ),
+        (
+            of_version_4("$Nodes\n1 1\n1 1 1 1\n1 0 0 0 0.5\n$EndNodes\n"),
+            "…$Nodes: expected nodes of version 4.0 without parameters, found 1…",
+        ),
+        (of_version_4("$Nodes\n1 2\n1 1 0 1\n1 0 0 0\n$EndNodes\n"), "…expected 2 nodes, found 1…"),
+        (
+            of_version_4("$PartitionedEntities\n"),
+            "line 4: $PartitionedEntities: partitioned meshes of this version are not supported…",
+        ),
+    ] {
+        reads(&gmsh_error(&text), expected).unwrap();
+    }
 }
 
 #[test]
