@@ -1,6 +1,6 @@
 //! Meshes are refined without loss, and limits are those of sequences that have one.
 
-use crate::kit::{self, place, said, shipped, springfit, told};
+use crate::kit::{self, place, said, shipped, springfit};
 use crate::messages::reads;
 use crate::shapes::bodies::boxed;
 use crate::shapes::{Random, elements, loaded, single};
@@ -430,7 +430,7 @@ fn the_program_writes_its_table_and_plot() {
     let folder = TempDir::new().unwrap();
     let path = place("scenes/specimen_tri.toml");
     let output = springfit(folder.path(), &["converge", path.to_str().unwrap(), "--levels", "3"]);
-    let (told, progress) = (told(&output), said(&output));
+    let (told, progress) = (String::from_utf8_lossy(&output.stdout).into_owned(), said(&output));
     assert!(output.status.success() && told.contains("tension: the truth is ") && told.contains("limit"), "{told}");
     assert!((1..=3).all(|level| progress.contains(&format!("note: level {level} of 3: "))), "{progress}");
     let out = folder.path().join("out/converge-specimen_tri");

@@ -17,7 +17,7 @@ pub fn damaged(whole: &[u8], round: usize, random: &mut Random) -> Vec<u8> {
             4 => bytes.insert(at, b'9'),
             5 => drop(bytes.splice(at..at, *b"99")),
             6 => drop(bytes.drain(at..end)),
-            7 if round.is_multiple_of(4) => bytes.truncate(at),
+            7 => bytes.truncate(at),
             _ => bytes[at..end].fill(255),
         }
         if bytes.is_empty() {

@@ -4,10 +4,8 @@ use crate::fills::brick;
 use crate::kit::{said, springfit};
 use crate::shapes::loaded;
 use crate::smooth_fills::ball;
-use springfit_element::element::Element;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, SourceBlock};
 use std::fs;
-use std::sync::Arc;
 use tempfile::TempDir;
 
 const BOUNDARIES: [FillBoundary; 2] = [FillBoundary::Stepped, FillBoundary::Smooth];
@@ -18,10 +16,9 @@ fn fill(
     boundary: FillBoundary,
     layers: FillLayers,
 ) -> springfit_foundation::error::Result<(Mesh, Filled)> {
-    let element = Element::clone(&loaded("tet4"));
+    let element = loaded("tet4");
     let mesh =
-        FillMesh { element: Arc::new(element), spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }
-            .build(source, 1.0)?;
+        FillMesh { element, spacing: FillSpacing::Edge(cell), boundary, layers, repair: false }.build(source, 1.0)?;
     let filled = mesh.quality.filled.clone().unwrap();
     Ok((mesh, filled))
 }

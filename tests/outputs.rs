@@ -97,7 +97,6 @@ fn each_file_of_points_has_the_masses_of_its_network() {
 #[test]
 fn errors_that_are_not_asked_for_are_not_computed() {
     let text = SCENE.replace("json = false", "errors = false") + "[[fit]]\nname = \"one\"\nobjective = \"frobenius\"\n";
-    let outcome = |text: &str| outcome(text);
     let (without, with) = (outcome(&text), outcome(&text.replace("errors = false", "errors = true")));
     let fits = [&without, &with].map(|outcome| &outcome.fits[0]);
     assert_eq!(fits[0].network.lengths, fits[1].network.lengths);

@@ -2,11 +2,9 @@
 
 use crate::shapes::{Random, loaded};
 use crate::smooth_fills::{ball, torus};
-use springfit_element::element::Element;
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource, Repair};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 type Place = [f64; 3];
 pub(super) type Triangle = [Place; 3];
@@ -36,10 +34,9 @@ fn volume(triangles: &[Triangle]) -> f64 {
 }
 
 fn fill(scan: &[Triangle], spacing: FillSpacing, boundary: FillBoundary) -> Result<(Mesh, Filled)> {
-    let element = Element::clone(&loaded("tet4"));
+    let element = loaded("tet4");
     let layers = FillLayers::Union;
-    let mesh =
-        FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: true }.build(&source(scan), 1.0)?;
+    let mesh = FillMesh { element, spacing, boundary, layers, repair: true }.build(&source(scan), 1.0)?;
     let filled = mesh.quality.filled.clone().unwrap();
     Ok((mesh, filled))
 }

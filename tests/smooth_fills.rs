@@ -2,12 +2,10 @@
 
 use crate::kit::{place, source};
 use crate::shapes::loaded;
-use springfit_element::element::Element;
 use springfit_mesh::mesh::{FillBoundary, FillLayers, FillMesh, FillSpacing, Filled, Mesh, MeshSource};
 use springfit_studies::study::{Scene, run};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 fn fill(
     source: &MeshSource,
@@ -15,9 +13,9 @@ fn fill(
     cell: f64,
     boundary: FillBoundary,
 ) -> springfit_foundation::error::Result<Mesh> {
-    let element = Element::clone(&loaded(name));
+    let element = loaded(name);
     let (spacing, layers) = (FillSpacing::Edge(cell), FillLayers::Refuse);
-    FillMesh { element: Arc::new(element), spacing, boundary, layers, repair: false }.build(source, 1.0)
+    FillMesh { element, spacing, boundary, layers, repair: false }.build(source, 1.0)
 }
 
 fn smooth(source: &MeshSource, cell: f64) -> Mesh {

@@ -11,7 +11,7 @@ pub fn rows<T: numpy::Element + Copy>(matrix: &PyReadonlyArray2<T>) -> Vec<T> {
     copied(matrix.as_array())
 }
 
-/// The numbers of an array in the order of its rows. This package is not optimised: a loop over numbers is left to others.
+/// The numbers of an array in the order of its rows. One after the other they are copied where rows do not follow each other.
 fn copied<T: Copy, D: Dimension>(array: ArrayView<T, D>) -> Vec<T> {
     array.as_slice().map_or_else(|| array.iter().copied().collect(), <[T]>::to_vec)
 }

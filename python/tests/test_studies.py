@@ -69,10 +69,13 @@ def test_exports_are_those_of_the_command(tmp_path):
     assert not (tmp_path / "none").exists()
 
 
-def test_studies_of_scenes_are_those_of_the_command(tmp_path, command):
+def test_comparisons_of_scenes_have_all_fits():
     pytest.importorskip("pandas")
     report = sf.compare(SCENE)
     assert len(report.fits) > 5 and report.loads["e_rms"].notna().any()
+
+
+def test_studies_of_scenes_are_those_of_the_command(tmp_path, command):
     found = sf.converge(SCENE, levels=2)
     scene = tmp_path / "scene.toml"
     scene.write_text(

@@ -86,14 +86,9 @@ Examples:
   springfit compare norms.toml --jobs 2 --resume         # a file with [compare]: springfit schema compare --markdown
   springfit plot out/compare-tet4 --figure ecdf -o ecdf.svg";
 
-/// Jobs at most; more than processors are of no use.
-const MOST_JOBS: usize = 1024;
-
 impl Compare {
     pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
-        if !(1..=MOST_JOBS).contains(&self.jobs) {
-            return Err(Error::expected("--jobs", format!("a number from 1 to {MOST_JOBS}"), self.jobs));
-        }
+        study::check_jobs(self.jobs)?;
         let first = Path::new(&self.what[0]);
         let stem = first.file_stem().unwrap_or_default().to_string_lossy();
         let folder = self.out.clone().unwrap_or_else(|| Path::new("out").join(format!("compare-{stem}")));

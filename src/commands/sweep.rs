@@ -4,10 +4,10 @@ use super::output::OutputOptions;
 use super::scene_file::Settings;
 use crate::terminal::Terminal;
 use clap::Args;
-use springfit_foundation::error::{Error, Result};
+use springfit_foundation::error::Result;
 use springfit_foundation::file::write_whole;
 use springfit_report::report::{self, Shard, StudyLines, StudyRecord, StudyTable};
-use springfit_studies::study::{Event, Sweep as Studies};
+use springfit_studies::study::{Event, Sweep as Studies, check_jobs};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -52,14 +52,10 @@ Examples:
 
 /// The table is written no more often while the sweep runs.
 const BETWEEN_TABLES: Duration = Duration::from_secs(5);
-/// Jobs at most; more than processors are of no use.
-const MOST_JOBS: usize = 1024;
 
 impl Sweep {
     pub fn run(&self, terminal: &mut Terminal) -> Result<()> {
-        if !(1..=MOST_JOBS).contains(&self.jobs) {
-            return Err(Error::expected("--jobs", format!("a number from 1 to {MOST_JOBS}"), self.jobs));
-        }
+        check_jobs(self.jobs)?;
         let shard = self.shard.as_deref().map_or(Ok(Shard::WHOLE), Shard::parse)?;
         let sweep = self.settings.sweep(&self.scene)?;
         let marks: Vec<String> = sweep.studies().iter().map(|study| StudyRecord::mark(&study.values())).collect();

@@ -142,8 +142,11 @@ impl Refusals {
     }
 }
 
-/// A place of a file: its key, its line, or both.
+/// A place of a file: its key, its line, or both; the file alone without either.
 fn place_in(file: &str, place: &str) -> String {
+    if place.is_empty() {
+        return file.into();
+    }
     let blank = if place.starts_with(|c: char| c.is_ascii_digit()) { "" } else { " " };
     format!("{file}:{blank}{place}")
 }

@@ -53,7 +53,7 @@ fn compare(cases: &[Case], outcomes: &[Outcome], tolerance: f64) -> f64 {
     worst
 }
 
-/// Whether the straight-line code of a case is short. A compiler takes long for that of the others.
+/// Whether the code of a case is short. That of many springs has loops; that of few is a straight line, for which a compiler takes long.
 fn is_short(case: &Case) -> bool {
     case.element.nodes() <= 4 || case.springs.len() > 100
 }

@@ -17,10 +17,10 @@ fn report_of(text: &str) -> serde_json::Value {
     json(&folder.path().join("out/report.json"))
 }
 
-/// What a run of this scene said.
+/// What a run of this scene said on standard error.
 fn said_of(text: String) -> String {
     let folder = holding("s.toml", text);
-    kit::ran(folder.path(), &["run", "s.toml", "-v", "--out", "out"]).1
+    kit::said(&kit::springfit(folder.path(), &["run", "s.toml", "-v", "--out", "out"]))
 }
 
 fn bar(element: &str, size: [f64; 3], cells: [usize; 3], more: &str) -> String {

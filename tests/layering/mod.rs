@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// A layer may import those before it; a folder counts as one.
-const LAYERS: [&str; 42] = [
+const LAYERS: [&str; 43] = [
     "shipped",
     "numerics",
     "multigrid",

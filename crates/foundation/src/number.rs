@@ -1,4 +1,4 @@
-//! Numbers at the edges: in JSON, which has neither infinities nor NaN, null stands for them; lists from outside may hold any.
+//! Numbers from outside. JSON has neither infinities nor NaN, for which null stands; arrays may have any.
 
 use serde::{Deserialize, Deserializer};
 

@@ -21,7 +21,11 @@ fn seconds() -> f64 {
 }
 
 fn main() {
-    let words: Vec<String> = std::env::args().skip(1).collect();
+    // Cargo adds a word of its own.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    if words.len() < 2 {
+        return println!("expected a case and a number of cells, such as: cubes 20");
+    }
     let value = |key: &str| words.iter().find_map(|w| w.strip_prefix(key)?.strip_prefix('=')).map(str::to_string);
     let number = |key: &str, otherwise: f64| value(key).map_or(otherwise, |text| text.parse().unwrap());
     let (case, n) = (words[0].as_str(), words[1].parse::<usize>().unwrap());

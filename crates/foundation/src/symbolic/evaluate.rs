@@ -32,7 +32,7 @@ pub trait Value: Clone {
 
 impl Value for f64 {
     fn from_rational(c: &BigRational) -> Option<f64> {
-        // One division of whole numbers that an f64 holds is rounded correctly, as the general conversion is, which takes fifty times as long.
+        // One division of whole numbers that an f64 holds is rounded correctly, as the general conversion is, which computes with 128 bits.
         let whole = |n: &BigInt| n.to_i64().filter(|n| n.unsigned_abs() <= 1 << f64::MANTISSA_DIGITS);
         match (whole(c.numer()), whole(c.denom())) {
             (Some(n), Some(d)) => Some(n as f64 / d as f64),

@@ -148,8 +148,8 @@ impl<'a> ModuliParts<'a> {
         (unknowns, names)
     }
 
-    /// The modulus of a part of cells, with a cell whose region is that of all of them; `None` for the patches, which carry λ and which all regions share. And what
-    /// tells a cell, a domain or a patch from the others.
+    /// The modulus of a part of cells, with a cell whose region is that of all of them; `None` for the patches, which carry λ and which all regions share.
+    /// Two numbers beside it tell a cell, a domain or a patch from the others.
     fn owner(&self, part: Part) -> (Option<(Modulus, CellIndex)>, [usize; 2]) {
         match (part, &self.carriers) {
             (Part::Cell(modulus, cell), _) => (Some((modulus, cell)), [cell.block, cell.cell]),

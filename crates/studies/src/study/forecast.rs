@@ -19,7 +19,7 @@ use springfit_scenes::{
 use std::collections::BTreeMap;
 
 /// Work that takes longer is announced, s.
-const LONG: f64 = 10.0;
+pub(super) const LONG: f64 = 10.0;
 /// The seconds that one fit is tried for, about, unless it is done in `SHORT` by the trials before.
 const TRIAL: f64 = 0.02;
 const SHORT: f64 = 0.2;

@@ -8,6 +8,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 use std::thread;
 
+/// Jobs at most; more than processors are of no use.
+const MOST_JOBS: usize = 1024;
+
+/// Checks how many works are done at a time, which an option of the command line says.
+///
+/// # Errors
+/// None, or more than are of use.
+pub fn check_jobs(jobs: usize) -> Result<()> {
+    match (1..=MOST_JOBS).contains(&jobs) {
+        true => Ok(()),
+        false => Err(Error::expected("--jobs", format!("a number from 1 to {MOST_JOBS}"), jobs)),
+    }
+}
+
 /// Does the work of each of these places, `jobs` at a time, and passes each result to `each` as soon as it is ready.
 ///
 /// The processors are shared out among the jobs. What comes of a work does not depend on their number.

@@ -49,6 +49,7 @@ pub use convergence::{
 pub use distributed::{BodyShare, FittedShare, distributed_body, fit_some};
 pub use draft::{DraftMaterial, DraftSource, DraftUnit, draft};
 pub use forecast::{ExpectedStage, Forecast};
+pub use jobs::check_jobs;
 pub use learning::{LearningPoint, learning_curve};
 pub use measure::{MeasureOptions, MeasuredNetwork, MeasuredRegion, NetworkStability, measure};
 pub use paper::{

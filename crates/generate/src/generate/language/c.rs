@@ -50,6 +50,7 @@ impl Syntax for Dialect {
     }
 
     fn is_single(&self) -> bool {
+        // GLSL is the only dialect in single precision, and the only one without the header of C: it has its functions from the language.
         self.number == "float"
     }
 

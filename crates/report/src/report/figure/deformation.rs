@@ -117,7 +117,7 @@ fn check_same(mesh: &Mesh, network: &NetworkRecord) -> Result<()> {
     }
 }
 
-/// By which displacements are multiplied in a picture: two digits, so that the factor can be said.
+/// The factor by which displacements are multiplied in a picture, with two digits, so that it can be said.
 pub(in crate::report) fn magnification(mesh: &Mesh, displacement: &[f64]) -> f64 {
     let d = mesh.dimension;
     let extent = |k: usize| {

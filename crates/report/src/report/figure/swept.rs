@@ -50,13 +50,16 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
         ));
     };
     let medians = |(name, fits): (&str, Vec<(f64, &Value)>)| -> Medians {
-        let errors = |(at, fit): (f64, &Value)| {
-            let errors = fit["loads"].as_array().into_iter().flatten().filter_map(|load| load["e_rms"].as_f64());
-            errors.map(|error| (at, error)).collect::<Vec<_>>()
+        let errors = |fit: &Value| -> Vec<f64> {
+            fit["loads"].as_array().into_iter().flatten().filter_map(|load| load["e_rms"].as_f64()).collect()
         };
-        let mut points = grouped(fits.into_iter().flat_map(errors));
+        // Whole lists are grouped: to look for the key of each error would take as many times as long as there are loads.
+        let points = grouped(fits.into_iter().map(|(at, fit)| (at, errors(fit))));
+        let points =
+            points.into_iter().map(|(at, lists)| (at, lists.concat())).filter(|(_, errors)| !errors.is_empty());
+        let mut points: Vec<(f64, f64)> = points.map(|(at, errors)| (at, median(&errors))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (name.into(), points.iter().map(|(at, errors)| (*at, median(errors))).collect())
+        (name.into(), points)
     };
     let fits = records.iter().filter_map(|record| {
         let at = record.settings.get(*key).and_then(Value::as_f64)?;

@@ -25,7 +25,7 @@ const POISSON: f64 = 0.3;
 /// Cases of elements at most: each is fitted by every fit, and has a line of its own in the files.
 const MOST_CASES: f64 = 1e5;
 /// The largest stretch of sampled shapes where no fit is listed.
-const STRETCH: f64 = 0.35;
+pub(super) const STRETCH: f64 = 0.35;
 
 /// A comparison that has been read and checked.
 #[derive(Debug)]

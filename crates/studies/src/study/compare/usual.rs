@@ -1,5 +1,6 @@
 //! What is compared where no fit is listed: all objectives, by all solvers, and the published formulas that there are.
 
+use super::plan::STRETCH;
 use crate::element::Element;
 use crate::error::{ErrorKind, Result};
 use crate::fit::published::{self, Method};
@@ -10,9 +11,6 @@ use crate::springs::Springs;
 use crate::study::run::run_with;
 use crate::study::stretches::sampled_fits;
 use springfit_scenes::{Controls, ExactRecipe, NamedFit, Outcome, Progress, Recipe, Scene, WholeBody, applied_cases};
-
-/// The largest stretch of the shapes that are sampled for a scene.
-const SAMPLED: f64 = 0.35;
 
 /// Every objective on single elements, the spectral one by every solver, and the published formulas that the element has.
 pub fn usual_fits(element: &Element, material: Material, iterations: u64) -> Vec<NamedFit> {
@@ -101,7 +99,7 @@ pub fn compared(scene: &Scene) -> Result<Scene> {
             fits.extend(published.map(|method| NamedFit::of(Recipe::Published(method), None)));
         }
         if scene.law().is_some() {
-            fits.extend(sampled_fits(&mesh.blocks[0].element, groups.as_deref(), SAMPLED));
+            fits.extend(sampled_fits(&mesh.blocks[0].element, groups.as_deref(), STRETCH));
         }
         for mut named in fits {
             if let Some(groups) = &groups {

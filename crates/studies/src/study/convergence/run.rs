@@ -9,6 +9,7 @@ use crate::analysis::metrics::{displacement_error, product, square};
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::model::{Body, Elastic, Entries, displaced, finite_elements, is_flat, masses};
+use crate::study::forecast::LONG;
 use crate::study::run::run_with;
 use crate::text::time_in_words;
 use springfit_scenes::{BODY, Controls, Event, FitOutcome, LoadCase, Outcome, Output, Progress, Scene};
@@ -24,8 +25,6 @@ const FACETS: &str = "the surface keeps the flat cells of the coarsest mesh on a
 const DIFFERS: &str = "the bodies differ by more than rounding";
 /// So many points quadratic elements on the finest level may have, which is some seconds.
 const FINEST: usize = 60_000;
-/// A level that takes longer is announced, s.
-const LONG: f64 = 10.0;
 /// A fit that takes longer on that level is named, s.
 const TOLD: f64 = 1.0;
 /// The number of levels if none is requested and memory suffices.
