@@ -12,7 +12,7 @@ pub use springfit_fit::fit::{
     DampingTest, ElementErrors, ExactEnergy, ExactFit, Fit, GivenFit, GivenStiffness, GradientFit, Higher, Inputs,
     ModulusTest, MotionWeight, Norm, Objective, ResidualFunction, ResidualObjective, Rest, SampledFit, SampledFits,
     Sampling, Search, ShapeError, ShearSprings, Solver, Spread, Topology, VolumeSprings, Weight, Weights,
-    element_errors, fit_element, plain,
+    element_errors, fit_element, reference_fit,
 };
 
 /// A stiffness without some of its unknowns: two springs in a row are one of `k₁k₂/(k₁ + k₂)`.

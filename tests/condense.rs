@@ -8,7 +8,7 @@ use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{
     CellFits, ClosedForm, ExactFit, Fit, Higher, Objective, Weight, condense, element_errors, fit_cells, fit_element,
-    fit_exact, plain,
+    fit_exact, reference_fit,
 };
 use springfit_studies::study::{StabilityRow, Verdict, stability};
 
@@ -165,11 +165,11 @@ fn fits_are_those_of_the_condensed_matrix() {
         let springs = Springs::select(&element, None).unwrap();
         let x = distorted(&element, &mut random);
         let cell: Vec<usize> = (0..element.nodes()).collect();
-        let r = plain::stiffness(&element, &x, &MODULI.into()).unwrap();
+        let r = reference_fit::stiffness(&element, &x, &MODULI.into()).unwrap();
         assert!((&r - stiffness(&element, &x, MODULI)).amax() < 1e-12 * r.amax(), "{name}");
         for weight in [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::DEFAULT), Weight::Relative] {
             let fit = Fit::new(Objective::Frobenius(weight));
-            let formula = plain::constants(&element, &springs, &x, &MODULI.into(), weight).unwrap();
+            let formula = reference_fit::constants(&element, &springs, &x, &MODULI.into(), weight).unwrap();
             let found = fit_element(&element, &springs, &x, MODULI, &fit).unwrap();
             let size = formula.iter().fold(0.0f64, |size, k| size.max(k.abs()));
             let error = formula.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -180,7 +180,7 @@ fn fits_are_those_of_the_condensed_matrix() {
             );
             let fits: CellFits = fit_cells(&element, &springs, &x, &cell, MODULI, &fit, &mut |_| {}).unwrap();
             let errors = element_errors(&element, &x, &cell, MODULI, &fits).unwrap();
-            let left = &r - plain::network(&plain::gradients(&element, &springs, &x).unwrap(), &found);
+            let left = &r - reference_fit::network(&reference_fit::gradients(&element, &springs, &x).unwrap(), &found);
             assert!((errors.frobenius[0] - left.norm() / r.norm()).abs() < 1e-12, "{name} {weight:?}");
         }
     }

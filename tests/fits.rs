@@ -7,7 +7,8 @@ use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, Moduli};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{
-    Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element, plain,
+    Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element,
+    reference_fit,
 };
 use springfit_mesh::mesh::BoxMesh;
 use springfit_studies::study::FitEntry;
@@ -602,16 +603,16 @@ fn every_route_comes_to_the_constants_of_the_formula() {
     let mut worst = 0.0f64;
     for case in cases(3) {
         let hooke = Hooke::Isotropic(case.moduli);
-        let r = plain::stiffness(&case.element, &case.x, &hooke).unwrap();
+        let r = reference_fit::stiffness(&case.element, &case.x, &hooke).unwrap();
         assert!((&r - &case.r).norm() < 1e-13 * case.r.norm(), "{}", case.name);
         let g = DMatrix::from_columns(&case.g);
         for weight in weights() {
-            let seen = plain::seen(weight, &r, &case.x, case.springs.dimension());
+            let seen = reference_fit::seen(weight, &r, &case.x, case.springs.dimension());
             assert!((seen(&r) - case.weighted(weight, &r)).norm() < 1e-9 * seen(&r).norm(), "{} {weight:?}", case.name);
-            let formula = plain::constants(&case.element, &case.springs, &case.x, &hooke, weight).unwrap();
+            let formula = reference_fit::constants(&case.element, &case.springs, &case.x, &hooke, weight).unwrap();
             let k = case.fit(Fit::new(Objective::Frobenius(weight)));
             let change: Vec<f64> = k.iter().zip(&formula).map(|(a, b)| a - b).collect();
-            let difference = seen(&plain::network(&g, &change)).norm() / seen(&r).norm();
+            let difference = seen(&reference_fit::network(&g, &change)).norm() / seen(&r).norm();
             worst = worst.max(difference);
             assert!(difference < 1e-9, "{} {weight:?}: {difference}", case.name);
         }

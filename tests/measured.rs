@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use springfit_element::element::Element;
 use springfit_element::material::{Hooke, Material, State};
 use springfit_element::springs::Springs;
-use springfit_fit::fit::{Fit, GivenStiffness, Objective, Weight, condense, fit_element, plain};
+use springfit_fit::fit::{Fit, GivenStiffness, Objective, Weight, condense, fit_element, reference_fit};
 use springfit_report::report::{SpecimenOptions, read_matrix, read_specimen};
 use springfit_studies::study::{MeasureOptions, MeasuredNetwork, NamedLattice, measure};
 use std::fs;
@@ -526,7 +526,7 @@ fn matrices_of_elements_have_the_constants_of_the_elements() {
             _ => State::Solid,
         };
         let material = Material::new(1e4, 0.3, state).unwrap();
-        let Ok(r) = plain::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())) else { continue };
+        let Ok(r) = reference_fit::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())) else { continue };
         if springs.pairs().len() != springs.len() {
             continue;
         }
@@ -565,7 +565,7 @@ fn a_matrix_is_proved_before_it_is_fitted() {
     let element = loaded("hex8");
     let x = shifted(&element);
     let material = Material::new(1e4, 0.3, State::Solid).unwrap();
-    let r = plain::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())).unwrap();
+    let r = reference_fit::stiffness(&element, &x, &Hooke::Isotropic(material.moduli())).unwrap();
     let key = |r: DMatrix<f64>, x: Vec<f64>| GivenStiffness::new(r, x, 3).unwrap_err().key().unwrap().to_string();
     let mut skew = r.clone();
     skew[(0, 5)] += 100.0;

@@ -6,4 +6,4 @@ mod extremes;
 mod groups;
 mod jacobi;
 mod normal;
-mod norms;
+mod regression;

@@ -5,7 +5,7 @@ use springfit_bodies::solve::Standing;
 use springfit_element::material::Moduli;
 use springfit_element::springs::Springs;
 use springfit_fit::fit::published::{Method, Ratio};
-use springfit_fit::fit::{fit_element, plain};
+use springfit_fit::fit::{fit_element, reference_fit};
 use springfit_studies::study::{FitEntry, FitOutcome, NamedFit, Output};
 
 const SCENES: [&str; 3] = ["tissue_tri", "square_quad", "cube_tet"];
@@ -96,13 +96,13 @@ pub fn sparsity() -> String {
     // All cells of the body are this cube, whose springs are those of any other size.
     let (x, moduli) = (&element.positions, Moduli { lambda: 1.5, mu: 1.0 });
     let springs = Springs::select(element, None).unwrap();
-    let r = plain::stiffness(element, x, &moduli.into()).unwrap();
-    let g = plain::gradients(element, &springs, x).unwrap();
+    let r = reference_fit::stiffness(element, x, &moduli.into()).unwrap();
+    let g = reference_fit::gradients(element, &springs, x).unwrap();
     let row = |(i, fit): (usize, &FitOutcome)| {
         let name = shares.get(i).map_or("all springs, `frobenius`".into(), |share| format!("`sparsity = {share}`"));
         let k = fit_element(element, &springs, x, moduli, &fit.fit.recipe.stiffness().unwrap()).unwrap();
         let kept = k.iter().filter(|k| **k != 0.0).count();
-        let error = (&r - plain::network(&g, &k)).norm() / r.norm();
+        let error = (&r - reference_fit::network(&g, &k)).norm() / r.norm();
         vec![
             name,
             kept.to_string(),

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::constrained::{MANY, solve_nonnegative, solve_wide};
+use super::constrained::{MANY, solve_nonnegative, solve_vectorized};
 use super::delicate::DelicateCells;
 use super::least_squares::Closed;
 use super::method::{Certificate, LEAST_MEASURED_PIVOT, Method, Verdict};
@@ -11,8 +11,8 @@ use super::packed_hooke::PackedHooke;
 use super::packing::{Packing, fill};
 use super::rows::Rows;
 use super::settings::Fit;
+use super::vectorized_normal::VectorizedNormal;
 use super::weight::ClosedWeight;
-use super::wide::Wide;
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, PackedWork, distance, widest};
@@ -188,13 +188,13 @@ impl<'a, T: Packed> Workspace<'a, T> {
             return true;
         };
         let has_many = equations.size() >= MANY;
-        let mut wides = if has_many { Wide::of_lanes(equations, &lanes) } else { Vec::new() };
+        let mut vectorized = if has_many { VectorizedNormal::of_lanes(equations, &lanes) } else { Vec::new() };
         for (i, &lane) in lanes.iter().enumerate() {
             let constants = &mut constants[lane * m..][..m];
-            let (k, rank) = match wides.get_mut(i) {
+            let (k, rank) = match vectorized.get_mut(i) {
                 // The constants without bounds tell where to begin, unless springs of a group share an unknown: those
                 // are in another order.
-                Some(wide) => solve_wide(wide, (wide.size() == m).then_some(&*constants)),
+                Some(equations) => solve_vectorized(equations, (equations.size() == m).then_some(&*constants)),
                 None => {
                     let all = |values: &[T]| values.iter().map(|value| value.as_slice()[lane]).collect();
                     solve_nonnegative(&Normal::new(all(&equations.gram), all(&equations.rhs)))

@@ -5,7 +5,7 @@
 
 use super::normal::{Normal, OPTIMALITY, Rank, slope_tolerance};
 use super::singular::least_nonnegative;
-use super::wide::Wide;
+use super::vectorized_normal::VectorizedNormal;
 use crate::scalar::{Real, Scalar};
 
 /// Solves by block principal pivoting (Júdice and Pires 1994; Kim and Park 2011): assume which constants are positive,
@@ -68,7 +68,7 @@ pub const MANY: usize = 24;
 
 fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
     if normal.size() >= MANY {
-        return solve_wide(&mut Wide::of_lanes(normal, &[0])[0], None);
+        return solve_vectorized(&mut VectorizedNormal::of_lanes(normal, &[0])[0], None);
     }
     let (scaled, scale) = normal.scaled();
     let (mut k, rank) = decided(pivot_to(&scaled, f64::given()), || scaled.clone());
@@ -77,20 +77,20 @@ fn solve_scalable(normal: &Normal) -> (Vec<f64>, Rank) {
 }
 
 /// The optimum of many unknowns, from their values without bounds if these are known.
-pub fn solve_wide(wide: &mut Wide, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
-    let positive = free.map_or(vec![true; wide.size()], |free| free.iter().map(|k| *k >= 0.0).collect());
-    let tolerance = slope_tolerance::<f64>(wide.largest());
+pub fn solve_vectorized(equations: &mut VectorizedNormal, free: Option<&[f64]>) -> (Vec<f64>, Rank) {
+    let positive = free.map_or(vec![true; equations.size()], |free| free.iter().map(|k| *k >= 0.0).collect());
+    let tolerance = slope_tolerance::<f64>(equations.largest());
     let ended = exchange(positive, |positive| {
         let set: Vec<usize> = (0..positive.len()).filter(|&s| positive[s]).collect();
-        if !wide.solve(&set, f64::given()) {
+        if !equations.solve(&set, f64::given()) {
             return None;
         }
-        let (k, slopes) = (wide.constants(), wide.slopes());
+        let (k, slopes) = (equations.constants(), equations.slopes());
         let is_wrong = |s: &usize| if positive[*s] { k[*s] < 0.0 } else { slopes[*s] < -tolerance };
         Some((0..k.len()).filter(is_wrong).collect())
     });
-    let (k, rank) = decided(ended.then(|| wide.constants().to_vec()), || wide.scaled());
-    (wide.unscaled(&k), rank)
+    let (k, rank) = decided(ended.then(|| equations.constants().to_vec()), || equations.scaled());
+    (equations.unscaled(&k), rank)
 }
 
 /// What pivoting has found, or the optimum of least norm of equations that are singular or whose exchanges did not end.

@@ -17,7 +17,7 @@
 use super::bounded::{Factors, bound};
 use super::edge_cell::{EdgeCell, Gradients, scales};
 use super::linear_motions::{LinearMotions, from_mean};
-use super::nodal::{Nodal, is_shorter};
+use super::node_equations::{NodeEquations, is_shorter};
 use super::normal::Normal;
 use super::settings::Fit;
 use super::sizes::of_size;
@@ -45,7 +45,7 @@ pub struct Closed<T> {
     weight: ClosedWeight,
     equations: Equations,
     nonnegative: bool,
-    nodal: Nodal<T>,
+    node_equations: NodeEquations<T>,
     normal: Normal<T>,
     tied: Normal<T>,
     /// The equations before elimination, if constants are bounded.
@@ -83,7 +83,7 @@ impl<T: Real> Closed<T> {
             weight,
             equations,
             nonnegative: fit.nonnegative,
-            nodal: Nodal::default(),
+            node_equations: NodeEquations::default(),
             normal: Normal::default(),
             tied: Normal::default(),
             kept: Normal::default(),
@@ -105,7 +105,8 @@ impl<T: Real> Closed<T> {
         T: Real,
     {
         if self.equations == Equations::PerNode {
-            return geometry.update(table, x) && self.nodal.solve(springs, x, geometry, hooke, &mut self.normal);
+            return geometry.update(table, x)
+                && self.node_equations.solve(springs, x, geometry, hooke, &mut self.normal);
         }
         let regular = of_size!(T, x[0], (springs.dimension(), springs.nodes()), |D, n| {
             self.solve_in::<D>(n, table, springs, x, geometry, hooke)
@@ -173,7 +174,7 @@ impl<T: Real> Closed<T> {
                         *w = w.clone().scaled(&0.5);
                     }
                 }
-                Equations::PerNode => self.nodal.solve_again(springs, w),
+                Equations::PerNode => self.node_equations.solve_again(springs, w),
                 Equations::PerSpring => self.normal.substitute(w),
                 Equations::PerGroup => {
                     let mut sums = vec![any.zero(); springs.names().len()];
@@ -237,7 +238,7 @@ impl<T: Packed> Closed<T> {
         match self.equations {
             Equations::Decoupled => return false,
             Equations::PerNode if springs.len() > MOST_FACTORED_WITH_NODES => {
-                return self.nodal.bound(springs, &mut self.normal.rhs, lanes);
+                return self.node_equations.bound(springs, &mut self.normal.rhs, lanes);
             }
             // The equations of the nodes have no rows of single springs, which bounds need.
             Equations::PerNode => normal_equations(self.weight, springs, x, geometry, hooke, &mut self.kept),

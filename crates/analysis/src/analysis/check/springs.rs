@@ -6,7 +6,7 @@ use super::shape::{ASKED, deformations, geometry, rank, shapes};
 use crate::analysis::moduli::Lattice;
 use crate::element::Element;
 use crate::error::Result;
-use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_element, fit_exact, plain};
+use crate::fit::{ExactFit, Fit, Objective, Weight, element_errors, fit_element, fit_exact, reference_fit};
 use crate::material::{Hooke, Material};
 use crate::springs::Springs;
 use nalgebra::DMatrix;
@@ -135,17 +135,17 @@ fn difference_from_formula(element: &Element, springs: &Springs) -> Result<Optio
     let count = if springs.len() > MANY { 1 } else { usize::MAX };
     let mut worst = 0.0f64;
     for x in shapes(element).into_iter().take(count) {
-        let r = plain::stiffness(element, &x, &hooke)?;
+        let r = reference_fit::stiffness(element, &x, &hooke)?;
         if rank(&r) < deformations(element) {
             return Ok(None);
         }
-        let g = plain::gradients(element, springs, &x)?;
+        let g = reference_fit::gradients(element, springs, &x)?;
         for weight in Weight::all() {
             let fast = fit_element(element, springs, &x, moduli, &Fit::new(Objective::Frobenius(weight)))?;
-            let formula = plain::constants(element, springs, &x, &hooke, weight)?;
+            let formula = reference_fit::constants(element, springs, &x, &hooke, weight)?;
             let change: Vec<f64> = fast.iter().zip(&formula).map(|(a, b)| a - b).collect();
-            let seen = plain::seen(weight, &r, &x, element.dimension());
-            let difference = seen(&plain::network(&g, &change)).norm() / seen(&r).norm();
+            let seen = reference_fit::seen(weight, &r, &x, element.dimension());
+            let difference = seen(&reference_fit::network(&g, &change)).norm() / seen(&r).norm();
             // What is not a number is no agreement.
             if !(difference <= worst) {
                 worst = difference;

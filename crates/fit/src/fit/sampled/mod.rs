@@ -38,7 +38,7 @@ use super::congruence::Congruence;
 use super::constrained::solve_nonnegative;
 use super::input::check_cells;
 use super::normal::Rank;
-use super::norms::{Norm, solve_norm};
+use super::regression::{Norm, solve_norm};
 use super::visit::each_cell;
 use crate::bound::{self, check_count};
 use crate::element::Element;

@@ -2,7 +2,7 @@
 
 use super::objective::ResidualObjective;
 use super::sampling::Sampling;
-use crate::fit::norms::Norm;
+use crate::fit::regression::Norm;
 use crate::springs::Force;
 
 /// The weight of each shape.

@@ -17,9 +17,9 @@ use crate::scalar::{Packed, Scalar};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
-/// Working memory for the equations of the nodes.
+/// Working memory for the equations of the nodes, of which there are d(d+1)/2 for each node.
 #[derive(Debug, Clone)]
-pub struct Nodal<T> {
+pub struct NodeEquations<T> {
     /// `S`, with `Vᵀ b` as its right-hand side.
     small: Normal<T>,
     /// `V`, `[springs × d(d+1)/2]`: the entries, which are equal at both ends.
@@ -31,9 +31,9 @@ pub struct Nodal<T> {
     image: Vec<T>,
 }
 
-impl<T> Default for Nodal<T> {
-    fn default() -> Nodal<T> {
-        Nodal { small: Normal::default(), entries: vec![], energies: vec![], border: vec![], image: vec![] }
+impl<T> Default for NodeEquations<T> {
+    fn default() -> NodeEquations<T> {
+        NodeEquations { small: Normal::default(), entries: vec![], energies: vec![], border: vec![], image: vec![] }
     }
 }
 
@@ -47,7 +47,7 @@ pub fn is_shorter(springs: &Springs) -> bool {
     !springs.need_matrix() && springs.parallel().is_empty() && 5 * small < 4 * springs.pairs().len()
 }
 
-impl<T: Scalar> Nodal<T> {
+impl<T: Scalar> NodeEquations<T> {
     /// Writes the constants of the element with nodes at `x`, `[nodes × dimension]`, into `normal.rhs`; false if a pivot
     /// vanishes.
     pub fn solve(
@@ -139,7 +139,7 @@ impl<T: Scalar> Nodal<T> {
         below
     }
 
-    /// `w ← M⁻¹ w` for another right-hand side, after [`Nodal::solve`].
+    /// `w ← M⁻¹ w` for another right-hand side, after [`NodeEquations::solve`].
     #[inline(always)]
     pub fn solve_again(&mut self, springs: &Springs, w: &mut [T]) {
         match springs.dimension() {
@@ -251,8 +251,9 @@ pub struct NodalProduct<'a, T> {
     sums: Vec<T>,
 }
 
-impl<T: Packed> Nodal<T> {
-    /// Replaces the constants of these lanes, after [`Nodal::solve`], by the optimum under `k ≥ 0`; false if the iterations for it do not end.
+impl<T: Packed> NodeEquations<T> {
+    /// Replaces the constants of these lanes, after [`NodeEquations::solve`], by the optimum under `k ≥ 0`; false if the iterations for it do
+    /// not end.
     pub fn bound(&self, springs: &Springs, k: &mut [T], lanes: &[usize]) -> bool {
         let zero = k[0].zero();
         let (mut scale, mut border) = (vec![zero.one(); springs.len()], Vec::new());

@@ -1,6 +1,6 @@
-//! `min ‖b − A x‖`, with or without `x ≥ 0`, for many equations and few unknowns, in norms other than the Euclidean
-//! one: the sum of the absolute residuals, the largest of them, or Huber's function. These are linear and quadratic
-//! programmes, which Clarabel's interior-point method solves.
+//! Linear regression in norms other than the Euclidean one: `min ‖b − A x‖`, with or without `x ≥ 0`, for many
+//! equations and few unknowns, in the sum of the absolute residuals, the largest of them, or Huber's function. These are
+//! linear and quadratic programmes, which Clarabel's interior-point method solves.
 //!
 //! The 1-norm and Huber's function are solved in their dual form, with `y` bounded and orthogonal to the columns of
 //! `A`. It contains each entry of `A` once, whereas the primal form `± (b − A x) ≤ u` contains it twice and takes three

@@ -1,4 +1,5 @@
-//! The stiffness R of cells, and what their springs leave of it, `R − K`, with one cell per SIMD lane.
+//! The stiffness R of cells, and what their springs leave of it, `R − K`, with one cell per SIMD lane. Its norms are
+//! in `element_errors.rs`.
 //!
 //! `K = Σ_s (k_s g_s g_sᵀ + T_s ∇∇c_s)`, T the tension at rest. For a length spring with the unit vector n and the length ℓ the blocks of its
 //! two nodes are `± (k n nᵀ + T/ℓ (I − n nᵀ))`. The content of a point, of volume v, has `∂²c/∂x_ak ∂x_bl = v (g_ak g_bl − g_al g_bk)`, g the gradients of
@@ -15,7 +16,7 @@ use crate::stiffness::{Fault, Geometry, add_anisotropic, add_isotropic};
 use std::sync::Arc;
 
 /// Memory for as many cells as there are lanes.
-pub struct Differences<'a, T> {
+pub struct StiffnessDifferences<'a, T> {
     element: &'a Element,
     hooke: PackedHooke<'a, T>,
     fits: &'a CellFits,
@@ -34,21 +35,21 @@ pub struct Differences<'a, T> {
     single: (Geometry, Vec<f64>),
 }
 
-impl<'a, T: Packed> Differences<'a, T> {
+impl<'a, T: Packed> StiffnessDifferences<'a, T> {
     pub fn new(
         zero: &T,
         element: &'a Element,
         points: &'a [f64],
         hooke: BlockValues<'a, Hooke>,
         fits: &'a CellFits,
-    ) -> Differences<'a, T> {
+    ) -> StiffnessDifferences<'a, T> {
         let size = element.nodes() * element.dimension();
         let measures = match fits.force {
             Force::Linear => Vec::new(),
             _ => fits.springs.measures(&Arc::new(element.clone())),
         };
         let single = fits.springs.functions().len() + fits.springs.areas().len();
-        Differences {
+        StiffnessDifferences {
             element,
             hooke: PackedHooke::new(zero, element.dimension(), hooke),
             fits,
@@ -151,7 +152,7 @@ impl<'a, T: Packed> Differences<'a, T> {
         constants.clone() * rest - &slack
     }
 
-    /// [`Differences::tensions`] for any force.
+    /// [`StiffnessDifferences::tensions`] for any force.
     fn tensions_singly(&self, first: usize, count: usize, s: usize, rest: &T) -> T {
         packed(&rest.zero(), count, |lane| self.tension(first + lane, s, rest.as_slice()[lane]))
     }

@@ -1,4 +1,4 @@
-//! The numbers of a material in which a closed form is linear.
+//! The numbers of a material in which a closed form is linear, and the stiffness of each as rational functions.
 //!
 //! Theory: page *Least squares* of the book.
 

@@ -7,7 +7,7 @@ use super::input::{check_finite, check_length};
 use super::method::{Certificate, Method};
 use super::normal::{Normal, Rank};
 use super::objective::Objective;
-use super::plain;
+use super::reference_fit;
 use super::settings::Fit;
 use super::weight::Weight;
 use crate::error::{Error, ErrorKind, Result};
@@ -243,7 +243,7 @@ impl GivenStiffness {
             let expected = "a matrix whose objective has an optimum";
             return Err(Error::expected("objective", expected, fit.objective.name()).of_kind(ErrorKind::Infeasible));
         }
-        let rest = &self.matrix - plain::network(&self.gradients(pairs), &constants);
+        let rest = &self.matrix - reference_fit::network(&self.gradients(pairs), &constants);
         let largest = |a: &DMatrix<f64>| springfit_numerics::dense::eigenvalues(a.clone()).amax();
         Ok(GivenFit {
             frobenius: rest.norm() / self.matrix.norm(),

@@ -1,9 +1,9 @@
-//! The difference between the stiffness of the springs of an element and that of the finite element.
+//! The errors of the networks of elements: norms of the difference between the stiffness of the springs and that of the finite element.
 
 use super::cells::{CHUNK, CellFits, ROUND};
-use super::difference::Differences;
 use super::extremes::Extremes;
 use super::input::{check_fit, check_length};
+use super::stiffness_difference::StiffnessDifferences;
 use super::visit::cell_fault;
 use crate::element::Element;
 use crate::error::Result;
@@ -156,7 +156,7 @@ impl PackedWork for ErrorBatch<'_> {
     fn run<T: Packed>(self, zero: T) -> Self::Output {
         let n = self.element.nodes();
         let size = n * self.element.dimension();
-        let mut both = Differences::new(&zero, self.element, self.points, self.moduli, self.fits);
+        let mut both = StiffnessDifferences::new(&zero, self.element, self.points, self.moduli, self.fits);
         let mut extremes = Extremes::like(&zero, size);
         let mut errors = ElementErrors::default();
         for (i, nodes) in self.connectivity.chunks(T::COUNT * n).enumerate() {

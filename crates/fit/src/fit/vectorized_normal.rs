@@ -1,4 +1,5 @@
-//! Equations of many springs of one element, whose sums are taken eight terms at a time.
+//! The normal equations of one element with many springs, whose sums are taken eight terms at a time. Those of one element per lane are in
+//! `normal.rs`.
 
 use super::normal::{Normal, RANK};
 use crate::scalar::{Packed, dispatched};
@@ -12,7 +13,7 @@ const ROWS: usize = 4;
 
 /// `M k = b` of one element in the scaling in which M has a unit diagonal, with the lower triangle of M in rows of whole groups, the last one
 /// filled with zeros.
-pub struct Wide {
+pub struct VectorizedNormal {
     /// `[size × groups]`.
     gram: Vec<Group>,
     rhs: Vec<f64>,
@@ -23,9 +24,9 @@ pub struct Wide {
     constants: Vec<Group>,
 }
 
-impl Wide {
+impl VectorizedNormal {
     /// The equations in these lanes, all of which have diagonal entries above zero.
-    pub fn of_lanes<T: Packed>(normal: &Normal<T>, lanes: &[usize]) -> Vec<Wide> {
+    pub fn of_lanes<T: Packed>(normal: &Normal<T>, lanes: &[usize]) -> Vec<VectorizedNormal> {
         let size = normal.size();
         let groups = size.div_ceil(WIDTH);
         let of_lane = |&lane: &usize| {
@@ -33,15 +34,15 @@ impl Wide {
             let scale: Vec<f64> = (0..size).map(|s| 1.0 / own(&normal.gram[s * size + s]).sqrt()).collect();
             let rhs = normal.rhs.iter().zip(&scale).map(|(b, scale)| own(b) * scale).collect();
             let (gram, constants) = (vec![[0.0; WIDTH]; size * groups], vec![[0.0; WIDTH]; groups]);
-            Wide { gram, rhs, scale, factor: Vec::new(), constants }
+            VectorizedNormal { gram, rhs, scale, factor: Vec::new(), constants }
         };
-        let mut all: Vec<Wide> = lanes.iter().map(of_lane).collect();
+        let mut all: Vec<VectorizedNormal> = lanes.iter().map(of_lane).collect();
         // The lanes of an entry are next to each other: it is read once for all of them.
         for s in 0..size {
             for (t, entry) in normal.gram[s * size..][..=s].iter().enumerate() {
-                for (wide, &lane) in all.iter_mut().zip(lanes) {
-                    let scaled = entry.as_slice()[lane] * wide.scale[s] * wide.scale[t];
-                    wide.gram[s * groups + t / WIDTH][t % WIDTH] = scaled;
+                for (own, &lane) in all.iter_mut().zip(lanes) {
+                    let scaled = entry.as_slice()[lane] * own.scale[s] * own.scale[t];
+                    own.gram[s * groups + t / WIDTH][t % WIDTH] = scaled;
                 }
             }
         }

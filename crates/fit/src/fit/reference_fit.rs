@@ -122,7 +122,7 @@ pub fn seen(
 ///
 /// ```
 /// use springfit::element::{Element, SHIPPED};
-/// use springfit::fit::{Fit, Objective, Weight, fit_element, plain};
+/// use springfit::fit::{Fit, Objective, Weight, fit_element, reference_fit};
 /// use springfit::material::{Hooke, Material};
 /// use springfit::springs::Springs;
 ///
@@ -131,7 +131,7 @@ pub fn seen(
 ///     let springs = Springs::select(&element, None)?;
 ///     let x: Vec<f64> = element.positions.iter().map(|x| 1e-3 * x).collect();
 ///     let moduli = Material::for_body(element.dimension(), 1e4, 0.3, None, None)?.moduli();
-///     let formula = plain::constants(&element, &springs, &x, &Hooke::Isotropic(moduli), Weight::None)?;
+///     let formula = reference_fit::constants(&element, &springs, &x, &Hooke::Isotropic(moduli), Weight::None)?;
 ///     let fast = fit_element(&element, &springs, &x, moduli, &Fit::new(Objective::Frobenius(Weight::None)))?;
 ///     let largest = fast.iter().fold(0.0, |largest: f64, k| largest.max(k.abs()));
 ///     assert!(formula.iter().zip(&fast).all(|(a, b)| (a - b).abs() < 1e-10 * largest));

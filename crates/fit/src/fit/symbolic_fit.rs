@@ -1,11 +1,12 @@
-//! Least-squares fits as formulas: the same kernels, run on exact rational functions of the side lengths.
+//! Least-squares fits as formulas to be read: the kernels of `least_squares.rs`, which fits numbers, run on exact rational functions of the
+//! side lengths.
 //!
 //! Theory: page *Least squares* of the book.
 
 use super::least_squares::normal_equations;
-use super::modulus::{Modulus, sum};
 use super::normal::Normal;
 use super::rows::Rows;
+use super::symbolic_modulus::{Modulus, sum};
 use super::weight::{ClosedWeight, Weight};
 use crate::element::{Element, SpringKind, Symmetry, permutations};
 use crate::error::{Error, ErrorKind, Result};
