@@ -1,6 +1,6 @@
 //! The lines of an input file, keyword by keyword.
 
-use super::generation::Generation;
+use super::generation_geometry::Generation;
 use super::keyword::Keyword;
 use super::model::{Instance, Model, Surface};
 use super::sections::{Datum, Profile, Sections};

@@ -2,10 +2,10 @@
 
 mod data;
 mod deck;
-mod generation;
+mod generation_geometry;
+mod generation_keywords;
 mod include;
 mod keyword;
-mod made;
 mod model;
 mod placement;
 mod sections;

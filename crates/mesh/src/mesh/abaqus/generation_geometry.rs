@@ -1,4 +1,5 @@
-//! What keywords such as `*NGEN` make, and where: nodes on arcs, and images of others.
+//! What keywords such as `*NGEN` make, and its geometry: points on arcs, and images of points. The keywords are read in
+//! `generation_keywords.rs`.
 
 use super::placement::Turn;
 use crate::mesh::space::minus;

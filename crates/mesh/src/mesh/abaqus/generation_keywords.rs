@@ -1,7 +1,7 @@
-//! Nodes and elements that keywords make of others: `*NGEN`, `*NFILL`, `*NCOPY`, `*ELGEN` and `*ELCOPY`.
+//! The keywords that make nodes and elements of others: `*NGEN`, `*NFILL`, `*NCOPY`, `*ELGEN` and `*ELCOPY`.
 
 use super::deck::{Block, Deck};
-use super::generation::{Arc, Generation, Image};
+use super::generation_geometry::{Arc, Generation, Image};
 use super::keyword::{Keyword, fields};
 use super::types;
 use crate::error::{ErrorKind, Result};
