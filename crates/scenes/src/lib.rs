@@ -43,8 +43,8 @@ use springfit_identify::{calibration, positive, whole};
 use springfit_mesh::mesh;
 
 pub use body::{
-    Case, FineBody, FinerAnswer, Gauged, LargeBody, LinearBody, applied_cases, judge_by_truth, judge_sheet, load_cases,
-    load_notes, quadratic_answers, seconds_of_body, seconds_of_network,
+    Case, FinerAnswer, FinerBody, Gauged, LargeBody, LinearBody, applied_cases, judge_by_quadratic_elements,
+    judge_sheet, load_cases, load_notes, quadratic_answers, seconds_of_body, seconds_of_network,
 };
 pub use body_material::{BodyConstants, Stated, assumed};
 pub use checkpoint::Controls;

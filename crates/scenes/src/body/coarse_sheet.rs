@@ -1,7 +1,7 @@
 //! Whether the triangles of a sheet that bends are small enough for its loads.
 
 use super::case::Case;
-use super::truth::{Allowance, Level};
+use super::quadratic_reference::{Allowance, Level};
 use crate::analysis::metrics::displacement_error;
 use crate::mesh::Mesh;
 use crate::outcome::Standard;

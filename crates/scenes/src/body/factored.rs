@@ -1,7 +1,7 @@
 //! The loads of a scene at small deformation by sparse factors: one for each model and support.
 
-use super::answer::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use super::case::Case;
+use super::linear_answers::{BodyAnswer, NetworkAnswer, check_residual, not_definite, shared};
 use crate::analysis::metrics::{SOLVED, square};
 use crate::clock::Clock;
 use crate::error::Result;

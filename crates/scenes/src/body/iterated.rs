@@ -1,7 +1,7 @@
 //! The loads of a scene at small deformation where the equations are too large for a factor: conjugate gradients with multigrid.
 
-use super::answer::{BodyAnswer, NetworkAnswer, check_residual, largest_residual, not_definite, shared};
 use super::case::Case;
+use super::linear_answers::{BodyAnswer, NetworkAnswer, check_residual, largest_residual, not_definite, shared};
 use crate::analysis::metrics::product;
 use crate::clock::Clock;
 use crate::error::{Error, Result};

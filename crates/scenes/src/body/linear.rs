@@ -1,9 +1,9 @@
 //! The loads of a scene at small deformation: one linear system per model and support, solved by factors or by iterations.
 
-use super::answer::{BodyAnswer, NetworkAnswer, shared};
 use super::case::Case;
 use super::factored::Factored;
 use super::iterated::Iterated;
+use super::linear_answers::{BodyAnswer, NetworkAnswer, shared};
 use crate::engine::{Setting, Truncated, TruncatedModel};
 use crate::error::{ErrorKind, Result};
 use crate::material::{CellMap, Hooke};

@@ -6,7 +6,7 @@ use super::moduli::FoundModuli;
 use super::outcome::WholeOutcome;
 use super::recipe::{Start, WholeRecipe};
 use crate::body::Case;
-use crate::body::FineBody;
+use crate::body::FinerBody;
 use crate::checkpoint::{Controls, Identity, Saved};
 use crate::error::{Error, Result};
 use crate::fit::CellFits;
@@ -36,7 +36,7 @@ pub struct WholeBody<'a> {
     /// How linear equations are solved.
     pub solver: StaticSolver,
     /// The finer mesh of the body that gives the displacements, if there is one.
-    pub fine: Option<&'a FineBody>,
+    pub fine: Option<&'a FinerBody>,
     pub(super) controls: &'a Controls,
     /// The equations of the finite elements under the supports that were needed so far.
     known: KnownEquations,

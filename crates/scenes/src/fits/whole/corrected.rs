@@ -6,7 +6,7 @@ use super::body::WholeBody;
 use super::evidence::Evidence;
 use super::finer_steps::{FinerPoint, FinerSteps};
 use super::recipe::{Start, ValidationRecipe, WholeRecipe};
-use crate::body::FineBody;
+use crate::body::FinerBody;
 use crate::error::{Error, ErrorKind, Result};
 use crate::fit::VolumeSprings;
 use crate::progress::Progress;
@@ -76,7 +76,7 @@ impl WholeBody<'_> {
     pub(super) fn corrected(
         &self,
         recipe: &WholeRecipe,
-        fine: &FineBody,
+        fine: &FinerBody,
         (object, wanted): (&Object, &Wanted),
         found: WholeFit,
         progress: &mut Progress,

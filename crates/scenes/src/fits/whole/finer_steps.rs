@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Whole-object fits* of the book.
 
-use crate::body::FineBody;
+use crate::body::FinerBody;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::whole::{Determination, Object, Target};
@@ -21,7 +21,7 @@ const HALVINGS: usize = 6;
 
 /// The measured loads of a fit with a finer body.
 pub(super) struct FinerSteps<'a> {
-    pub fine: &'a FineBody,
+    pub fine: &'a FinerBody,
     pub object: &'a Object<'a>,
     /// The loads with the measured displacements.
     pub measured: &'a [Target],

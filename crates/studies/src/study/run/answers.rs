@@ -64,7 +64,7 @@ impl Answers {
                 let too_stiff = stiff_cells(posed, &bent.lacking);
                 // After the fits, which are to the finite elements of the mesh.
                 if let Some(too_stiff) = too_stiff.filter(|cells| *cells != TooStiff::Coarse) {
-                    posed.judge_by_truth(too_stiff, &bent.deformations, progress);
+                    posed.judge_by_quadratic_elements(too_stiff, &bent.deformations, progress);
                 }
                 posed.judge_sheet(body.displacements(), progress);
                 at_small(posed, (&body, masses.as_ref()), fits, progress)?;

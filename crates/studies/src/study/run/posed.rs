@@ -8,8 +8,8 @@ use crate::mesh::Mesh;
 use crate::model::{Deformation, Support};
 use crate::study::forecast::Forecast;
 use springfit_scenes::{
-    Case, Controls, Event, FitOutcome, Gauged, Progress, Scene, Standard, TimePlan, judge_by_truth, judge_sheet,
-    load_cases,
+    Case, Controls, Event, FitOutcome, Gauged, Progress, Scene, Standard, TimePlan, judge_by_quadratic_elements,
+    judge_sheet, load_cases,
 };
 
 /// The body of a scene with its material, its support and its loads.
@@ -65,7 +65,7 @@ impl<'a> Posed<'a> {
 
     /// Makes errors relative to quadratic elements where the cells of the mesh are too stiff in these deformations, one for each load, and the scene
     /// does not say what errors are relative to.
-    pub fn judge_by_truth(
+    pub fn judge_by_quadratic_elements(
         &mut self,
         too_stiff: TooStiff,
         deformations: &[Option<Deformation>],
@@ -73,7 +73,7 @@ impl<'a> Posed<'a> {
     ) {
         if self.scene.reference().is_none() {
             let cells = (too_stiff, deformations);
-            let notes = judge_by_truth(self.scene, &self.mesh, &mut self.cases, cells, progress);
+            let notes = judge_by_quadratic_elements(self.scene, &self.mesh, &mut self.cases, cells, progress);
             self.of_reference.extend(notes);
             self.tell_of_stiff_targets();
         }

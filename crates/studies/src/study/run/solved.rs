@@ -4,7 +4,7 @@ use super::posed::Posed;
 use crate::error::Result;
 use crate::model::{Body, Elastic, LinearElastic, check_body, finite_elements};
 use springfit_scenes::{
-    Controls, Costed, Event, FineBody, FitLimit, FitOutcome, LargeBody, LinearBody, ModelTimes, NamedFit, PointMasses,
+    Controls, Costed, Event, FinerBody, FitLimit, FitOutcome, LargeBody, LinearBody, ModelTimes, NamedFit, PointMasses,
     Progress, Reference, Statics, Task, WholeBody, fit_mesh, fit_without_errors, model_times, on_one_thread,
     point_masses, seconds_of_body, seconds_of_network, time_fits,
 };
@@ -15,7 +15,7 @@ const WATER: f64 = 1000.0;
 /// The finite elements that are solved before the fits.
 pub(super) struct Solved {
     /// The finer body that gives the displacements, if there is one.
-    fine: Option<FineBody>,
+    fine: Option<FinerBody>,
     /// The body at large deformation.
     pub large: Option<LargeBody>,
     /// The body at small deformation; `None` where no fit needs its displacements, which are then found after the fits.
@@ -30,7 +30,7 @@ impl Solved {
     /// Some motion has no stiffness, equations do not fit into memory, or a file of displacements is wrong.
     pub fn of(posed: &mut Posed, progress: &mut Progress) -> Result<Solved> {
         let scene = posed.scene;
-        let fine = FineBody::of(scene, &posed.mesh, progress)?;
+        let fine = FinerBody::of(scene, &posed.mesh, progress)?;
         if let Some(fine) = &fine {
             fine.measure(scene, &mut posed.cases, progress)?;
         }

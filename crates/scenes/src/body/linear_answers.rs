@@ -1,4 +1,4 @@
-//! What the solvers of a body at small deformation answer, whichever way they solve.
+//! The answers of the solvers at small deformation to loads, whichever way they solve, and the residual that they may leave.
 
 use super::case::Case;
 use crate::analysis::metrics::SOLVED;

@@ -1,7 +1,7 @@
-//! The loads of a scene on a finer mesh of its body.
+//! The loads of a scene at small deformation on a finer mesh of its body.
 
-use super::answer::{check_residual, largest_residual, not_definite};
 use super::case::Case;
+use super::linear_answers::{check_residual, largest_residual, not_definite};
 use crate::analysis::metrics::square;
 use crate::error::Result;
 use crate::material::{CellMap, Hooke, MaterialMap};

@@ -1,8 +1,9 @@
-//! What errors are relative to where the cells of a body lock: quadratic elements on these cells, never the elements that lock.
+//! The reference of errors where the cells of a body lock: quadratic elements on these cells, never the elements that lock. The reference
+//! that a scene states is read in `finer_mesh.rs`.
 
 use super::case::{Case, FinerSolution};
 use super::cases::applied_cases;
-use super::finer::{FinerAnswer, answers};
+use super::finer_linear::{FinerAnswer, answers};
 use crate::analysis::locking::{TooStiff, bends};
 use crate::analysis::metrics::displacement_error;
 use crate::cost::{COMPARISONS, REFINEMENTS, entries};
@@ -14,7 +15,7 @@ use crate::progress::Progress;
 use crate::scene::{LoadCase, LoadKind, Scene};
 use crate::solve::{KnownEquations, factor_cost};
 
-/// The truth takes at most this many times what the finite elements and the networks of the scene take, or a time that nobody notices.
+/// The reference takes at most this many times what the finite elements and the networks of the scene take, or a time that nobody notices.
 const DEAREST: f64 = 3.0;
 /// Operations that nobody notices: about two seconds on one core.
 const UNNOTICED: f64 = 1e10;
@@ -40,7 +41,7 @@ pub(super) struct Level {
 /// Gives each load the displacements of quadratic elements, where linear cells of the mesh lock or a body of one cell across bends under it: on
 /// these cells halved, with the difference from those on the cells themselves as an estimate of their error, as far as that takes at most three
 /// times what the finite elements and the networks take. They deform so, by load. Returns what must be known of it, one sentence each.
-pub fn judge_by_truth(
+pub fn judge_by_quadratic_elements(
     scene: &Scene,
     mesh: &Mesh,
     cases: &mut [Case],
@@ -87,7 +88,7 @@ pub fn judge_by_truth(
     };
     let first = level(1, &|| mesh.elevated(), Standard::Quadratic);
     let second = match &first {
-        // Without the first level the second one would be a truth of unknown error.
+        // Without the first level the second one would be a reference of unknown error.
         Ok(Some(_)) => level(2, &|| mesh.refined().and_then(|mesh| mesh.elevated()), Standard::QuadraticHalved),
         _ => Ok(None),
     };

@@ -1,7 +1,7 @@
-//! A finer mesh of a body at large deformation.
+//! The loads of a scene at large deformation on a finer mesh of its body.
 
 use super::case::Case;
-use super::finer::FinerAnswer;
+use super::finer_linear::FinerAnswer;
 use super::large::{check_embedded, reach, work};
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::EnergyMap;
@@ -12,18 +12,18 @@ use crate::solve::{Ending, Newton};
 use crate::whole::{MakeLoads, Stretched, StretchedLoads};
 
 /// The laws of a finer mesh, and how its loads are followed.
-pub(super) struct FineLaws {
+pub(super) struct FinerLaws {
     laws: EnergyMap,
     newton: Newton,
 }
 
-impl FineLaws {
+impl FinerLaws {
     /// # Errors
     /// The cells do not fill their space, or a law does not serve them.
-    pub fn of(mesh: &Mesh, laws: EnergyMap, newton: Newton) -> Result<FineLaws> {
+    pub fn of(mesh: &Mesh, laws: EnergyMap, newton: Newton) -> Result<FinerLaws> {
         check_embedded(mesh, &laws)?;
         check_body(mesh)?;
-        Ok(FineLaws { laws, newton })
+        Ok(FinerLaws { laws, newton })
     }
 
     /// The answers to all loads.
