@@ -1,6 +1,6 @@
 //! Laws at large deformation whose numbers and fibres vary from cell to cell.
 
-use crate::kit::{outcome, refusal};
+use crate::kit::{outcome, outcome_in, refusal};
 use crate::messages::reads;
 use springfit_studies::study::Outcome;
 use tempfile::TempDir;
@@ -41,7 +41,7 @@ fn exact_networks_follow_the_fields() {
 #[test]
 fn fields_are_regions_of_cells() {
     let folder = TempDir::new().unwrap();
-    let of = |material: &str| outcome(&scene(material, EXACT));
+    let of = |material: &str| outcome_in(folder.path(), &scene(material, EXACT)).unwrap();
     let field = of("[material]\nyoung = \"if_(z)\"\npoisson = 0.3\nlaw = \"neo-hookean\"\n"
         .replace("if_(z)", "1e3 + 1e3*step(z - 1)")
         .as_str());

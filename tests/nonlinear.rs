@@ -2,7 +2,7 @@
 
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::{assert_derivatives, support_at};
-use crate::shapes::{Random, distorted, elements, geometry};
+use crate::shapes::{Random, distorted, elements, geometry, loaded};
 use nalgebra::Matrix3;
 use springfit_bodies::model::{Action, Body, Elastic, LengthSpring, Network, Support, finite_elements, nodal_forces};
 use springfit_bodies::solve::{Ending, Newton, System};
@@ -14,7 +14,8 @@ use springfit_fit::fit::{CellFits, Fit, Higher, Objective, Weight, fit_cells};
 use springfit_mesh::mesh::{Mesh, Selection};
 
 fn cube(name: &str, cells: usize) -> Mesh {
-    grid(name, &[1.0; 3], &[cells; 3])
+    let d = loaded(name).dimension();
+    grid(name, &vec![1.0; d], &vec![cells; d])
 }
 
 fn of(response: ElementResponse) -> (f64, Vec<f64>) {

@@ -159,7 +159,7 @@ fn settled(bar: &Bar, setting: &Setting, force: &[f64]) -> Vec<f64> {
         }
         let mut largest = 0.0_f64;
         for dof in 0..size {
-            v[dof] = 0.9 * (u[dof] - before[dof]) / h;
+            v[dof] = 0.98 * (u[dof] - before[dof]) / h;
             largest = largest.max((u[dof] - before[dof]).abs());
         }
         if largest < 3e-15 * u.iter().fold(0.0, |a: f64, u| a.max(u.abs())) {
