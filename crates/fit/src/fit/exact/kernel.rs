@@ -83,7 +83,7 @@ impl PackedWork for ExactBatch<'_> {
                 (0..T::COUNT).for_each(|lane| coefficients.set_lane(lane, of_lane(lane)));
             }
             if packing.gather(nodes)
-                && self.kernel.solve(table, &coefficients, &packing.x, &mut geometry, constants, parameters, &mut own)
+                && self.kernel.solve(table, &coefficients, &packing.x, &mut geometry, [constants, parameters, &mut own])
             {
                 for lane in 0..count {
                     let at = cell + lane;
@@ -160,9 +160,7 @@ impl ExactKernel<'_> {
         coefficients: &Coefficients<T>,
         x: &[T],
         geometry: &mut Geometry<T>,
-        constants: &mut [T],
-        parameters: &mut [T],
-        own: &mut [T],
+        [constants, parameters, own]: [&mut [T]; 3],
     ) -> bool {
         of_size!(T, x[0], (table.dimension, table.nodes), |D, n| geometry.update_in::<D>(n, table, x) && {
             self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);

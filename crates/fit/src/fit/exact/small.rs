@@ -28,7 +28,7 @@ impl<'a> ExactKernel<'a> {
         [constants, rests, own]: [&mut [T]; 3],
     ) -> bool {
         let coefficients = Coefficients::plain(moduli.clone(), &x[0].zero());
-        let is_found = self.solve(table, &coefficients, x, geometry, constants, rests, own);
+        let is_found = self.solve(table, &coefficients, x, geometry, [constants, rests, own]);
         // The kernel writes k c₀.
         let pairs = self.springs.pairs().len();
         for (rest, constant) in rests.iter_mut().zip(&constants[pairs..]) {
