@@ -150,7 +150,7 @@ fn distorted(element: &Element, seed: &mut u64) -> Vec<f64> {
 /// `Σ_q v Bᵀ D B` with B written out, in the order xx, yy, zz, yz, xz, xy.
 fn stiffness(element: &Element, x: &[f64], d: &DMatrix<f64>) -> DMatrix<f64> {
     let (n, dim) = (element.nodes(), element.dimension());
-    let geometry = geometry(&element, x);
+    let geometry = geometry(element, x);
     let rows: &[(usize, usize)] = match dim {
         1 => &[(0, 0)],
         2 => &[(0, 0), (1, 1), (0, 1)],

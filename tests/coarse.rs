@@ -154,10 +154,7 @@ fn loads_that_a_fit_has_made_worse_are_listed() {
         let held_out = &outcome.fits[1].kind.whole().unwrap().held_out[0];
         let mesh = &outcome.mesh;
         let fine = mesh.refined().unwrap().refined().unwrap();
-        let held = |mesh: &Mesh| {
-            let support = support_at(mesh, &mesh.groups["xmin"].points);
-            support
-        };
+        let held = |mesh: &Mesh| support_at(mesh, &mesh.groups["xmin"].points);
         // The seed of the fit is 2010.
         let loads = varied_loads(&fine, &held(&fine), &1.0.into(), Pressure::Varying, (30, 2010 + 1000));
         let (down, up) = (Embedding::of(&fine.points, mesh).unwrap(), Embedding::of(&mesh.points, &fine).unwrap());

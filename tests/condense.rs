@@ -21,7 +21,7 @@ fn example(name: &str) -> Element {
 }
 
 fn stiffness(element: &Element, x: &[f64], hooke: impl Into<Hooke>) -> DMatrix<f64> {
-    let geometry = geometry(&element, x);
+    let geometry = geometry(element, x);
     geometry.stiffness(hooke)
 }
 

@@ -38,7 +38,7 @@ pub struct Case {
 }
 
 pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli) -> Case {
-    let geometry = geometry(&element, x);
+    let geometry = geometry(element, x);
     let mut rows = Vec::new();
     springs.gradients(x, &geometry, &mut rows);
     let g = rows.chunks_exact(x.len()).map(DVector::from_column_slice).collect();

@@ -37,11 +37,11 @@ fn mean(errors: &[f64]) -> f64 {
 fn sampled_fits_beat_those_at_rest_on_the_cubes() {
     for (name, at_rest) in [("cube_tet_large", "divergence"), ("cube_hex_large", "modal")] {
         let outcome = outcome_of(name);
-        let at_rest = ["frobenius", "offdiag", at_rest].map(|fit| errors(&outcome, fit));
+        let at_rest = ["frobenius", "offdiag", at_rest].map(|fit| errors(outcome, fit));
         let best = at_rest.iter().map(|e| mean(e)).fold(f64::INFINITY, f64::min);
         let best_of_load = |i: usize| at_rest.iter().map(|e| e[i]).fold(f64::INFINITY, f64::min);
-        let [rest, cubic, exact] = ["free rest lengths", "cubic law", "k c and volume"]
-            .map(|fit| errors(&outcome, &format!("sampled, {fit}")));
+        let [rest, cubic, exact] =
+            ["free rest lengths", "cubic law", "k c and volume"].map(|fit| errors(outcome, &format!("sampled, {fit}")));
         println!("{name}: at rest {best:.2}, sampled {:.2}, {:.2}, {:.4}", mean(&rest), mean(&cubic), mean(&exact));
         assert!(mean(&rest) < 0.75 * best, "{rest:?} {at_rest:?}");
         assert!((0..3).all(|i| cubic[i] < best_of_load(i) && exact[i] < best_of_load(i)), "{cubic:?} {exact:?}");

@@ -488,7 +488,7 @@ fn wrong_keys_are_told() {
 #[test]
 fn an_explicit_step_beyond_its_limit_is_refused_with_the_limit() {
     let text = edited(BLOCK, "integrator = \"newmark\"\nlinear = true", "integrator = \"symplectic-euler\"");
-    let folder = holding("scene.toml", &edited(&text, "step = 0.001", "step = 0.01"));
+    let folder = holding("scene.toml", edited(&text, "step = 0.001", "step = 0.01"));
     let seen = springfit(folder.path(), &["run", "scene.toml"]);
     let line = String::from_utf8(seen.stderr).unwrap();
     assert_eq!(seen.status.code(), Some(2));

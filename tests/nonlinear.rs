@@ -29,7 +29,7 @@ fn element_forces_and_tangents_are_those_of_differences() {
         let d = element.dimension();
         let mut random = Random(9);
         let rest = distorted(element, &mut random);
-        let geometry = geometry(&element, &rest);
+        let geometry = geometry(element, &rest);
         let planes = if d == 2 { vec![Some(Plane::Stress), Some(Plane::Strain)] } else { vec![None] };
         for plane in planes {
             let material = Material::for_body(d, 1.0, 0.3, plane, None).unwrap();
@@ -54,7 +54,7 @@ fn membranes_and_rods_in_space_have_the_forces_of_their_energy() {
         let d = element.dimension();
         let mut random = Random(4);
         let local = distorted(element, &mut random);
-        let geometry = geometry(&element, &local);
+        let geometry = geometry(element, &local);
         let material = Material::for_body(d, 1.0, 0.3, None, None).unwrap();
         for space in d + 1..=3 {
             for name in ["neo-hookean", "corotational", "mooney-rivlin", "st-venant-kirchhoff"] {
@@ -98,7 +98,7 @@ fn the_tangent_at_rest_is_the_linear_stiffness() {
     for element in elements().iter().filter(|e| e.nodes() <= 10) {
         let d = element.dimension();
         let x = distorted(element, &mut Random(2));
-        let geometry = geometry(&element, &x);
+        let geometry = geometry(element, &x);
         for material in crate::shapes::materials(d).into_iter().filter(|_| d > 1) {
             for name in ["neo-hookean", "corotational", "mooney-rivlin"] {
                 let energy = Energy::load(name, material).unwrap();

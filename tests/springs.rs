@@ -244,7 +244,7 @@ fn selective_integration_does_not_lock() {
         let x = element.positions.clone();
         let u: Vec<f64> = x.chunks_exact(3).flat_map(|x| [x[0] * x[1], -x[0] * x[0] / 2.0, 0.0]).collect();
         let moduli = Material::for_body(3, 1.0, nu, None, None).unwrap().moduli();
-        let geometry = geometry(&element, &x);
+        let geometry = geometry(element, &x);
         let u = nalgebra::DVector::from_vec(u);
         (geometry.stiffness(moduli) * &u).dot(&u)
     };
@@ -254,7 +254,7 @@ fn selective_integration_does_not_lock() {
     // A uniform strain has the same energy in both.
     let moduli = Material::for_body(3, 1.0, 0.49, None, None).unwrap().moduli();
     let energy = |element: &Element| {
-        let geometry = geometry(&element, &element.positions);
+        let geometry = geometry(element, &element.positions);
         let u = nalgebra::DVector::from_column_slice(&element.positions);
         (geometry.stiffness(moduli) * &u).dot(&u)
     };
