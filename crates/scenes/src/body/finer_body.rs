@@ -1,20 +1,16 @@
 //! The finer body of a scene: the answers of the finite elements of its finer mesh, which networks are compared with.
 
-use super::case::{Case, FinerSolution};
-use super::cases::applied_cases;
+use super::case::Case;
 use super::finer_large::FinerLaws;
-use super::finer_linear::{answers, equations};
+use super::finer_linear::equations;
 use super::linear_answers::{check_residual, largest_residual};
-use crate::analysis::metrics::resultant;
 use crate::error::{Error, Result};
 use crate::material::{CellMap, Hooke, MaterialMap, Moduli};
-use crate::mesh::{CellBlock, CellIndex, Embedding, Field, Mesh};
+use crate::mesh::{CellBlock, CellIndex, Embedding, Mesh};
 use crate::model::{Lumping, Moments, Support, lumped_masses};
 use crate::outcome::Standard;
 use crate::progress::{Event, Progress};
-use crate::scene::Scene;
 use crate::solve::{Equations, KnownEquations, StaticSolver};
-use crate::springs::norm;
 use crate::whole::{BodyRegions, MakeLoads, NodalLoad, StretchedLoads};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::{Arc, Mutex, OnceLock};
@@ -54,16 +50,14 @@ pub struct FinerBody {
 
 /// About so many solutions are needed for each frequency.
 const VIBRATING: usize = 8;
-/// Loads that whole-object fits ask for under a support, about: those that they fit, those that choose ρ and those that none has seen.
-const ASKED: usize = 75;
 /// The relative residual above which an answer is refined: far below the errors of coarse networks.
 const REFINED: f64 = 1e-9;
 
-/// Total forces that differ by less than this share of the forces are one force. Tractions on the sides of two meshes
-/// of one curved body differ by more than rounding.
-const SAME_FORCE: f64 = 1e-3;
-
 impl FinerBody {
+    /// Loads that whole-object fits ask for under a support, about: those that they fit, those that choose ρ and those that none has seen. By them
+    /// the way to solve equations is chosen.
+    pub const ASKED: usize = 75;
+
     /// The equations under a support, for about `loads` loads.
     fn equations(&self, support: &Support, loads: usize) -> Result<Equations> {
         let moduli = self.material.moduli();
@@ -78,39 +72,6 @@ impl FinerBody {
     /// The support of the `[[fix]]` entries on it.
     pub fn support(&self) -> &Support {
         &self.support
-    }
-
-    /// Replaces the forces of the cases by those that do the same work as on the finer mesh, and gives each the displacements
-    /// of the finer body at the points of the mesh of the scene, unless it has measured ones of its own.
-    ///
-    /// # Errors
-    /// The finer body has no solution under a load.
-    pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
-        let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
-        let body = (&self.mesh, &self.material, self.solver);
-        let found = match &self.large {
-            Some(large) => large.answers(&self.mesh, &own, progress),
-            None => answers(body, &own, &self.equations, "finer body", progress),
-        };
-        let found = found.map_err(|e| e.placed(|e| scene.at("reference", e)))?;
-        let dimension = self.mesh.dimension;
-        for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
-            if let Some(note) = other_force(case, own, dimension) {
-                progress(Event::Note(&note));
-            }
-            // Pressures that follow are those of the sides of the mesh.
-            let follows = self.large.is_some() && case.pressed.is_some();
-            if !case.is_prescribed && !follows {
-                case.forces = self.embedding.restrict(&own.forces);
-            }
-            if !case.is_measured {
-                let displacements = self.sampling.interpolate(&fine.displacement).into_iter().map(Some).collect();
-                case.measured = Some(Field { displacements });
-                case.finer = Some(FinerSolution { standard: self.standard, work: fine.work, uncertainty: None });
-            }
-        }
-        self.cases.get_or_init(|| own);
-        Ok(())
     }
 
     /// The loads on the points of the mesh of the scene that do the same work as `loads` on the finer mesh, which holds
@@ -133,7 +94,7 @@ impl FinerBody {
         let loads = loads();
         progress(Event::stage("finer body", 0, loads.len()));
         let forces: Vec<Vec<f64>> = loads.iter().map(|load| load.forces.clone()).collect();
-        let solved = self.equations(support, ASKED)?.solve_each(&forces, REFINED)?;
+        let solved = self.equations(support, FinerBody::ASKED)?.solve_each(&forces, REFINED)?;
         let largest = largest_residual(&self.solver);
         let checked =
             |(load, (u, residual)): (&NodalLoad, (_, _))| check_residual(residual, largest, &load.name).map(|()| u);
@@ -261,19 +222,4 @@ impl FinerBody {
         let density = self.material.densities();
         Moments::of_body(&self.mesh, density, self.material.thicknesses())
     }
-}
-
-/// The note that the total force of a load on the finer mesh is another one than on the mesh of the scene.
-fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
-    let [own, other] = [case, fine].map(|case| resultant(&case.forces, dimension));
-    let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
-    let acting = case.forces.iter().map(|f| f.abs()).sum::<f64>();
-    (norm(&apart) > SAME_FORCE * acting).then(|| {
-        format!(
-            "the total force of {} is {:.4e} N on the finer mesh and {:.4e} N on the mesh; networks get that of the finer mesh",
-            case.name,
-            norm(&other),
-            norm(&own)
-        )
-    })
 }

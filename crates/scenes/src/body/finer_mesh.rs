@@ -1,15 +1,19 @@
-//! The finer mesh of the body of a scene: read, and checked against the mesh of the scene. Its answers to loads are in `finer_body.rs`.
+//! The finer mesh of the body of a scene: read, checked against the mesh of the scene, and asked for its answers to the loads of the scene.
 
-use super::cases::held;
+use super::case::{Case, FinerSolution};
+use super::cases::{applied_cases, held};
 use super::finer_body::FinerBody;
 use super::finer_large::FinerLaws;
+use super::finer_linear::answers;
+use crate::analysis::metrics::resultant;
 use crate::error::{Error, Result};
 use crate::material::CellMap;
-use crate::mesh::{Embedding, Mesh};
+use crate::mesh::{Embedding, Field, Mesh};
 use crate::model::Moments;
 use crate::progress::{Event, Progress};
 use crate::scene::Scene;
 use crate::solve::KnownEquations;
+use crate::springs::norm;
 use std::sync::{Mutex, OnceLock};
 
 /// The ratio of the contents of two meshes from which on they are of different bodies. Coarse meshes of curved bodies lack a sixth.
@@ -19,6 +23,10 @@ const OTHER: f64 = 1.4;
 /// The relative difference of the contents from which on it is reported. Errors of displacements change by about that
 /// share.
 const ALIKE: f64 = 0.02;
+
+/// Total forces that differ by less than this share of the forces are one force. Tractions on the sides of two meshes
+/// of one curved body differ by more than rounding.
+const SAME_FORCE: f64 = 1e-3;
 
 impl FinerBody {
     /// The finer body of the scene, if it has one.
@@ -64,6 +72,39 @@ impl FinerBody {
             equations: KnownEquations::default(),
         }))
     }
+
+    /// Replaces the forces of the cases by those that do the same work as on the finer mesh, and gives each the displacements
+    /// of the finer body at the points of the mesh of the scene, unless it has measured ones of its own.
+    ///
+    /// # Errors
+    /// The finer body has no solution under a load.
+    pub fn measure(&self, scene: &Scene, cases: &mut [Case], progress: &mut Progress) -> Result<()> {
+        let (_, own) = applied_cases(scene, &self.mesh, &self.material)?;
+        let body = (&self.mesh, &self.material, self.solver);
+        let found = match &self.large {
+            Some(large) => large.answers(&self.mesh, &own, progress),
+            None => answers(body, &own, &self.equations, "finer body", progress),
+        };
+        let found = found.map_err(|e| e.placed(|e| scene.at("reference", e)))?;
+        let dimension = self.mesh.dimension;
+        for ((case, own), fine) in cases.iter_mut().zip(&own).zip(found) {
+            if let Some(note) = other_force(case, own, dimension) {
+                progress(Event::Note(&note));
+            }
+            // Pressures that follow are those of the sides of the mesh.
+            let follows = self.large.is_some() && case.pressed.is_some();
+            if !case.is_prescribed && !follows {
+                case.forces = self.embedding.restrict(&own.forces);
+            }
+            if !case.is_measured {
+                let displacements = self.sampling.interpolate(&fine.displacement).into_iter().map(Some).collect();
+                case.measured = Some(Field { displacements });
+                case.finer = Some(FinerSolution { standard: self.standard, work: fine.work, uncertainty: None });
+            }
+        }
+        self.cases.get_or_init(|| own);
+        Ok(())
+    }
 }
 
 /// What differs between a mesh and a finer one of the same body.
@@ -87,4 +128,19 @@ fn difference(mesh: &Mesh, fine: &Mesh) -> Result<Option<String>> {
     }
     let [own, other] = [mesh, fine].map(Mesh::point_count);
     Ok((other < own).then(|| format!("the finer mesh has fewer points than the mesh: {other} for {own}")))
+}
+
+/// The note that the total force of a load on the finer mesh is another one than on the mesh of the scene.
+fn other_force(case: &Case, fine: &Case, dimension: usize) -> Option<String> {
+    let [own, other] = [case, fine].map(|case| resultant(&case.forces, dimension));
+    let apart: Vec<f64> = own.iter().zip(&other).map(|(a, b)| a - b).collect();
+    let acting = case.forces.iter().map(|f| f.abs()).sum::<f64>();
+    (norm(&apart) > SAME_FORCE * acting).then(|| {
+        format!(
+            "the total force of {} is {:.4e} N on the finer mesh and {:.4e} N on the mesh; networks get that of the finer mesh",
+            case.name,
+            norm(&other),
+            norm(&own)
+        )
+    })
 }

@@ -27,5 +27,5 @@ pub use gauge::Gauged;
 pub use large::LargeBody;
 pub use linear::LinearBody;
 pub use load_notes::load_notes;
-pub use quadratic_reference::{judge_by_quadratic_elements, quadratic_answers};
+pub use quadratic_reference::{MOST_POINTS, UNNOTICED, judge_by_quadratic_elements, quadratic_answers};
 pub use solution::{seconds_of_body, seconds_of_network};

@@ -18,13 +18,13 @@ use crate::solve::{KnownEquations, factor_cost};
 /// The reference takes at most this many times what the finite elements and the networks of the scene take, or a time that nobody notices.
 const DEAREST: f64 = 3.0;
 /// Operations that nobody notices: about two seconds on one core.
-const UNNOTICED: f64 = 1e10;
+pub const UNNOTICED: f64 = 1e10;
 /// Each entry of a factor is read twice for a solution, and each of a cell's matrix is sorted: so many operations of a factorisation take as
 /// long.
 const PER_ENTRY: f64 = 10.0;
 const PER_SORTED: f64 = 300.0;
 /// More points are not even counted: their analysis alone would be noticed.
-const MOST_POINTS: usize = 40_000;
+pub const MOST_POINTS: usize = 40_000;
 /// Two levels that differ by more, in percent of the largest displacement, say nothing of the truth.
 // Where halved cells change half of the motion, no order is reached by which what is left could be bounded: at the second order a third
 // of the change would be left, and on cells that still lock it may be nearly all.

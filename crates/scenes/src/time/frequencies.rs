@@ -2,7 +2,7 @@
 
 use super::raised::{RELEASE, Raised};
 use crate::analysis::locking::Locking;
-use crate::body::held;
+use crate::body::{MOST_POINTS, UNNOTICED, held};
 use crate::error::{Error, Result};
 use crate::material::MaterialMap;
 use crate::mesh::Mesh;
@@ -100,18 +100,13 @@ pub fn natural_frequencies(
     Ok(all)
 }
 
-/// The largest factor of quadratic elements, operations: a second or two.
-const AFFORDABLE: f64 = 1e10;
-/// More points are not even counted.
-const MOST_POINTS: usize = 40_000;
-
 /// The frequencies of quadratic elements on the cells of a mesh that lock, with consistent masses. `None` of other meshes, where the scene asks for
 /// the cells, and where this takes long or is not solved.
 fn of_quadratic(scene: &Scene, mesh: &Mesh, material: &MaterialMap, count: usize) -> Option<FrequencyOutcome> {
     let is_asked = scene.reference().is_none_or(|entry| !entry.is_of_cells());
     Locking::of_body(mesh, material).filter(|_| is_asked)?;
     let finer = mesh.elevated().ok().filter(|finer| finer.point_count() <= MOST_POINTS)?;
-    factor_cost(&finer).ok().filter(|cost| cost.operations <= AFFORDABLE)?;
+    factor_cost(&finer).ok().filter(|cost| cost.operations <= UNNOTICED)?;
     let material = scene.material_of(&finer).ok()?;
     let support = held(scene, &finer).ok()?;
     let rigid = unheld_bodies(&finer, &support).iter().map(|body| body.motions).sum();

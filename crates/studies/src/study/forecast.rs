@@ -14,7 +14,8 @@ use crate::solve::{FactorCost, dense_rate, factor_cost};
 use crate::text::{memory_in_words, time_in_words};
 use serde::Serialize;
 use springfit_scenes::{
-    COMPARISONS, Case, FitLimit, LargeBody, NamedFit, REFINEMENTS, Reference, Scene, entries, fit_mesh, load_cases,
+    COMPARISONS, Case, FinerBody, FitLimit, LargeBody, NamedFit, REFINEMENTS, Reference, Scene, WholeBody, entries,
+    fit_mesh, load_cases,
 };
 use std::collections::BTreeMap;
 
@@ -27,10 +28,6 @@ const SHORT: f64 = 0.2;
 const CHUNK: usize = 512;
 /// Newton's iterations of a step of the load, as most take.
 const ITERATIONS: f64 = 6.0;
-/// Loads that fits to the whole object ask the finer body for, about, by which the way to solve its equations is chosen.
-const ASKED: usize = 75;
-/// The solutions of a network in such a fit under a support are as dear as this many loads.
-const ASKED_OF_NETWORK: usize = 200;
 /// Bytes of a spring of a network, and of what its fit holds at the same time.
 const SPRING: f64 = 100.0;
 
@@ -101,7 +98,7 @@ impl Forecast {
         let finer = scene.reference().filter(|entry| !entry.is_of_cells());
         let iterates = energy.is_none() && scene.solver().iterates(mesh, cases.len());
         let is_linear = energy.is_none();
-        if is_linear && !scene.solver().iterates(mesh, ASKED_OF_NETWORK) {
+        if is_linear && !scene.solver().iterates(mesh, WholeBody::ASKED) {
             forecast.add_whole(mesh, scene.fits(), finer.is_some())?;
         }
         let later = [
@@ -116,7 +113,7 @@ impl Forecast {
             let of = |fine: &Mesh| {
                 let solver = scene.solver().suited(fine, &scene.material_of(fine)?.moduli());
                 let recipes = scene.fits().iter().filter_map(|fit| fit.recipe.whole());
-                whole::of_finer((fine, solver.iterates(fine, ASKED)), cases.len(), recipes)
+                whole::of_finer((fine, solver.iterates(fine, FinerBody::ASKED)), cases.len(), recipes)
             };
             let found = fine.as_ref().map(of).transpose()?;
             let (seconds, bytes) = found.map(|[seconds, bytes]| (seconds, bytes)).unzip();

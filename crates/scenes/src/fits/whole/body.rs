@@ -42,11 +42,11 @@ pub struct WholeBody<'a> {
     known: KnownEquations,
 }
 
-/// The solutions of a fit under a support are as dear as this many loads, by which the way to solve equations is chosen. Each step has
-/// some tens of solutions for each load, which a factor serves without refinement.
-const LOADS: usize = 200;
-
 impl<'a> WholeBody<'a> {
+    /// The solutions of a fit under a support are as dear as this many loads, by which the way to solve equations is chosen. Each step has
+    /// some tens of solutions for each load, which a factor serves without refinement.
+    pub const ASKED: usize = 200;
+
     /// A body at small deformation, without loads of a scene.
     pub fn new(
         mesh: &'a Mesh,
@@ -75,7 +75,7 @@ impl<'a> WholeBody<'a> {
                 self.mesh,
                 &self.material.moduli(),
                 support,
-                (self.solver, LOADS),
+                (self.solver, WholeBody::ASKED),
                 &KnownPatterns::default(),
             )?;
             found.ok_or_else(|| Error::expected(key, self.holding(support), "motions without stiffness"))
@@ -103,7 +103,7 @@ impl<'a> WholeBody<'a> {
 
     /// How equations of networks are solved: by iterations, or with factors.
     pub(super) fn iterations(&self) -> Option<StaticSolver> {
-        self.solver.iterates(self.mesh, LOADS).then_some(self.solver)
+        self.solver.iterates(self.mesh, WholeBody::ASKED).then_some(self.solver)
     }
 
     /// The equations of a network under a support; `None` if it is not stable.
