@@ -104,6 +104,7 @@ def test_the_table_of_the_book_is_that_of_the_results():
     assert re.search(r"springfit's own finite elements agree", page)
 
 
+@pytest.mark.long
 def test_all_results_are_those_of_the_command(command):
     made = run("results.py", "--springfit", command, "--check")
     assert made.returncode == 0, made.stdout + made.stderr

@@ -207,6 +207,7 @@ def test_intervals_hold_the_truth_of_another_mesh_and_element():
     assert rows >= 16, found
 
 
+@pytest.mark.long
 def test_intervals_hold_the_truth_of_solids():
     pytest.importorskip("skfem")
     found = bench().study(["block"], range(2), noises=(0.01,), kinds=("surface",))
