@@ -118,10 +118,9 @@ pub enum AxisEntry {
 impl<'de> Deserialize<'de> for AxisEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<AxisEntry, D::Error> {
         deserializer.deserialize_any(Forms {
-            expected: "a vector such as [1, 0, 0], or { file = … }",
             list: Some(|components| Ok(AxisEntry::Vector(components))),
             table: Some(AxisEntry::Data),
-            ..Forms::default()
+            ..Forms::expecting("a vector such as [1, 0, 0], or { file = … }")
         })
     }
 }

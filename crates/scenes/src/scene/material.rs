@@ -131,10 +131,9 @@ pub struct MaterialEntries {
 impl<'de> Deserialize<'de> for MaterialEntries {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<MaterialEntries, D::Error> {
         deserializer.deserialize_any(Forms {
-            expected: "a table [material] or tables [[material]]",
             list: Some(|all| Ok(MaterialEntries { all, is_list: true })),
             table: Some(|one| MaterialEntries { all: vec![one], is_list: false }),
-            ..Forms::default()
+            ..Forms::expecting("a table [material] or tables [[material]]")
         })
     }
 }

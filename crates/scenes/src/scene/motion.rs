@@ -177,6 +177,7 @@ impl MotionEntry {
                 (format!("at most {} states in all", bound::STATES), format!("{:.0}", duration / every));
             return Err(Error::expected("every", expected, found).of_kind(ErrorKind::Limit));
         }
+        // Parts are taken out of the keys to be checked: from here on the keys lack them, and the checked parts are asked instead.
         let gravity = self.gravity.take().unwrap_or_default();
         range::largest("gravity", gravity.iter().copied(), "m/s²")?;
         let finite_elements = self.finite_elements.unwrap_or(true);

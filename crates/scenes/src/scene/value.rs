@@ -68,10 +68,9 @@ pub struct Numbers(pub Vec<f64>);
 impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Numbers, D::Error> {
         deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
-            expected: "a number or a list of numbers",
             number: Some(|v| Some(Numbers(vec![v]))),
             list: Some(|all| Ok(Numbers(all))),
-            ..Forms::default()
+            ..Forms::expecting("a number or a list of numbers")
         })
     }
 }
@@ -115,9 +114,10 @@ pub struct Forms<'a, T, L, M> {
 /// The forms of a value that is neither a list nor a table.
 type Plain<'a, T> = Forms<'a, T, IgnoredAny, IgnoredAny>;
 
-impl<T, L, M> Default for Forms<'_, T, L, M> {
-    fn default() -> Self {
-        Forms { expected: "", number: None, text: None, list: None, table: None }
+impl<T, L, M> Forms<'_, T, L, M> {
+    /// No form yet; `expected` is what a value in none of the forms is told to be.
+    pub fn expecting(expected: &'static str) -> Self {
+        Forms { expected, number: None, text: None, list: None, table: None }
     }
 }
 
@@ -160,10 +160,9 @@ impl<'de, T, L: Deserialize<'de>, M: Deserialize<'de>> Visitor<'de> for Forms<'_
 impl<'de> Deserialize<'de> for PrescribedComponent {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PrescribedComponent, D::Error> {
         deserializer.deserialize_any(Plain {
-            expected: PRESCRIBED,
             number: Some(|v| v.is_finite().then_some(PrescribedComponent(Some(Varying::Number(v))))),
             text: Some(&|v| Ok(PrescribedComponent((v != "free").then(|| Varying::Text(v.into()))))),
-            ..Plain::default()
+            ..Plain::expecting(PRESCRIBED)
         })
     }
 }
@@ -171,13 +170,12 @@ impl<'de> Deserialize<'de> for PrescribedComponent {
 impl<'de> Deserialize<'de> for VaryingPressure {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<VaryingPressure, D::Error> {
         deserializer.deserialize_any(Plain {
-            expected: PRESSURE,
             number: Some(|v| Some(VaryingPressure(Varying::Number(v)))),
             text: Some(&|v| {
                 let is_quantity = Quantity::Pressure.parse(v);
                 Ok(VaryingPressure(is_quantity.map_or_else(|_| Varying::Text(v.into()), Varying::Number)))
             }),
-            ..Plain::default()
+            ..Plain::expecting(PRESSURE)
         })
     }
 }
@@ -185,10 +183,9 @@ impl<'de> Deserialize<'de> for VaryingPressure {
 impl<'de> Deserialize<'de> for MeshLength {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<MeshLength, D::Error> {
         deserializer.deserialize_any(Plain {
-            expected: "a number of mesh units, or a length with a unit such as \"4 mm\"",
             number: Some(|v| Some(MeshLength::Units(v))),
             text: Some(&|v| MeshLength::parse(v).map_err(|e| Some(e.problem().into()))),
-            ..Plain::default()
+            ..Plain::expecting("a number of mesh units, or a length with a unit such as \"4 mm\"")
         })
     }
 }
@@ -196,10 +193,9 @@ impl<'de> Deserialize<'de> for MeshLength {
 impl<'de> Deserialize<'de> for Varying {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Varying, D::Error> {
         deserializer.deserialize_any(Plain {
-            expected: "a number or an expression of x, y, z such as \"1e5*x\"",
             number: Some(|v| Some(Varying::Number(v))),
             text: Some(&|v| Ok(Varying::Text(v.into()))),
-            ..Plain::default()
+            ..Plain::expecting("a number or an expression of x, y, z such as \"1e5*x\"")
         })
     }
 }
@@ -251,10 +247,9 @@ schemas! {
 /// A number in the SI unit, or a text with a unit.
 fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
     deserializer.deserialize_any(Plain {
-        expected: quantity.expected(),
         number: Some(Some),
         text: Some(&|v| quantity.parse(v).map_err(|e| Some(e.problem().into()))),
-        ..Plain::default()
+        ..Plain::expecting(quantity.expected())
     })
 }
 

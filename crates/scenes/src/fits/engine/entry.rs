@@ -47,10 +47,9 @@ pub(in crate::fits) struct EngineOrName(pub EngineEntry);
 impl<'de> Deserialize<'de> for EngineOrName {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<EngineOrName, D::Error> {
         deserializer.deserialize_any(Forms::<_, IgnoredAny, _> {
-            expected: "a name such as \"jolt\", or a table such as { method = \"xpbd\", substeps = 10 }",
             text: Some(&|name| Ok(EngineOrName(EngineEntry { method: Some(name.into()), ..EngineEntry::default() }))),
             table: Some(EngineOrName),
-            ..Forms::default()
+            ..Forms::expecting("a name such as \"jolt\", or a table such as { method = \"xpbd\", substeps = 10 }")
         })
     }
 }

@@ -84,10 +84,9 @@ pub struct PathsEntry(pub Vec<PathBuf>);
 impl<'de> Deserialize<'de> for PathsEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<PathsEntry, D::Error> {
         deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
-            expected: "the path of a file, or a list of paths",
             text: Some(&|path| Ok(PathsEntry(vec![path.into()]))),
             list: Some(|all| Ok(PathsEntry(all))),
-            ..Forms::default()
+            ..Forms::expecting("the path of a file, or a list of paths")
         })
     }
 }
@@ -138,13 +137,12 @@ pub struct ShapeSetsEntry {
 impl<'de> Deserialize<'de> for ShapeSetsEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ShapeSetsEntry, D::Error> {
         deserializer.deserialize_any(Forms {
-            expected: "a table of shapes, or a list of tables",
             list: Some(|all: Vec<ShapesEntry>| match all.is_empty() {
                 true => Err("expected at least one table of shapes, found none"),
                 false => Ok(ShapeSetsEntry { all, is_list: true }),
             }),
             table: Some(|one| ShapeSetsEntry { all: vec![one], is_list: false }),
-            ..Forms::default()
+            ..Forms::expecting("a table of shapes, or a list of tables")
         })
     }
 }

@@ -326,10 +326,9 @@ fn checked_supports(key: &str, supports: Option<&[Vec<String>]>) -> Result<Vec<V
 /// A text, or a list of texts.
 fn one_or_more<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Vec<String>>, D::Error> {
     deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
-        expected: "a text or a list of texts",
         text: Some(&|one| Ok(Some(vec![one.into()]))),
         list: Some(|all| Ok(Some(all))),
-        ..Forms::default()
+        ..Forms::expecting("a text or a list of texts")
     })
 }
 
