@@ -1,6 +1,6 @@
 //! Functions that are condensed in each cell: Wilson's modes and bubbles, against hand-made matrices, bending and the patch test.
 
-use crate::kit::{place, ran, refused};
+use crate::kit::{place, refused, said, springfit};
 use crate::shapes::{Random, distorted, geometry, loaded};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use springfit_element::element::Element;
@@ -220,7 +220,8 @@ fn what_needs_nodes_alone_is_refused() {
     };
     let run = |text: String| {
         std::fs::write(folder.path().join("scene.toml"), text).unwrap();
-        ran(folder.path(), &["run", "scene.toml"])
+        let output = springfit(folder.path(), &["run", "scene.toml"]);
+        (output.status.code(), said(&output))
     };
     let (code, said) = run(scene("law = \"neo-hookean\"\n"));
     assert!(code == Some(2) && said.contains("without condensed functions for large deformation"), "{said}");

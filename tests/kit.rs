@@ -96,7 +96,7 @@ pub fn source(file: &str) -> MeshSource {
     MeshSource::read(&place("tests/meshes").join(file)).unwrap()
 }
 
-/// The same with its elements.
+/// A mesh of the tests, whose cells have their elements.
 pub fn mesh(file: &str) -> Mesh {
     Mesh::resolve(&source(file), &[], 1.0).unwrap()
 }

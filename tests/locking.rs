@@ -1,6 +1,6 @@
 //! Near the incompressible: volume springs on cells and patches answer where finite elements lock.
 
-use crate::kit::{json, outcome, place, ran};
+use crate::kit::{json, outcome, place, said, springfit};
 use crate::shapes::bodies::grid;
 use crate::shapes::statics::{compliance, end_load, frequencies, held_where, membrane, on_cells};
 use springfit_bodies::model::{Network, Support, finite_elements, patch_springs, smoothed_pressure};
@@ -290,8 +290,9 @@ fn what_is_compared_with_cells_that_lock_is_told() {
 fn a_fit_on_patches_is_told_what_is_held() {
     let folder = tempfile::tempdir().unwrap();
     let program = |arguments: &str| {
-        let (code, said) = ran(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
-        assert_eq!(code, Some(0), "{said}");
+        let output = springfit(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+        let said = said(&output);
+        assert!(output.status.success(), "{said}");
         said
     };
     let mesh = place("scenes/meshes/cube_tet.msh");

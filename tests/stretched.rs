@@ -296,7 +296,7 @@ fn coarse_networks_follow_finer_bodies_to_large_stretch() {
     follow_finer_bodies(1..2);
 }
 
-/// The same with other bodies.
+/// Coarse networks follow finer bodies that are drawn from other seeds.
 #[test]
 #[ignore = "takes minutes: .ci/long has it"]
 fn coarse_networks_of_other_bodies_follow_finer_ones_to_large_stretch() {

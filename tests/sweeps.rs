@@ -359,7 +359,7 @@ fn a_sweep_is_drawn_over_its_key() {
     // A sweep of fewer values tells of the studies that the folder has besides.
     let scene = read(folder, "s.toml").replace("[0.0, 0.2, 0.4]", "[0.0, 0.4]");
     fs::write(folder.join("s.toml"), scene).unwrap();
-    let told = kit::ran(folder, &["sweep", "s.toml", "--out", "exact", "--resume"]).1;
+    let told = kit::said(&kit::springfit(folder, &["sweep", "s.toml", "--out", "exact", "--resume"]));
     assert!(told.contains("the folder has 2 studies of other values"), "{told}");
 }
 
