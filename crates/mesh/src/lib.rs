@@ -8,4 +8,4 @@ pub mod mesh;
 
 // The layers below, by the same names as everywhere.
 use springfit_element::{element, springs, stiffness};
-use springfit_foundation::{bound, error, file, named, quantity, random, range, symbolic, text};
+use springfit_foundation::{bound, error, file, named, number, quantity, random, range, symbolic, text};

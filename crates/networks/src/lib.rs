@@ -9,5 +9,5 @@ pub mod network;
 // The layers below, by the same names as everywhere.
 use springfit_bodies::{engine, model};
 use springfit_element::{element, material, springs, stiffness};
-use springfit_foundation::{error, file, symbolic, text};
+use springfit_foundation::{error, file, number, symbolic, text};
 use springfit_mesh::mesh;

@@ -10,6 +10,7 @@ use crate::element::{Integrand, SideTable, Tabulation};
 use crate::error::{Error, Result};
 use crate::material::CellMap;
 use crate::mesh::{Carrier, CellIndex, Mesh, Selection, SideIndex};
+use crate::number::first_not_finite;
 use crate::range;
 use crate::springs::{dot, norm, unit};
 use crate::stiffness::gathered;
@@ -178,7 +179,7 @@ fn forces_of(mesh: &Mesh, part: &Selection, action: &Action, thickness: &CellMap
             vec![0.0; mesh.points.len()]
         }
     };
-    match forces.iter().position(|f| !f.is_finite()) {
+    match first_not_finite(&forces) {
         None => Ok(forces),
         Some(dof) => Err(not_finite(mesh, dof / mesh.dimension, "near", &format!("a nodal force of {}", forces[dof]))),
     }

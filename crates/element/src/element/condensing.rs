@@ -9,6 +9,7 @@ use super::modes::Modes;
 use super::quadrature::Quadrature;
 use super::{ShapeFunctions, Tabulation};
 use crate::error::{Error, Result};
+use crate::number::first_not_finite;
 use crate::symbolic::Expr;
 use nalgebra::DMatrix;
 
@@ -70,7 +71,7 @@ pub fn tabulate(
     let bubbles = modes.iter().map(|mode| vanishes_on_sides(cell, mode)).collect();
     let own = Tabulation::new(&ShapeFunctions::new(modes, d), rule, volumetric);
     let count = own.nodes;
-    if let Some(bad) = own.gradients.iter().position(|g| !g.is_finite()) {
+    if let Some(bad) = first_not_finite(&own.gradients) {
         return Err(Error::at(key(bad / d % count), "has no finite gradient at a quadrature point"));
     }
     // Either rule must pass the patch test by itself, because each integrates a part of the energy.

@@ -9,6 +9,7 @@ use super::definition::{Definition, FormatEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
 use super::{ShapeFunctions, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
+use crate::number::first_not_finite;
 use crate::symbolic::{Expr, Polynomial, Scope};
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -257,7 +258,7 @@ pub fn formats(definition: &Definition) -> Result<()> {
 
 pub fn finite(tabulation: &Tabulation) -> Result<()> {
     let nodes = tabulation.nodes;
-    let bad = |values: &[f64], per_node: usize| values.iter().position(|v| !v.is_finite()).map(|i| i / per_node);
+    let bad = |values: &[f64], per_node: usize| first_not_finite(values).map(|i| i / per_node);
     match bad(&tabulation.values, 1).or_else(|| bad(&tabulation.gradients, tabulation.dimension)) {
         Some(i) => {
             let key = format!("nodes[{}].shape", i % nodes);

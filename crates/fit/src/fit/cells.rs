@@ -15,6 +15,7 @@ use super::visit::{cell_fault, cell_name, each_cell};
 use crate::element::Element;
 use crate::error::{Error, ErrorKind, Result};
 use crate::material::{BlockValues, Hooke};
+use crate::number::first_not_finite;
 use crate::springs::{Force, Springs};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
@@ -267,7 +268,7 @@ impl CellFits {
 /// That the `values` of springs, `[cells × springs]`, are numbers; those of a spring between two nodes at one place, or of a cell
 /// beyond the range of numbers, are not. The first cell is number `first` of its block.
 fn check_constants(element: &Element, first: usize, springs: usize, values: &[f64]) -> Result<()> {
-    match values.iter().position(|value| !value.is_finite()) {
+    match first_not_finite(values) {
         Some(place) => Err(cell_fault(element, first + place / springs, Fault::Unmeasured)),
         None => Ok(()),
     }

@@ -11,6 +11,7 @@ use super::reference_fit;
 use super::settings::Fit;
 use super::weight::Weight;
 use crate::error::{Error, ErrorKind, Result};
+use crate::number::first_not_finite;
 use crate::scalar::DoubleDouble;
 use crate::springs::{Springs, cross, distance, norm};
 use nalgebra::{DMatrix, DVector};
@@ -90,7 +91,7 @@ fn check_square(matrix: &DMatrix<f64>) -> Result<usize> {
     if rows != columns || rows == 0 {
         return Err(Error::expected("matrix", "a square matrix", format!("one of {rows} x {columns}")));
     }
-    match matrix.iter().position(|entry| !entry.is_finite()) {
+    match first_not_finite(matrix.as_slice()) {
         Some(at) => {
             let (row, column) = (at % rows, at / rows);
             Err(Error::expected(format!("matrix[{row}][{column}]"), "a finite number", matrix[(row, column)]))

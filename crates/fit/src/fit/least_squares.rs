@@ -100,10 +100,7 @@ impl<T: Real> Closed<T> {
         x: &[T],
         geometry: &mut Geometry<T>,
         hooke: &Hooke<T>,
-    ) -> bool
-    where
-        T: Real,
-    {
+    ) -> bool {
         if self.equations == Equations::PerNode {
             return geometry.update(table, x)
                 && self.node_equations.solve(springs, x, geometry, hooke, &mut self.normal);

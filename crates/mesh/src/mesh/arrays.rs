@@ -6,6 +6,7 @@ use super::quality::Gate;
 use super::resolution::check_size;
 use crate::element::Element;
 use crate::error::{Error, Result};
+use crate::number::first_not_finite;
 use crate::stiffness::each_cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -72,7 +73,7 @@ impl MeshArrays {
         if self.points.is_empty() || !self.points.len().is_multiple_of(d) {
             return Err(Error::expected("points", format!("points of {d} coordinates"), self.points.len()));
         }
-        if let Some(place) = self.points.iter().position(|x| !x.is_finite()) {
+        if let Some(place) = first_not_finite(&self.points) {
             let key = format!("points[{}]", place / d);
             return Err(Error::expected(key, "finite coordinates", format!("{:?}", self.points[place])));
         }

@@ -9,6 +9,7 @@ use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
 use crate::fit::sizes::of_size;
 use crate::material::BlockValues;
+use crate::number::first_not_finite;
 use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
@@ -121,7 +122,7 @@ impl PackedWork for ExactBatch<'_> {
         if self.constants.iter().fold(true, |sound, k| sound & k.is_finite()) {
             return Ok(());
         }
-        let place = self.constants.iter().position(|k| !k.is_finite()).unwrap_or(0);
+        let place = first_not_finite(self.constants).unwrap_or(0);
         Err((place / m, Fault::Unmeasured))
     }
 }

@@ -7,6 +7,7 @@ use crate::material::Plane;
 use crate::mesh::Mesh;
 use crate::model::Specimen;
 use crate::network::model::mesh_of;
+use crate::number::first_not_finite;
 use nalgebra::DMatrix;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -60,7 +61,7 @@ impl SpecimenFile {
         if network.is_empty() {
             return Err(Error::expected("springs", "at least one spring", "none"));
         }
-        if let Some(at) = points.iter().position(|x| !x.is_finite()) {
+        if let Some(at) = first_not_finite(points) {
             return Err(Error::expected(format!("points[{}]", at / d), "finite coordinates", points[at]));
         }
         for (s, spring) in network.lengths.iter().enumerate() {
