@@ -114,7 +114,7 @@ impl Network {
         }
         self.each_other(x, |s, spring, x| {
             let pull = Pull::of(spring, spring.measure.both(x, d, &mut gradient));
-            let along = dot(&gradient, &here(spring, a, d));
+            let along = dot(&gradient, &gathered(a, d, &spring.points));
             found.constants[s] = pull.by_constant * along;
             found.rests[s] = pull.jet.by_rest * along;
         });
@@ -165,7 +165,7 @@ impl Network {
             let jet = spring.measure.jet(x, d);
             let pull = Pull::of(spring, jet.value);
             let LawJet { force, slope, curvature, by_rest, slope_by_rest } = pull.jet;
-            let (a, u) = (here(spring, a, d), here(spring, u, d));
+            let (a, u) = (gathered(a, d, &spring.points), gathered(u, d, &spring.points));
             let (ga, gu) = (dot(&jet.gradient, &a), dot(&jet.gradient, &u));
             let (ha, hu) = (product(&jet.hessian, &a), product(&jet.hessian, &u));
             let bent = dot(&ha, &u);
@@ -210,7 +210,7 @@ impl Network {
             let jet = spring.measure.jet(x, d);
             let pull = Pull::of(spring, jet.value);
             let LawJet { force: tension, slope, curvature, by_rest, slope_by_rest } = pull.jet;
-            let (b, u) = (here(spring, &change.points, d), here(spring, u, d));
+            let (b, u) = (gathered(&change.points, d, &spring.points), gathered(u, d, &spring.points));
             let (gb, gu) = (dot(&jet.gradient, &b), dot(&jet.gradient, &u));
             let (hb, hu) = (product(&jet.hessian, &b), product(&jet.hessian, &u));
             let bent = dot(&hb, &u);
@@ -244,11 +244,6 @@ impl Network {
             visit(s, spring, &own);
         }
     }
-}
-
-/// The part of a vector of all points at those of a spring.
-fn here(spring: &MeasureSpring, all: &[f64], d: usize) -> Vec<f64> {
-    gathered(all, d, &spring.points)
 }
 
 fn add(spring: &MeasureSpring, force: impl Iterator<Item = f64>, to: &mut [f64], d: usize) {

@@ -73,8 +73,7 @@ pub fn comparison_chart(title: &str, records: &[CaseRecord], drawn: Drawn, of: O
         Drawn::Norms => data.norms(),
     };
     let of = of.map_or(String::new(), |of| format!(", {of}"));
-    let Chart { title: own, x, y, series } = chart;
-    Ok(Chart { title: format!("{title}{of}: {own}"), x, y, series })
+    Ok(Chart { title: format!("{title}{of}: {}", chart.title), ..chart })
 }
 
 /// The figure of merit of most methods.
