@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// Entries of matrices that are in memory at a time, about: 8 MB, more than all threads need to have work, and little beside the matrix of a body.
 const BATCH: usize = 1 << 20;
 /// Groups that one thread works out at a time.
-// The matrices of so many hexahedra of eight nodes have 300 kB, which stay in a core's second cache.
+// The matrices of 64 hexahedra of eight nodes have 300 kB and fit into the second cache of a core.
 const PART: usize = 64;
 
 impl<const D: usize> BlockMatrix<D, D> {

@@ -70,7 +70,7 @@ pub(super) struct Target {
 
 /// Entries of two tangents that are as near as this, relative to the largest, differ by rounding.
 // Sums over the springs of a point are rounded by some 1e-15. Where springs pull at rest, the definite tangent
-// lacks their pull over their length. What it lacks below the bound changes no digit of a displacement that is told.
+// lacks their pull over their length. A difference below the bound changes no printed digit of a displacement.
 const ALIKE: f64 = 1e-9;
 
 /// What is computed besides the forces.

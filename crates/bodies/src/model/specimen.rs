@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Images at distances that differ by less than this share are at the same distance.
 // Points and cells are rounded to 1.1e-16 of their distance from the origin: up to 1e6 lengths of a spring the bound is above that.
-// Images whose distances differ by more are told apart by whoever wrote the network as well.
+// A larger difference is in the file itself: its author meant two distances.
 const SAME: f64 = 1e-9;
 
 /// A network on its points.

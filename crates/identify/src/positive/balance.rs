@@ -9,13 +9,13 @@ use crate::solve::System;
 use faer::sparse::Triplet;
 
 /// The largest force on a point at rest that is accepted, relative to the largest force of a spring.
-// It moves a point by about this share of the length of an edge, which no digit of a displacement that is told shows.
+// It moves a point by about this share of the length of an edge. Reports print fewer digits of a displacement.
 const TOLERANCE: f64 = 1e-10;
 /// Corrections end when the largest force is below this share.
 // The force on a point is a sum over its springs, some tens, each rounded by 1.1e-16.
 const FOUND: f64 = 1e-14;
 /// The largest number of corrections.
-// Each gains several digits of the sixteen (see [`RAISED`]), and one that gains none is the last.
+// Each correction gains several of the sixteen digits (see [`RAISED`]). Corrections end when one gains none.
 const ROUNDS: usize = 12;
 /// The shift of the diagonal, relative to its mean. The equations are singular, because rigid motions cause no force.
 /// It is beyond the rounding of the factor, and small enough that each correction gains several digits of the other

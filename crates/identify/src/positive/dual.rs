@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, DVector};
 /// The search ends when no sum of A z exceeds this share of the largest bound.
 // It is above the rounding of the sums, some 1e-15, and below the 1e-10 of a spring's force at which forces at rest are accepted.
 const FOUND: f64 = 1e-13;
-/// The powers of ten to it, in which progress is told.
+/// The powers of ten between one and [`FOUND`]. Progress is reported in these steps.
 const NEAR: usize = 13;
 /// The weight of the proximal term, relative to the mean of the diagonal of the Hessian. The Hessian is singular where
 /// variables at their bounds leave a motion free. The term makes it regular, and the centre moves until it does not

@@ -35,7 +35,7 @@ pub struct Linearized<'a> {
 }
 
 /// The relative error of gradients and of columns of J where equations are solved by iterations.
-// Intervals, which are told with three digits, are made of these columns, and searches end at steps of 1e-6 in θ.
+// Intervals are computed from these columns and printed with three digits. Searches end at steps of 1e-6 in θ.
 pub(super) const PRODUCT: f64 = 1e-5;
 
 impl Linearized<'_> {

@@ -45,7 +45,7 @@ const BACK: f64 = 0.9;
 // of the strain.
 const SMALL: f64 = 1e-6;
 /// Draws of a random load at most.
-// Each is followed by up to twenty equilibria. A body that gives way under all of them is left without this load, which is told.
+// Each draw takes up to twenty equilibria. A note names a load that is left out because the body gives way under every draw.
 const DRAWS: u64 = 4;
 
 /// Makes the loads of a set; those that are drawn at random are others in each draw.

@@ -10,7 +10,7 @@ use crate::scene::{LoadCase, Part, Scene};
 const SWALLOWED: f64 = 0.1;
 /// The distance of a measured displacement from the one that its support prescribes, relative to the largest, that is more than noise.
 // A support that gives way by a share of the displacements makes a body look softer by about this share. The bound was chosen above
-// the noise of most measurements, so that it is mistakes of groups and units that are told.
+// the noise of most measurements, so that notes name wrong groups and units.
 const CONTRADICTS: f64 = 0.05;
 
 /// What must be known of the loads of a scene on its mesh, one sentence each.

@@ -20,8 +20,8 @@ const SHAPES: usize = 5;
 /// The seed of the shapes, so that every run tests the same ones.
 const SEED: u64 = 7;
 /// Young's modulus, Pa, and Poisson's ratio of the material that is tested.
-// Relative defects do not depend on the modulus. The ratio is none at which a fault could hide: λ is not zero, and it is neither
-// the 1/4 nor the 1/3 that springs have of themselves.
+// Relative defects do not depend on the modulus. No fault can hide at this ratio: λ is not zero, and networks of equal springs have the
+// ratios 1/4 and 1/3.
 pub const ASKED: (f64, f64) = (1.0, 0.3);
 
 pub fn properties(element: &Arc<Element>) -> Vec<Property> {
@@ -173,7 +173,7 @@ fn moduli(element: &Arc<Element>) -> Property {
     };
     let error = (found.young / young - 1.0).abs().max((found.poisson - poisson).abs());
     let finding = format!("E {:.6}, nu {:.6}, asked {young}, {poisson}", found.young, found.poisson);
-    // A fault changes the first digits of a modulus, and rounding of the few equations of a box none of the six that are told.
+    // A fault changes the first digits of a modulus. Rounding in the few equations of a box changes none of the six that are printed.
     Property::new(name, error < 1e-8, finding).with(error)
 }
 

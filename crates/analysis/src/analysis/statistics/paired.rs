@@ -15,7 +15,7 @@ const EQUAL: f64 = 1e-6;
 /// that are told, and the count of ranks grows with the cube.
 const EXACT: usize = 25;
 /// A verdict is wrong with at most this probability.
-// It is that of the intervals of 95 % that are told beside it.
+// Intervals of 95 % are printed beside the verdict: both leave out the same probability.
 const LEVEL: f64 = 0.05;
 
 /// What is said of two methods whose figures are better the smaller they are.

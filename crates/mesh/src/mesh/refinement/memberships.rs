@@ -19,7 +19,7 @@ pub struct Memberships<'a> {
 #[derive(Default)]
 struct Listed {
     groups: HashMap<Vec<usize>, Vec<usize>>,
-    /// Those that a cell has.
+    /// The listed sides or edges that a cell has.
     met: HashSet<Vec<usize>>,
 }
 

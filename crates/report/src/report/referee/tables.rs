@@ -21,7 +21,7 @@ pub(super) fn bodies<'a>(record: &'a RefereeRecord, chosen: impl Fn(&RefereeRow)
     let loads = loads(record);
     let key = |row: &RefereeRow| (row.engine.clone(), row.solver.clone(), row.title(), row.poisson.to_bits());
     let bodies = |(_, rows): (_, Vec<&'a RefereeRow>)| {
-        // Of several rows under a load the last counts.
+        // The last row under a load counts, where there are several.
         let under = |load: &&str| rows.iter().rev().copied().find(|row| row.load == **load);
         Bodies { first: rows[0], by_load: loads.iter().map(under).collect() }
     };
