@@ -7,3 +7,4 @@ mod groups;
 mod jacobi;
 mod normal;
 mod regression;
+mod singular;

@@ -9,6 +9,7 @@ use crate::material::{MaterialMap, strains, voigt};
 use crate::mesh::{CellIndex, Mesh};
 use crate::stiffness::Geometry;
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::dense::singular;
 use std::collections::HashMap;
 
 /// The share of its energy that a body lacks because its cells are linear, under displacements `u`, `[points × dimension]`, m, that its finite
@@ -132,6 +133,7 @@ fn carried(element: &Element) -> (DMatrix<f64>, DMatrix<f64>) {
     let table = &element.tabulation;
     let values = DMatrix::from_row_slice(table.points(), table.nodes, &table.values);
     // Singular values of shape functions that points tell apart are far above rounding; the others are zero up to it.
-    let inverse = values.clone().pseudo_inverse(1e-10).expect("the bound of singular values is not negative");
+    let inverse =
+        singular(values.clone()).expect("shape functions are finite at quadrature points").pseudo_inverse(1e-10);
     (values, inverse)
 }

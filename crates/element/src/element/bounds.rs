@@ -8,6 +8,7 @@ use super::cell::{Cell, same_place};
 use super::quadrature::Quadrature;
 use super::{Element, Tabulation};
 use nalgebra::DMatrix;
+use springfit_numerics::dense::singular;
 use std::f64::consts::PI;
 
 /// A determinant below zero by this share of the largest coefficient is negative; less is rounding.
@@ -252,7 +253,7 @@ fn straight(element: &Element) -> Option<(DMatrix<f64>, Vec<usize>)> {
     let node = |corner: &&[f64]| places.iter().position(|at| same_place(corner, at));
     let nodes: Option<Vec<usize>> = corners.iter().map(node).collect();
     // Singular values below this are zeros: terms that the corners cannot tell apart.
-    let inverse = matrix(corners).pseudo_inverse(1e-12).ok()?;
+    let inverse = singular(matrix(corners))?.pseudo_inverse(1e-12);
     Some((matrix(&places) * inverse, nodes?))
 }
 

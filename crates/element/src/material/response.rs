@@ -179,6 +179,10 @@ fn principal(f: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>, Matrix3<f6
     if !f.iter().all(|entry| entry.is_finite()) {
         return None;
     }
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "nalgebra decomposes matrices of three rows and columns in a way of its own, which is right"
+    )]
     let svd = f.svd(true, true);
     let (mut n, big_n, mut stretch) = (svd.u?, svd.v_t?.transpose(), svd.singular_values);
     // Singular values have no sign: the least of them takes that of det F, so that J of the stretches is that of F.

@@ -21,6 +21,7 @@ use crate::material::{Hooke, strains, voigt};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::dense::{eigen, singular};
 
 /// An eigenvalue is rounding if it is below this share of the largest. Rigid motions have a stiffness of some 1e-16,
 /// and the softest motion of a cell that is not degenerate has more than this.
@@ -59,8 +60,8 @@ pub fn stiffness(element: &Element, x: &[f64], hooke: &Hooke) -> Result<DMatrix<
         return Ok(r);
     }
     let (kept, beside) = (x.len(), modes * d);
-    let own = r.view((kept, kept), (beside, beside)).into_owned().pseudo_inverse(0.0);
-    let own = own.map_err(Error::new)?;
+    let own = singular(r.view((kept, kept), (beside, beside)).into_owned());
+    let own = own.ok_or_else(|| Error::new("the stiffness of the modes is not finite"))?.pseudo_inverse(f64::EPSILON);
     let across = r.view((0, kept), (kept, beside)).into_owned();
     let r = r.view((0, 0), (kept, kept)) - &across * own * across.transpose();
     Ok(r)
@@ -157,7 +158,7 @@ fn vector(a: &DMatrix<f64>) -> DVector<f64> {
 
 /// A power of a symmetric matrix on the motions that it does not vanish on.
 fn power(a: &DMatrix<f64>, exponent: f64) -> DMatrix<f64> {
-    let eigen = springfit_numerics::dense::eigen(a.clone());
+    let eigen = eigen(a.clone());
     let least = ROUNDING * eigen.eigenvalues.amax();
     let powers = eigen.eigenvalues.map(|value| if value > least { value.powf(exponent) } else { 0.0 });
     &eigen.eigenvectors * DMatrix::from_diagonal(&powers) * eigen.eigenvectors.transpose()

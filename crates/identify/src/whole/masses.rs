@@ -11,6 +11,7 @@ use crate::solve::Equations;
 use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use springfit_numerics::dense::singular;
 
 /// The frequencies that a network should have under a support.
 #[derive(Debug, Clone)]
@@ -67,9 +68,9 @@ const DECREASE: f64 = 1e-3;
 /// The largest change of a logarithm in a step. The derivatives hold for masses that change by some ten per cent, and
 /// not by orders of magnitude.
 const LONGEST: f64 = 0.5;
-/// The singular values of the squared moments, relative to the largest entry, that count as zero: points in one plane
-/// have none across it, and points that are nearer to a plane than 3e-5 of their extent count as in it.
-const NOTHING: f64 = 1e-9;
+/// The singular values of the moments, relative to the largest, that count as zero: points in one plane have none across it, and points that
+/// are nearer to a plane than this part of their extent count as in it.
+const NOTHING: f64 = 3e-5;
 
 /// Fits the masses at `points`, `[points × dimension]`, from `start`, `[points]`, kg, with the second moments of the body where positive masses have
 /// them. The frequencies of `others`, if there are any, choose ρ and whether second moments are those of the body or of the start.
@@ -295,11 +296,9 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// `A⁺ = Aᵀ (A Aᵀ)⁺` of a matrix with few rows.
+/// `A⁺` of a matrix with few rows.
 fn pseudo_inverse(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let square = a * a.transpose();
-    let least = NOTHING * square.amax();
-    Some(a.transpose() * square.pseudo_inverse(least).ok()?)
+    Some(singular(a.transpose())?.pseudo_inverse(NOTHING).transpose())
 }
 
 fn root_mean_square(values: &[f64]) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::sample::Sample;
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::dense::singular;
 
 /// The projection of a coordinate axis onto a plane has no direction to rely on if it is shorter than this.
 // A plane that tilts by δ turns a projection of length s by up to `δ/s`. Some axis is always longer: a direction in a
@@ -65,14 +66,11 @@ impl Plane {
 fn fitted(points: &[f64], space: usize, d: usize) -> (DMatrix<f64>, f64) {
     let x = DMatrix::from_column_slice(space, points.len() / space, points);
     let mean = x.column_mean();
-    let centred = DMatrix::from_fn(space, x.ncols(), |k, p| x[(k, p)] - mean[k]);
-    let svd = centred.svd(true, false);
-    let directions = svd.u.expect("it was asked for");
-    let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
-    order.sort_by(|&a, &b| svd.singular_values[b].total_cmp(&svd.singular_values[a]));
-    let columns: Vec<DVector<f64>> = order[..d].iter().map(|&k| directions.column(k).into_owned()).collect();
-    let height = order.get(d).map_or(0.0, |&k| svd.singular_values[k] / svd.singular_values[order[0]]);
-    (DMatrix::from_columns(&columns), height)
+    let centred = DMatrix::from_fn(x.ncols(), space, |p, k| x[(k, p)] - mean[k]);
+    // Points so far apart that their mean is no number lie in no plane.
+    let Some(singular) = singular(centred) else { return (DMatrix::identity(space, d), f64::INFINITY) };
+    let height = if d < space { singular.values[d] / singular.values[0] } else { 0.0 };
+    (singular.v.columns(0, d).into_owned(), height)
 }
 
 /// The order in which the coordinate axes give the samples their axes: first those that lie in the planes. The axes of

@@ -7,6 +7,7 @@
 
 use super::problem::{Optimum, Problem};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use springfit_numerics::dense::{eigen, singular};
 
 /// Eigenvalues within this fraction of ±t are active; the solver leaves them there to about 1e-9.
 const ACTIVE: f64 = 1e-6;
@@ -28,7 +29,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let Optimum { kappa, value: t, .. } = optimum;
     let (p, t, springs) = (problem.order(), *t, problem.matrices());
     let e = problem.error(kappa);
-    let eigen = springfit_numerics::dense::eigen(e);
+    let eigen = eigen(e);
     let (active, rest): (Vec<usize>, Vec<usize>) =
         (0..p).partition(|&i| eigen.eigenvalues[i].abs() > t * (1.0 - ACTIVE));
     // All eigenvalues are active, or none if t is only the rounding of an exact fit.
@@ -37,24 +38,13 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     }
     let u = eigen.eigenvectors.select_columns(&active);
     let columns: Vec<DVector<f64>> = springs.iter().map(|a| DVector::from_column_slice((a * &u).as_slice())).collect();
-    let svd = DMatrix::from_columns(&columns).svd(false, true);
-    let v = svd.v_t.expect("it was asked for");
-    let largest = svd.singular_values.max();
-    let rank = svd.singular_values.iter().filter(|s| **s > FREE * largest).count();
+    let Some(singular) = singular(DMatrix::from_columns(&columns)) else { return false };
+    let rank = singular.values.iter().filter(|s| **s > FREE * singular.values[0]).count();
     // No direction leaves all active eigenvectors as they are: the optimum is unique.
     if rank == kappa.len() {
         return false;
     }
-    // The right singular vectors beyond the rank, including those that a thin decomposition omits.
-    // nalgebra's thin decomposition has no vectors beyond the smaller dimension.
-    let range = v.rows(0, rank).transpose();
-    let projection = DMatrix::identity(kappa.len(), kappa.len()) - &range * range.transpose();
-    let free = springfit_numerics::dense::eigen(projection);
-    let directions: Vec<DVector<f64>> = (0..kappa.len())
-        // A projection has the eigenvalues zero and one.
-        .filter(|&i| free.eigenvalues[i] > 0.5)
-        .map(|i| free.eigenvectors.column(i).into_owned())
-        .collect();
+    let directions: Vec<DVector<f64>> = (rank..kappa.len()).map(|i| singular.v.column(i).into_owned()).collect();
     // On the other eigenvectors alone: E_c(w) = Λ − Σ w_i D_i, with ‖E_c‖_F least under −t < E_c < t.
     let others = eigen.eigenvectors.select_columns(&rest);
     let start = DMatrix::from_diagonal(&DVector::from_fn(rest.len(), |i, _| eigen.eigenvalues[rest[i]]));

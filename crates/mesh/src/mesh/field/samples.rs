@@ -11,6 +11,7 @@ use crate::mesh::space::spatial;
 use crate::mesh::vtk;
 use crate::range;
 use nalgebra::{DMatrix, DVector};
+use springfit_numerics::dense::least_squares;
 use std::path::Path;
 
 /// How numbers between the places of samples are found.
@@ -233,7 +234,7 @@ impl Samples {
         let a = DMatrix::from_fn(near.len(), d + 1, row);
         let b = DVector::from_fn(near.len(), |i, _| least / near[i].1 * value(near[i].0));
         // Places in a line or a plane leave slopes across it open: the least ones are taken.
-        let found = a.svd(true, true).solve(&b, 1e-9);
+        let found = least_squares(a, &b, 1e-9);
         // A plane beyond its places goes on without end; within their range a modulus stays possible.
         found.map_or(value(first), |plane| plane[0]).clamp(low, high)
     }
