@@ -11,7 +11,7 @@ choices! {
     pub enum Markup {
         /// With the rules of the package booktabs.
         Latex = "latex",
-        /// Of GitHub.
+        /// With bars between the columns, as GitHub reads it.
         Markdown = "markdown",
     }
 }
