@@ -11,6 +11,7 @@ use springfit_fit::fit::{
     reference_fit,
 };
 use springfit_mesh::mesh::BoxMesh;
+use springfit_numerics::dense::{eigen, eigenvalues};
 use springfit_studies::study::FitEntry;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -83,6 +84,12 @@ impl Case {
         fit_element(&self.element, &self.springs, &self.x, self.moduli, &fit).unwrap()
     }
 
+    /// `K = Σ k_s g_s g_sᵀ`, by one product of matrices.
+    pub fn stiffness(&self, k: &[f64]) -> DMatrix<f64> {
+        let scaled: Vec<DVector<f64>> = self.g.iter().zip(k).map(|(g, k)| g * *k).collect();
+        DMatrix::from_columns(&self.g) * DMatrix::from_columns(&scaled).transpose()
+    }
+
     /// `W A W`, or A without its diagonal blocks.
     pub fn weighted(&self, weight: Weight, a: &DMatrix<f64>) -> DMatrix<f64> {
         self.seen_by(weight)(a)
@@ -123,7 +130,7 @@ impl Case {
             }
             Weight::Relative => {
                 let form = || {
-                    let eigen = springfit_numerics::dense::eigen(self.r.clone());
+                    let eigen = eigen(self.r.clone());
                     let root = |e: f64| if e > 1e-9 * self.r.norm() { 1.0 / e.sqrt() } else { 0.0 };
                     let roots = DMatrix::from_diagonal(&eigen.eigenvalues.map(root));
                     &eigen.eigenvectors * roots * eigen.eigenvectors.transpose()
@@ -353,9 +360,7 @@ impl Case {
 
     /// `‖W (R − K(k)) W‖₂`, weight none or modal.
     fn largest_eigenvalue(&self, weight: Weight, k: &[f64]) -> f64 {
-        let mut difference = self.r.clone();
-        self.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
-        self.weighted(weight, &difference).symmetric_eigenvalues().amax()
+        eigenvalues(self.weighted(weight, &(&self.r - self.stiffness(k)))).amax()
     }
 }
 
@@ -446,10 +451,9 @@ fn relative_spectral_fits_bound_the_energy() {
     for case in cases(4) {
         let fits = case.certified(Fit::new(Objective::Spectral(MotionWeight::Relative)));
         let epsilon = fits.certificates[0].value;
-        let mut k = DMatrix::zeros(case.x.len(), case.x.len());
-        case.g.iter().zip(&fits.constants).for_each(|(g, s)| k += *s * g * g.transpose());
+        let k = case.stiffness(&fits.constants);
         for side in [&k - (1.0 - epsilon) * &case.r, (1.0 + epsilon) * &case.r - &k] {
-            assert!(side.symmetric_eigenvalues().min() > -1e-11 * case.r.norm(), "{}: {epsilon}", case.name);
+            assert!(eigenvalues(side).min() > -1e-11 * case.r.norm(), "{}: {epsilon}", case.name);
         }
     }
 }
@@ -470,11 +474,7 @@ fn ambiguous_optima_have_the_least_frobenius_error() {
                 continue;
             }
             ambiguous += 1;
-            let error = |k: &[f64]| {
-                let mut difference = case.r.clone();
-                case.g.iter().zip(k).for_each(|(g, k)| difference -= *k * g * g.transpose());
-                difference.norm()
-            };
+            let error = |k: &[f64]| (&case.r - case.stiffness(k)).norm();
             assert!(case.largest_eigenvalue(Weight::None, &fits.constants) <= certificate.value * (1.0 + 1e-12));
             let target = case.fit(Fit::new(Objective::Frobenius(Weight::None)));
             let found = error(&fits.constants);
@@ -496,8 +496,7 @@ fn divergences_are_stationary() {
         for balance in [0.0, 0.25, 1.0] {
             let fits = case.certified(Fit::new(Objective::Divergence(Balance::new(balance).unwrap())));
             assert_eq!(fits.unreached, 0, "{}", case.name);
-            let mut k = DMatrix::zeros(case.x.len(), case.x.len());
-            case.g.iter().zip(&fits.constants).for_each(|(g, s)| k += *s * g * g.transpose());
+            let k = case.stiffness(&fits.constants);
             // On the deformations: rigid motions get a stiffness of their own, which no g sees.
             let motions: Vec<_> =
                 rigid_motions(&case.x, case.springs.dimension()).into_iter().map(DVector::from_vec).collect();

@@ -14,7 +14,7 @@ use springfit_fit::fit::{
 };
 use springfit_foundation::error::{Error, ErrorKind};
 use springfit_mesh::mesh::{BoxMesh, Mesh};
-use springfit_numerics::dense::least_squares;
+use springfit_numerics::dense::{least_squares, singular};
 use springfit_report::report::Report;
 use springfit_studies::study::{NamedFit, Scene, run};
 use std::path::Path;
@@ -80,12 +80,8 @@ impl Pulling {
 
     /// `R − K`.
     fn residual(&self, k: &[f64], t: &[f64]) -> DMatrix<f64> {
-        let mut difference = self.case.r.clone();
-        for (s, g) in self.case.g.iter().enumerate() {
-            difference.ger(-k[s], g, g, 1.0);
-            difference -= t[s] * &self.bends[s];
-        }
-        difference
+        let difference = &self.case.r - self.case.stiffness(k);
+        t.iter().zip(&self.bends).filter(|(t, _)| **t != 0.0).fold(difference, |sum, (t, bend)| sum - *t * bend)
     }
 
     /// `‖W (R − K) W‖` and `‖W R W‖`.
@@ -140,8 +136,10 @@ impl Pulling {
             for &(s, k, t) in &unknown.terms {
                 let g = &self.case.g[s];
                 matrix.ger(k, g, g, 1.0);
-                matrix += t * &self.bends[s];
-                force += t * g;
+                if t != 0.0 {
+                    matrix += t * &self.bends[s];
+                    force += t * g;
+                }
             }
             let seen = by(&matrix);
             let scale = if seen.norm() > 0.0 { 1.0 / seen.norm() } else { 1.0 };
@@ -303,23 +301,13 @@ fn optima_are_stationary() {
     assert!(strict > 500, "{strict}");
 }
 
-/// What of v is no combination of the rows of C: Gram and Schmidt's method with pivoting, each product subtracted twice.
+/// What of v is no combination of the rows of C; combinations that rounding alone tells from zero count as zero. What the first subtraction
+/// leaves of its rounding, the second takes away.
 fn beyond_rows(c: &DMatrix<f64>, mut v: DVector<f64>) -> DVector<f64> {
-    let mut rows: Vec<DVector<f64>> = c.row_iter().map(|row| row.transpose()).collect();
-    let largest = rows.iter().map(|row| row.norm()).fold(0.0, f64::max);
-    loop {
-        let norms: Vec<f64> = rows.iter().map(|row| row.norm()).collect();
-        let Some(pivot) = (0..rows.len()).max_by(|&i, &j| norms[i].total_cmp(&norms[j])) else { break };
-        let row = rows.swap_remove(pivot);
-        if row.norm() <= 1e-12 * largest {
-            break;
-        }
-        let q = row.normalize();
-        for other in rows.iter_mut().chain([&mut v]) {
-            for _ in 0..2 {
-                other.axpy(-q.dot(other), &q, 1.0);
-            }
-        }
+    let rows = c.transpose();
+    let back = singular(rows.clone()).unwrap().pseudo_inverse(1e-12);
+    for _ in 0..2 {
+        v -= &rows * (&back * &v);
     }
     v
 }

@@ -63,11 +63,11 @@ fn folder() -> TempDir {
     folder
 }
 
-/// Half of the values at each of the first two numbers with a key, so that the two have them all; a sixth at each of the others with this key, in
+/// A third of the values at each of the first three numbers with a key, so that the three have them all; one at each of the others with this key, in
 /// turn. Most keys are in many samples.
 #[test]
 fn every_number_of_a_scene_may_be_extreme() {
-    sweep(|before| if before < 2 { 2 } else { 6 });
+    sweep(|before| if before < 3 { 3 } else { EXTREMES.len() });
 }
 
 #[test]
