@@ -3,7 +3,7 @@
 use crate::kit::place;
 use crate::shapes::statics::support_at;
 use crate::shapes::{Random, elements, loaded};
-use springfit_bodies::model::unheld_bodies;
+use springfit_bodies::model::{LengthSpring, Network, Support, unheld_bodies, unheld_parts};
 use springfit_element::element::{Cell, Side};
 use springfit_foundation::error::Result;
 use springfit_mesh::mesh::{
@@ -212,6 +212,25 @@ fn pieces_without_support_are_found() {
         assert_eq!(unheld.len(), 1, "{name}");
         assert_eq!((unheld[0].points, unheld[0].motions), (count, d * (d + 1) / 2), "{name}");
     });
+}
+
+/// Points at one place have translations alone, and those whose distances are no numbers count as not held.
+#[test]
+fn springs_between_points_at_one_place_are_counted() {
+    let spring = |points| LengthSpring { points, constant: 1.0, rest: 1.0 };
+    let network = Network { dimension: 3, lengths: vec![spring([0, 1]), spring([2, 3])], ..Network::default() };
+    let mut points = vec![0.5; 12];
+    points[6..].copy_from_slice(&[3.0, 0.0, 0.0, 4.0, 0.0, 0.0]);
+    let found = |points: &[f64], held: &[usize]| {
+        let mut support = Support { prescribed: vec![None; points.len()] };
+        support.fix(held, &[0, 1, 2], 3);
+        let unheld = unheld_parts(&network, points, &support);
+        unheld.iter().map(|part| (part.first_point, part.points, part.motions)).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&points, &[]), [(0, 2, 3), (2, 2, 5)]);
+    assert_eq!(found(&points, &[1, 2, 3]), []);
+    points[6..].copy_from_slice(&[f64::MAX, 0.0, 0.0, f64::MAX, 1.0, 0.0]);
+    assert_eq!(found(&points, &[0, 2, 3]), [(2, 2, 6)]);
 }
 
 /// The cells beyond a plane have nodes of their own, as where two parts were meshed each for itself.

@@ -160,7 +160,7 @@ impl Pulling {
         let pulling: Vec<usize> = (0..unknowns.len()).filter(|&j| c.column(j).norm() > 0.0).collect();
         let c = c.select_columns(&pulling);
         let c = DMatrix::from_fn(c.nrows(), c.ncols(), |i, j| c[(i, j)] / c.column(j).norm());
-        pulling.len() == unknowns.len() && c.nrows() >= c.ncols() && c.singular_values().min() > 1e-9
+        pulling.len() == unknowns.len() && c.nrows() >= c.ncols() && singular(c).unwrap().values.min() > 1e-9
     }
 }
 

@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use springfit_bodies::model::{Network, Support};
 use springfit_bodies::solve::{Ending, Newton, System, factor_cost_of, is_definite};
 use springfit_foundation::error::{Error, ErrorKind, Result};
+use springfit_numerics::dense::singular;
 use springfit_report::report::{NetworkRecord, NodalLoadRecord, Parts, of_locking};
 
 /// A spring of [`Stands::SquaredLengths`] pushes with `k/(2 L²) (L² − l²) l`, at most 0.192 k L, at `l = L/√3`. A spring of the network
@@ -250,10 +251,9 @@ impl Body<'_> {
             found.simplices += 1;
             // A cell whose determinant is NaN counts as inside out.
             found.inverted += usize::from(!(gradient.determinant() > 0.0));
-            for stretch in gradient.singular_values().iter() {
-                found.least = found.least.min(*stretch);
-                found.largest = found.largest.max(*stretch);
-            }
+            let Some(singular) = singular(gradient) else { continue };
+            found.least = found.least.min(singular.values.min());
+            found.largest = found.largest.max(singular.values.max());
         }
         if found.simplices == 0 {
             let length = |x: &[f64], [a, b]: [usize; 2]| {

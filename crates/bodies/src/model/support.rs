@@ -4,6 +4,7 @@ use super::network::Network;
 use crate::mesh::{Mesh, pieces_of};
 use crate::springs::{cross, norm};
 use nalgebra::DMatrix;
+use springfit_numerics::dense::singular;
 
 /// The distance of points from a line, relative to the extent of the body, that is a rounding error of coordinates far from the origin.
 const STRAIGHT: f64 = 1e-9;
@@ -79,17 +80,18 @@ fn unheld_pieces(
     let motions = d * (d + 1) / 2;
     let mut unheld = Vec::new();
     for body in pieces {
-        if let [alone] = body[..] {
-            // To turn a point moves nothing.
-            let free = (alone * d..(alone + 1) * d).filter(|&dof| !support.is_fixed(dof)).count();
-            unheld.extend((free > 0).then_some(Unheld { points: 1, first_point: alone, motions: free }));
-            continue;
-        }
         let held: Vec<usize> =
             body.iter().flat_map(|p| p * d..(p + 1) * d).filter(|&dof| support.is_fixed(dof)).collect();
         let centre: Vec<f64> =
             (0..d).map(|k| body.iter().map(|&p| point(p)[k]).sum::<f64>() / body.len() as f64).collect();
         let extent = body.iter().map(|&p| crate::springs::distance(point(p), &centre)).fold(0.0, f64::max);
+        if extent == 0.0 {
+            // To turn points at one place moves nothing.
+            let is_free = |k: &usize| !body.iter().any(|p| support.is_fixed(p * d + k));
+            let (points, motions) = (body.iter().filter(|p| **p < nodes).count(), (0..d).filter(is_free).count());
+            unheld.extend((motions > 0).then_some(Unheld { points, first_point: body[0], motions }));
+            continue;
+        }
         // Translations e_k, then rotations in the planes (k, l), in units of the size of the body.
         // Rows of zeros where fewer are held than there are motions: the rank is that of the others.
         let mut modes = DMatrix::zeros(held.len().max(motions), motions);
@@ -109,7 +111,9 @@ fn unheld_pieces(
             }
         }
         // A zero singular value may be as large as the rounding of coordinates far from the origin.
-        let rank = modes.rank(1e-9 * (held.len().max(1) as f64).sqrt());
+        let least = 1e-9 * (held.len().max(1) as f64).sqrt();
+        // Points so far apart that their distances are no numbers count as not held.
+        let rank = singular(modes).map_or(0, |modes| modes.values.iter().filter(|value| **value > least).count());
         // To turn a straight rod in space about itself moves no point.
         let idle = usize::from(rank < motions && d == 3 && is_straight(&point, &body, &centre, extent));
         if rank + idle < motions {

@@ -34,7 +34,7 @@ impl Plane {
             let (of_cell, _) = fitted(&x, space, d);
             // The least singular value of the product of two orthonormal bases is the cosine of the largest angle
             // between their planes.
-            directions.tr_mul(&of_cell).singular_values().min()
+            singular(directions.tr_mul(&of_cell)).map_or(0.0, |cosines| cosines.values.min())
         });
         let along = along.fold(1.0, f64::min);
         Plane { directions, height, along }

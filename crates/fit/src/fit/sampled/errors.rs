@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::fit::dense::inner;
 use crate::springs::{AskedResponse, Force};
 use rayon::prelude::*;
+use springfit_numerics::dense::singular;
 
 /// The error of the springs' forces at one shape of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -185,8 +186,8 @@ impl SampledCell<'_> {
         let (mut content, mut stretches) = (f64::INFINITY, [f64::INFINITY, 0.0f64]);
         for f in &all {
             content = content.min(f.determinant());
-            let own = f.view((0, 0), (d, d)).into_owned().singular_values();
-            stretches = [stretches[0].min(own.min()), stretches[1].max(own.max())];
+            let Some(own) = singular(f.view((0, 0), (d, d)).into_owned()) else { return (f64::NAN, [f64::NAN; 2]) };
+            stretches = [stretches[0].min(own.values.min()), stretches[1].max(own.values.max())];
         }
         (content, stretches)
     }
