@@ -104,7 +104,7 @@ pub fn singular(a: DMatrix<f64>) -> Option<Singular> {
     })
 }
 
-/// After the quadratic phase begins, three sweeps reach rounding; matrices of this library take four to eight in all.
+/// Matrices of 3 to 352 columns took 4 to 13 sweeps; more are for matrices that are not known.
 const SWEEPS: usize = 60;
 
 /// The columns p and q become `c p − s q` and `s p + c q`.
