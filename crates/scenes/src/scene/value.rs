@@ -115,7 +115,7 @@ pub struct Forms<'a, T, L, M> {
 type Plain<'a, T> = Forms<'a, T, IgnoredAny, IgnoredAny>;
 
 impl<T, L, M> Forms<'_, T, L, M> {
-    /// No form yet; `expected` is what a value in none of the forms is told to be.
+    /// A visitor that accepts no value yet. An error for a value in none of its forms says that `expected` was expected.
     pub fn expecting(expected: &'static str) -> Self {
         Forms { expected, number: None, text: None, list: None, table: None }
     }
