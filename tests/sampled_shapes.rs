@@ -11,7 +11,7 @@ use springfit_fit::fit::{
 };
 use springfit_foundation::error::Result;
 use springfit_foundation::random::{Latin, Sobol};
-use springfit_numerics::dense::singular;
+use springfit_numerics::dense::{Singular, singular};
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
@@ -136,7 +136,7 @@ fn principal_stretches_have_rotations_on_both_sides() {
     let (mut left, mut right, mut both) = (Matrix3::zeros(), Matrix3::zeros(), 0.0);
     let mut all = Vec::new();
     for g in &found {
-        let own = singular(DMatrix::from_fn(3, 3, |i, k| g[(i, k)])).unwrap();
+        let own = decomposed(g);
         assert!(own.values.iter().all(|ratio| within(amplitude(*ratio))), "{}", own.values);
         assert!(g.determinant() > 0.0);
         all.extend(own.values.iter().copied());
@@ -155,9 +155,9 @@ fn principal_stretches_have_rotations_on_both_sides() {
     assert!((mean - 0.1).abs() < 0.02, "{mean}");
 }
 
-fn stretches(g: &Matrix3<f64>) -> [f64; 3] {
-    let found = singular(DMatrix::from_fn(3, 3, |i, k| g[(i, k)])).unwrap();
-    [0, 1, 2].map(|i| found.values[i])
+/// The principal stretches of a deformation gradient, and their directions.
+fn decomposed(g: &Matrix3<f64>) -> Singular {
+    singular(DMatrix::from_fn(3, 3, |i, k| g[(i, k)])).unwrap()
 }
 
 /// Of n shapes of a family, a Latin hypercube and a Sobol design have one in each nth of the range; random numbers do not.
@@ -168,7 +168,8 @@ fn designs_fill_the_range_of_every_family() {
         let found = gradients(Sampling { design, shapes, ..of_families(&families) });
         let own = found.iter().skip(family).step_by(families.len());
         let share = |g: &Matrix3<f64>| {
-            let [largest, _, smallest] = stretches(g);
+            let stretches = decomposed(g).values;
+            let (largest, smallest) = (stretches[0], stretches[2]);
             // The stretch of an axis is the one that is not that of contraction.
             let ratio = match family {
                 0 => largest,
