@@ -40,11 +40,20 @@ pub struct Singular {
 }
 
 impl Singular {
+    /// The number of values above `least` of the largest.
+    pub fn rank(&self, least: f64) -> usize {
+        self.values.iter().filter(|value| **value > least * self.values[0]).count()
+    }
+
     /// `A⁺ = V Σ⁺ Uᵀ`, n × m; values of at most `least` of the largest count as zero. Those below 1e-15 of it are rounding.
     pub fn pseudo_inverse(&self, least: f64) -> DMatrix<f64> {
-        let rank = self.values.iter().filter(|value| **value > least * self.values[0]).count();
+        let rank = self.rank(least);
         let mut scaled = self.scaled.columns(0, rank).into_owned();
-        scaled.column_iter_mut().zip(&self.values).for_each(|(mut column, value)| column /= value * value);
+        for (mut column, value) in scaled.column_iter_mut().zip(&self.values) {
+            // The square of a small value may be no number.
+            column /= *value;
+            column /= *value;
+        }
         self.v.columns(0, rank) * scaled.transpose()
     }
 }

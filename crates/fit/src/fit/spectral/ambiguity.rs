@@ -39,7 +39,7 @@ pub fn least_frobenius(problem: &Problem, optimum: &mut Optimum) -> bool {
     let u = eigen.eigenvectors.select_columns(&active);
     let columns: Vec<DVector<f64>> = springs.iter().map(|a| DVector::from_column_slice((a * &u).as_slice())).collect();
     let Some(singular) = singular(DMatrix::from_columns(&columns)) else { return false };
-    let rank = singular.values.iter().filter(|s| **s > FREE * singular.values[0]).count();
+    let rank = singular.rank(FREE);
     // No direction leaves all active eigenvectors as they are: the optimum is unique.
     if rank == kappa.len() {
         return false;
