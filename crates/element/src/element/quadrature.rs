@@ -22,7 +22,7 @@ pub struct Quadrature {
 pub const MOST_POINTS: usize = 32;
 
 impl Quadrature {
-    /// A rule that is exact for polynomials up to `degree` on the cell, or up to the degree that [`MOST_POINTS`] reach.
+    /// A rule that is exact for polynomials up to `degree` on the cell, or up to the degree that 32 points per direction reach.
     ///
     /// On boxes it is a product of Gauss–Legendre rules. On simplices it is the centroid (degree 1), the rule of d + 1
     /// points of degree 2 (Hammer and Stroud 1956), or the conical product rule (Stroud 1971). The rules of the other
