@@ -13,6 +13,7 @@ import itertools
 import json
 import os
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -112,6 +113,12 @@ SUBSTEPS = 400
 TWINS = 1e-6
 # Forces that are computed in 32 bits, of the largest force, percent.
 FORCES = 1e-3
+
+
+def program(word):
+    """A program that runs from any folder."""
+    found = shutil.which(word)
+    return os.path.abspath(found) if found else word
 
 
 def run(words, folder=None):
@@ -384,7 +391,7 @@ def rest_fitted(target, folder, load):
         run(["cc", "-std=c99", "-O2", "-o", "run", "run.c", "-lm"], folder)
         run(["./run", "--rest", "rest.txt", "--load", load], folder)
         found, words = np.loadtxt(folder / "rest.txt"), ["./run"]
-    for substeps, is_told in [([], False), (["--substeps", 1000], True)]:
+    for substeps, is_told in [([], False), (["--substeps", 12], True)]:
         said = run([*words, 0.02, *substeps], folder).stderr
         assert ("Beware: the constants were fitted for" in said) == is_told, f"{substeps}: {said}"
     return found
@@ -594,7 +601,7 @@ def balance(missing, given):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("networks", type=Path)
-    arguments.add_argument("--springfit", default="springfit")
+    arguments.add_argument("--springfit", type=program, default="springfit")
     arguments.add_argument("--blender", type=os.path.abspath, default=sys.executable, help="a Python that has bpy")
     arguments.add_argument("--long", action="store_true", help="run what takes minutes as well")
     arguments.add_argument("--table", type=Path, help="write the table to this file as well")

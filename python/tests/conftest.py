@@ -24,6 +24,8 @@ def jax():
     """JAX with double precision."""
     module = pytest.importorskip("jax", reason="not run: jax is not installed; .ci/python runs this")
     module.config.update("jax_enable_x64", True)
+    # Most of what tests with JAX take is its compiler, which optimises what is called once.
+    module.config.update("jax_disable_most_optimizations", True)
     return module
 
 
