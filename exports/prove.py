@@ -483,7 +483,8 @@ def sheets(given, missing):
 # Moves the body of a script in steps of its own, and writes where it is.
 MOVES = {
     "newton": """
-import runpy, sys, numpy as np
+import runpy, sys, numpy as np, warp
+warp.config.enable_backward = False
 body = runpy.run_path("run.py", run_name="springfit")["Motion"]()
 for _ in range(int(sys.argv[1])):
     body.advance()
@@ -561,7 +562,8 @@ def relaxing(given, missing):
 
 # A hinge of two unequal triangles, bent by 0.2 rad, that nothing holds, in one step of 0.01 s of a solver of Newton.
 HINGE = """
-import json, sys, numpy as np, newton
+import json, sys, numpy as np, newton, warp
+warp.config.enable_backward = False
 points = np.array([[0.1, 0.5, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.7, -1.0, 0.0]])
 built = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
 built.add_particles([tuple(x) for x in points], [(0.0, 0.0, 0.0)] * 4, [1.0] * 4, [1e-5] * 4)

@@ -363,6 +363,26 @@ fn a_sweep_is_drawn_over_its_key() {
     assert!(told.contains("the folder has 2 studies of other values"), "{told}");
 }
 
+/// Errors relative to different solutions are of different curves, and a key of the name of a column does not replace it.
+#[test]
+fn what_is_not_to_be_compared_is_apart() {
+    let fits = "fit = [[{ objective = \"frobenius\" }], [{ objective = \"exact\" }]]";
+    let references = "reference = [{ refine = 1 }, { from = \"quadratic\" }]";
+    let folder = folder_with(&format!("[sweep.over]\nmaterial.poisson = [0.1, 0.3]\n{references}\n{fits}\n"));
+    let folder = folder.path();
+    let told = done(folder, "sweep s.toml --out o");
+    assert!(told.contains("relative to different solutions (finer-body, quadratic)"), "{told}");
+    let rows: Value = serde_json::from_str(&done(folder, "sweep s.toml --json")).unwrap();
+    let found = ["set.reference", "set.fit", "reference", "fit"].map(|column| rows[1][column].clone());
+    assert_eq!(found, [json!({ "refine": 1 }), json!([{ "objective": "exact" }]), json!("finer-body"), json!("exact")]);
+    let svg = done(folder, "plot o --figure sweep");
+    for curve in
+        ["frobenius", "exact"].map(|fit| ["finer-body", "quadratic"].map(|of| format!("{fit}, relative to {of}")))
+    {
+        assert!(curve.iter().all(|name| svg.contains(name)), "{svg}");
+    }
+}
+
 /// The page has the figure and the table, and one of others is not replaced.
 #[test]
 fn a_sweep_writes_its_page_where_it_is_asked_for() {

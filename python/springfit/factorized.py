@@ -69,5 +69,9 @@ class Factorized:
             warn(f"{beyond}; Network.equilibrium solves at large deformation")
         return u.reshape(shape)
 
+    def __reduce__(self) -> "tuple[Any, ...]":
+        # A copy factorises again: the factor is larger than the network.
+        return self.network.factorized, (self._held,)
+
     def __repr__(self) -> str:
         return f"<springfit.Factorized: {self._held.sum()} of {self._held.size} components are held>"

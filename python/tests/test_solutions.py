@@ -1,5 +1,7 @@
 """Solutions of networks: linear ones, equilibria and motions, beside SciPy, differences and laws of motion."""
 
+import copy
+import pickle
 import warnings
 
 import numpy as np
@@ -67,6 +69,8 @@ def test_one_factor_solves_many_loads():
     assert np.allclose(solve(forces, moved[0])[3], known(net, solve.held, forces[3], moved[0]), rtol=1e-8, atol=1e-12)
     assert np.allclose(solve(forces[0], moved)[3], known(net, solve.held, forces[0], moved[3]), rtol=1e-8, atol=1e-12)
     assert solve(forces[:0]).shape == (0, *net.points.shape)
+    for again in (pickle.loads(pickle.dumps(solve)), copy.deepcopy(solve)):
+        assert np.array_equal(again(forces, moved), found)
     with pytest.raises(ValueError):
         solve.held[0] = False
 

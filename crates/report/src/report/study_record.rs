@@ -46,6 +46,13 @@ impl StudyRecord {
     }
 }
 
+/// What the errors of a fit under one of its loads are relative to: the finite elements of the mesh, `cells`, or a measurement or finer solution.
+pub fn reference<'a>(report: &'a Value, load: &Value) -> &'a str {
+    let measured = report["measured"].as_array().into_iter().flatten();
+    let mut standards = measured.filter(|known| known["load"] == load["name"]).map(|known| &known["standard"]);
+    standards.next().and_then(Value::as_str).unwrap_or("cells")
+}
+
 impl Line for StudyRecord {
     fn settings(&self) -> &BTreeMap<String, Value> {
         &self.settings

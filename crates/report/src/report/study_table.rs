@@ -1,7 +1,7 @@
 //! The table of a sweep: a row for each study, fit and load.
 
 use super::figure::{Columns, RunFolder, swept_chart};
-use super::study_record::StudyRecord;
+use super::study_record::{StudyRecord, reference};
 use super::table::{Cell, Column, Digits, Table, csv};
 use super::tables_page;
 use crate::error::{Error, ErrorKind, Result};
@@ -41,7 +41,8 @@ pub struct StudyTable {
 }
 
 impl StudyTable {
-    /// Makes the table of the studies that have a record; `keys` are those of the sweep, and studies are counted from 1.
+    /// Makes the table of the studies that have a record; `keys` are those of the sweep, and studies are counted from 1. A key of the name of
+    /// another column, as `fit`, has the column `set.fit`.
     pub fn of<'a>(keys: &[String], studies: &[Study], record: impl Fn(&str) -> Option<&'a StudyRecord>) -> StudyTable {
         let mut figures = BTreeSet::new();
         let mut rows: Vec<(Vec<Value>, BTreeMap<String, Value>)> = Vec::new();
@@ -58,7 +59,8 @@ impl StudyTable {
         let named = LEADING.iter().map(ToString::to_string).filter(|name| figures.contains(name));
         let others = figures.iter().filter(|name| !LEADING.contains(&name.as_str())).cloned();
         let figures: Vec<String> = named.chain(others).collect();
-        let columns = std::iter::once("study".to_string()).chain(keys.iter().cloned()).chain(figures.iter().cloned());
+        let set = keys.iter().map(|key| if figures.contains(key) { format!("set.{key}") } else { key.clone() });
+        let columns = std::iter::once("study".to_string()).chain(set).chain(figures.iter().cloned());
         let complete = |(mut first, row): (Vec<Value>, BTreeMap<String, Value>)| {
             first.extend(figures.iter().map(|name| row.get(name).cloned().unwrap_or_default()));
             first
@@ -122,13 +124,6 @@ pub fn studies_page(title: &str, table: &Table, folder: &Path) -> String {
         .into_owned()
 }
 
-/// What errors under a load are relative to: the finite elements of the mesh, or a measurement or finer solution.
-fn reference(report: &Value, load: &Value) -> Value {
-    let measured = report["measured"].as_array().into_iter().flatten();
-    let standard = measured.filter(|known| known["load"] == *load).map(|known| known["standard"].clone()).next();
-    standard.unwrap_or_else(|| "cells".into())
-}
-
 /// The cells of one study: for each fit and load, or with the error alone.
 fn rows_of(record: &StudyRecord) -> Vec<BTreeMap<String, Value>> {
     let Some(report) = &record.report else {
@@ -148,7 +143,7 @@ fn rows_of(record: &StudyRecord) -> Vec<BTreeMap<String, Value>> {
             leaves("", load, &mut row);
             row.remove("name");
             row.insert("load".into(), load["name"].clone());
-            row.insert("reference".into(), reference(report, &load["name"]));
+            row.insert("reference".into(), reference(report, load).into());
             row
         }));
         if rows.len() == before {
@@ -251,16 +246,16 @@ pub fn studies_table<'a>(
         .filter_map(|(place, _, record)| Some(format!("study {} failed: {}", place + 1, record.error.as_ref()?)))
         .collect();
     let more = failed.len().saturating_sub(FAULTS);
-    let references: BTreeSet<String> = done
+    let references: BTreeSet<&str> = done
         .iter()
         .filter_map(|(.., record)| record.report.as_ref())
         .flat_map(|report| {
             let loads = report["fits"][0]["loads"].as_array().into_iter().flatten();
-            loads.map(|load| reference(report, &load["name"]).to_string())
+            loads.map(|load| reference(report, load))
         })
         .collect();
     let mixed = (references.len() > 1).then(|| {
-        let known = references.iter().map(|word| word.trim_matches('"')).collect::<Vec<_>>().join(", ");
+        let known = references.iter().copied().collect::<Vec<_>>().join(", ");
         format!(
             "errors of these studies are relative to different solutions ({known}), as the column reference of table.csv says: they are not to be \
              compared; from in [reference] sets one for all"

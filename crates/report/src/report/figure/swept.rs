@@ -6,8 +6,9 @@ use super::precision::BELOW;
 use super::run_folder::RunFolder;
 use crate::error::{Error, Result};
 use crate::file::{files_in, read_text};
-use crate::order::grouped;
+use crate::order::{distinct, grouped};
 use crate::report::StudyRecord;
+use crate::report::study_record::reference;
 use crate::study::statistics::median;
 use serde_json::Value;
 
@@ -15,7 +16,7 @@ use serde_json::Value;
 type Medians = (String, Vec<(f64, f64)>);
 
 /// A curve for each fit: the median over all studies and loads of the error e_rms at each value of the key, which is the first one with
-/// several numbers unless it is named.
+/// several numbers unless it is named. Errors that are relative to different solutions are of different curves.
 ///
 /// # Errors
 /// The folder has no studies, or they have no such key with numbers.
@@ -49,24 +50,22 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
             "none of them",
         ));
     };
-    let medians = |(name, fits): (&str, Vec<(f64, &Value)>)| -> Medians {
-        let errors = |fit: &Value| -> Vec<f64> {
-            fit["loads"].as_array().into_iter().flatten().filter_map(|load| load["e_rms"].as_f64()).collect()
-        };
-        // Whole lists are grouped: to look for the key of each error would take as many times as long as there are loads.
-        let points = grouped(fits.into_iter().map(|(at, fit)| (at, errors(fit))));
-        let points =
-            points.into_iter().map(|(at, lists)| (at, lists.concat())).filter(|(_, errors)| !errors.is_empty());
-        let mut points: Vec<(f64, f64)> = points.map(|(at, errors)| (at, median(&errors))).collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (name.into(), points)
-    };
     let fits = records.iter().filter_map(|record| {
         let at = record.settings.get(*key).and_then(Value::as_f64)?;
-        let fits = record.report.as_ref()?["fits"].as_array()?;
-        Some(fits.iter().map(move |fit| (fit["name"].as_str().unwrap_or_default(), (at, fit))))
+        let report = record.report.as_ref()?;
+        let errors = |fit| errors_of(report, fit).map(move |(curve, errors)| (curve, (at, errors)));
+        Some(report["fits"].as_array()?.iter().flat_map(errors).collect::<Vec<_>>())
     });
-    let curves: Vec<Medians> = grouped(fits.flatten()).into_iter().map(medians).collect();
+    let curves = grouped(fits.flatten());
+    let references = distinct(curves.iter().map(|((_, reference), _)| *reference));
+    let medians = |((name, reference), lists): ((&str, &str), Vec<(f64, Vec<f64>)>)| -> Medians {
+        let name = if references.len() > 1 { format!("{name}, relative to {reference}") } else { name.into() };
+        let points = grouped(lists).into_iter().map(|(at, lists)| (at, median(&lists.concat())));
+        let mut points: Vec<(f64, f64)> = points.collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (name, points)
+    };
+    let curves: Vec<Medians> = curves.into_iter().map(medians).collect();
     let errors = || curves.iter().flat_map(|(_, points)| points).map(|(_, error)| *error);
     // Errors that are rounding, in percent, have no place on a logarithmic axis.
     let is_shown = |error: &f64| *error > 1e-9;
@@ -90,4 +89,13 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
         y: Axis::log("e_rms, % (median of studies and loads)"),
         series,
     })
+}
+
+/// The errors e_rms of a fit in percent, by its name and by what they are relative to.
+// Whole lists are grouped: to look for the curve of each error would take as many times as long as there are loads.
+fn errors_of<'a>(report: &'a Value, fit: &'a Value) -> impl Iterator<Item = ((&'a str, &'a str), Vec<f64>)> {
+    let loads = fit["loads"].as_array().into_iter().flatten();
+    let errors = loads.filter_map(|load| Some((reference(report, load), load["e_rms"].as_f64()?)));
+    let name = fit["name"].as_str().unwrap_or_default();
+    grouped(errors).into_iter().map(move |(reference, errors)| ((name, reference), errors))
 }
