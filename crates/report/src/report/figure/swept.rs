@@ -14,6 +14,8 @@ use serde_json::Value;
 
 /// A fit with its median error at each value of the key.
 type Medians = (String, Vec<(f64, f64)>);
+/// The name of a fit, and what errors are relative to.
+type Curve<'a> = (&'a str, &'a str);
 
 /// A curve for each fit: the median over all studies and loads of the error e_rms at each value of the key, which is the first one with
 /// several numbers unless it is named. Errors that are relative to different solutions are of different curves.
@@ -58,7 +60,7 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
     });
     let curves = grouped(fits.flatten());
     let references = distinct(curves.iter().map(|((_, reference), _)| *reference));
-    let medians = |((name, reference), lists): ((&str, &str), Vec<(f64, Vec<f64>)>)| -> Medians {
+    let medians = |((name, reference), lists): (Curve, Vec<(f64, Vec<f64>)>)| -> Medians {
         let name = if references.len() > 1 { format!("{name}, relative to {reference}") } else { name.into() };
         let points = grouped(lists).into_iter().map(|(at, lists)| (at, median(&lists.concat())));
         let mut points: Vec<(f64, f64)> = points.collect();
@@ -91,9 +93,9 @@ pub fn swept_chart(run: &RunFolder, key: Option<&str>) -> Result<Chart> {
     })
 }
 
-/// The errors e_rms of a fit in percent, by its name and by what they are relative to.
+/// The errors e_rms of a fit in percent, by their curves.
 // Whole lists are grouped: to look for the curve of each error would take as many times as long as there are loads.
-fn errors_of<'a>(report: &'a Value, fit: &'a Value) -> impl Iterator<Item = ((&'a str, &'a str), Vec<f64>)> {
+fn errors_of<'a>(report: &'a Value, fit: &'a Value) -> impl Iterator<Item = (Curve<'a>, Vec<f64>)> {
     let loads = fit["loads"].as_array().into_iter().flatten();
     let errors = loads.filter_map(|load| Some((reference(report, load), load["e_rms"].as_f64()?)));
     let name = fit["name"].as_str().unwrap_or_default();

@@ -26,6 +26,7 @@ from pathlib import Path
 
 import newton
 import numpy as np
+import warp
 
 
 class Memory:
@@ -328,6 +329,8 @@ def change_setting(arguments):
 
 
 if __name__ == "__main__":
+    # Nothing is differentiated: without their adjoints kernels compile in half of the time.
+    warp.config.enable_backward = False
     forces, given = taken(net, change_setting(sys.argv[1:]))
     if given[:1] == ["--rest"]:
         x = come_to_rest(tuple(map(float, given[2:])) or None, forces)
