@@ -128,7 +128,7 @@ def test_second_derivatives_are_those_of_differences(jax):
         young, poisson = np.full(len(mesh.cells[0][1]), 2.0), 0.3
         w = weighted(rng, constants(points, young, poisson))
         loss = lambda *given: sum((w * own**2).sum() for w, own in zip(w, constants.jax(*given)))
-        # As it is for the first; compiled whole, what the others ask for is compiled once.
+        # The first case is computed operation by operation. The others are compiled as a whole, which takes half of the time.
         whole = jax.jit if case else lambda function: function
         gradient = whole(jax.grad(loss))
         own = np.array(whole(jax.hessian(loss))(points, young, poisson))

@@ -18,11 +18,12 @@ enum Fault {
 
 const FAULTS: [Fault; 3] = [Fault::Kill, Fault::Once, Fault::Full];
 
-/// At which operations there are faults.
+/// Which operations have a fault.
 #[derive(Clone, Copy, PartialEq)]
 enum At {
-    /// Kills at each, one that fails at each first of two, and a full disk at each second.
+    /// A kill is at each operation. Operations of odd numbers fail once; from those of even numbers on the disk is full.
     Turns,
+    /// Each fault is at each operation.
     Each,
 }
 
