@@ -172,7 +172,8 @@ class Prover:
         if motion.count():
             page.select_option("#load", label="motion")
             self.look()
-            self.changes("play", lambda: (page.click("#play"), page.wait_for_timeout(500), page.click("#play")))
+            self.changes("play", lambda: page.click("#play"))
+            page.click("#play")
         heading = page.locator("#tables table th.number button").first
         if heading.count():
             # What is not known is last either way.
