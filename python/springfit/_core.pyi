@@ -48,6 +48,7 @@ __all__ = [
     "stability_of_scene",
     "study_line",
     "voxel_mesh",
+    "young_and_poisson",
 ]
 
 __version__: str
@@ -274,6 +275,7 @@ def voxel_mesh(
     names: list[tuple[str, list[int]]] | None,
 ) -> Mesh: ...
 def checked_material(material: Any, keys: list[str]) -> list[float | None]: ...
+def young_and_poisson(constants: dict[str, Any]) -> tuple[float, float]: ...
 def command_line(arguments: list[str]) -> int: ...
 def fit(
     mesh: Mesh,

@@ -11,7 +11,7 @@ from typing import Any, Literal, Union
 import numpy as np
 
 from . import _core
-from ._arguments import PLANES, array, failure, number, shown, typed, word
+from ._arguments import PLANES, array, failure, shown, typed, word
 
 #: A number, a text with a unit, an expression of x, y and z in m, or a value of each cell.
 Quantity = Union[float, str, np.ndarray, Sequence[float]]
@@ -42,7 +42,7 @@ class Material:
     the place 10. In a region an array has values for all cells of the mesh, of which those of the region are taken; others may be NaN.
 
     Args:
-        young: Young's modulus, Pa; an isotropic material has it and ``poisson``.
+        young: Young's modulus, Pa. An isotropic material has it and ``poisson``; :meth:`isotropic` takes other constants.
         poisson: Poisson's ratio, above -1 and below 0.5.
         plane: The state of a plane body or a surface: "stress" (the default) or "strain".
         thickness: Of a plane body or a surface, m. A plane body without it is 1 m thick; a surface in space requires it.
@@ -113,23 +113,42 @@ class Material:
                 object.__setattr__(self, name, value)
 
     @classmethod
-    def lame(cls, lam: float, mu: float, **rest: Any) -> Material:
-        """The material of Lamé's constants λ and μ, Pa.
+    def isotropic(
+        cls,
+        *,
+        young: float | str | None = None,
+        poisson: float | str | None = None,
+        shear_modulus: float | str | None = None,
+        bulk_modulus: float | str | None = None,
+        lam: float | str | None = None,
+        **others: Any,
+    ) -> Material:
+        """The isotropic material of two of its five constants.
+
+        With μ and λ, for example, E = μ (3 λ + 2 μ)/(λ + μ) and ν = λ/(2 (λ + μ)).
+
+        Args:
+            young: Young's modulus E, Pa.
+            poisson: Poisson's ratio ν.
+            shear_modulus: The shear modulus μ, Pa.
+            bulk_modulus: The bulk modulus K, Pa.
+            lam: Lamé's first constant λ, Pa.
+            others: What a material has besides, such as ``density``.
 
         Raises:
-            SpringfitError: μ or the bulk modulus λ + 2 μ/3 is not above zero.
+            SpringfitError: Not two constants are given, one is not a number or a text with a unit, or no material has them.
 
         Examples:
             >>> import springfit as sf
-            >>> sf.Material.lame(lam=4000.0, mu=4000.0).poisson
+            >>> sf.Material.isotropic(lam=4000.0, shear_modulus="4 kPa").poisson
             0.25
         """
-        lam, mu = number("lam", lam, "a number, Pa"), number("mu", mu, "a number, Pa")
-        if not mu > 0:
-            raise failure("mu", "a number above zero, Pa", mu)
-        if not 3 * lam + 2 * mu > 0:
-            raise failure("lam", f"a number above -2/3 mu = {-2 * mu / 3:g} Pa", lam)
-        return cls(young=mu * (3 * lam + 2 * mu) / (lam + mu), poisson=lam / (2 * (lam + mu)), **rest)
+        given = {"young": young, "poisson": poisson, "shear_modulus": shear_modulus, "bulk_modulus": bulk_modulus, "lambda": lam}
+        constants = {key: value for key, value in given.items() if value is not None}
+        if len(constants) != 2:
+            expected = "two of young, poisson, shear_modulus, bulk_modulus and lam"
+            raise failure("material", expected, " and ".join(constants) or "none")
+        return cls(*_core.young_and_poisson(constants), **others)
 
     def _entry(self, held: dict[str, Any] | None) -> dict[str, Any]:
         """The keys of a scene's entry; arrays by cell are held by name."""

@@ -66,6 +66,7 @@ fn _core(module: &Bound<PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(filled::filled_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(filled::voxel_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(stated::checked_material, module)?)?;
+    module.add_function(wrap_pyfunction!(stated::young_and_poisson, module)?)?;
     module.add_function(wrap_pyfunction!(command::command_line, module)?)?;
     module.add_function(wrap_pyfunction!(fit::fit, module)?)?;
     module.add_function(wrap_pyfunction!(fit::learning_curve, module)?)?;

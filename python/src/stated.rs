@@ -68,9 +68,7 @@ impl Stated {
             }
             Err(_) => Vec::new(),
         };
-        let value = value_of(&table, "material")?;
-        let materials = Materials::parse(toml::Table::from_iter([("material".into(), value)]));
-        let materials = materials.map_err(|error| raised(py, placed(error, &regions)))?;
+        let materials = parsed(&table, &regions)?;
         Ok((Stated { materials, memory: InMemory::default(), regions }, held))
     }
 
@@ -97,6 +95,15 @@ impl Stated {
     pub fn assumption(&self, mesh: &springfit_mesh::mesh::Mesh) -> Option<String> {
         self.materials.assumption(mesh)
     }
+}
+
+/// Reads the entry, or the entries of regions with these names, as a scene has them.
+///
+/// # Errors
+/// A value is wrong.
+fn parsed(stated: &Bound<PyAny>, regions: &[Option<String>]) -> PyResult<Materials> {
+    let table = toml::Table::from_iter([("material".into(), value_of(stated, "material")?)]);
+    Materials::parse(table).map_err(|error| raised(stated.py(), placed(error, regions)))
 }
 
 /// The error with the key as Python has it: `young`, or `material["core"].young`.
@@ -131,4 +138,18 @@ fn placed(error: Error, regions: &[Option<String>]) -> Error {
 pub fn checked_material(material: &Bound<PyAny>, keys: Vec<String>) -> PyResult<Vec<Option<f64>>> {
     let (stated, _) = Stated::without_arrays(material)?;
     Ok(keys.iter().map(|key| stated.materials.number(key)).collect())
+}
+
+/// Young's modulus in Pa and Poisson's ratio of the isotropic material with two constants, which have the keys of a scene.
+///
+/// # Errors
+/// A constant is not a number, or no material has both.
+#[pyfunction]
+pub fn young_and_poisson(constants: &Bound<PyAny>) -> PyResult<(f64, f64)> {
+    let materials = parsed(constants, &[])?;
+    let number = |key: &str| {
+        let expected = || Error::expected(key, "a number, or a text with a unit", "an expression");
+        materials.number(key).ok_or_else(|| raised(constants.py(), expected()))
+    };
+    Ok((number("young")?, number("poisson")?))
 }

@@ -1,5 +1,6 @@
 """Arguments of fits, supports and studies: what is wrong is named, and nothing that is given is passed over."""
 
+import itertools
 import re
 from pathlib import Path
 
@@ -51,12 +52,19 @@ def test_values_of_materials_are_numbers(keys, key):
     assert raised(lambda: sf.Material(**{"young": 1e4, "poisson": 0.3, **keys}), key).startswith(f"{key}: expected")
 
 
-def test_constants_of_lame_are_those_of_a_material():
-    own = sf.Material.lame(2.0, 1.0)
-    assert own.young == pytest.approx(8 / 3) and own.poisson == pytest.approx(1 / 3)
-    assert sf.Material.lame(-0.6, 1.0).poisson < 0
-    for lam, mu, key in [(1.0, -1.0, "mu"), (1.0, 0.0, "mu"), (-2 / 3, 1.0, "lam"), (-1.0, 1.0, "lam"), ("1 kPa", 1.0, "lam"), (np.nan, 1.0, "lam")]:
-        raised(lambda: sf.Material.lame(lam, mu), key)
+def test_any_two_constants_state_an_isotropic_material():
+    all_constants = {"young": 1e4, "poisson": 0.25, "shear_modulus": 4e3, "bulk_modulus": 2e4 / 3, "lam": 4e3}
+    for pair in itertools.combinations(all_constants, 2):
+        own = sf.Material.isotropic(**{key: all_constants[key] for key in pair}, density=1e3)
+        assert (own.young, own.poisson) == pytest.approx((1e4, 0.25)) and own.density == 1e3
+    assert sf.Material.isotropic(lam="-0.6 kPa", shear_modulus=1e3).poisson < 0
+    # λ + 2 μ/3 is the bulk modulus.
+    for lam, shear_modulus in [(1.0, -1.0), (1.0, 0.0), (-2 / 3, 1.0), (-1.0, 1.0), (np.nan, 1.0), ("stiff", 1.0)]:
+        with pytest.raises(sf.SpringfitError, match="lambda"):
+            sf.Material.isotropic(lam=lam, shear_modulus=shear_modulus)
+    for given in [{}, {"lam": 1.0}, {"lam": 1.0, "young": 1.0, "poisson": 0.3}]:
+        raised(lambda: sf.Material.isotropic(**given), "material")
+    raised(lambda: sf.Material.isotropic(young="1e4*(1 + z)", poisson=0.3), "young")
 
 
 @pytest.mark.parametrize(
