@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-13;
 const SEVEN: f64 = 1.3e-7;
 
 /// Groups whose zeros are rounding errors of something larger: the name of the output, the keys, what the numbers are shares of, and why.
-const SCALES: [(&str, &str, f64, &str); 4] = [
+const SCALES: [(&str, &str, f64, &str); 5] = [
     (
         "*",
         "*e_*",
@@ -20,6 +20,7 @@ const SCALES: [(&str, &str, f64, &str); 4] = [
     ),
     ("*", "*/relative_*", 1.0, "a share of the stiffness"),
     ("*", "*tensor_distance", 1.0, "a share of the elasticity tensor"),
+    ("*", "*lacking_energy", 1.0, "a share of the energy; that of a uniform strain is the square of a rounding error"),
     ("*", "*drift*", 1.0, "a share of the largest energy; that of an exact integrator is a rounding error"),
 ];
 
