@@ -41,6 +41,18 @@ fn a_large_distance_is_no_perfect_result() {
     assert_eq!(displacement_error(&[0.0, 5e-324], &[0.0, 1e300], 1), None);
 }
 
+/// Of points that a symmetry of the body makes equal, rounding would select one.
+#[test]
+fn the_tip_does_not_depend_on_the_numbers_of_points() {
+    let fem = [0.1, 0.2, 1.0, 0.0, 0.0, -1.0 + 1e-13, 0.8, 0.6];
+    let lem = [0.1, 0.2, 1.1, 0.0, 0.0, -1.3, 0.8, 0.7];
+    for first in 0..4 {
+        let turned = |u: &[f64]| u.iter().cycle().skip(2 * first).take(8).copied().collect::<Vec<f64>>();
+        let found = displacement_error(&turned(&fem), &turned(&lem), 2).unwrap();
+        assert!((found.tip - 30.0).abs() < 1e-9, "{found:?}");
+    }
+}
+
 #[test]
 fn the_norm_of_what_is_not_finite_is_not() {
     assert_eq!(norm(&[]), 0.0);

@@ -49,11 +49,11 @@ def errors(comm: Any, fem: np.ndarray, lem: np.ndarray) -> "dict[str, float] | N
     """The distances of the points of a network from those of the finite elements, in percent of the largest displacement, over all ranks.
     None where the finite elements do not move."""
     size, apart = np.linalg.norm(fem, axis=1), np.linalg.norm(fem - lem, axis=1)
-    far = int(np.argmax(size)) if len(size) else 0
-    tips = comm.allgather((size[far], apart[far]) if len(size) else (0.0, 0.0))
-    largest, tip = max(tips)
+    largest = comm.allreduce(float(size.max(initial=0.0)), MPI.MAX)
     if not largest > 0:
         return None
+    # Rounding would decide between points that a symmetry of the body makes equal.
+    tip = comm.allreduce(float(apart[size >= (1 - 1e-6) * largest].max(initial=0.0)), MPI.MAX)
     square = comm.allreduce(float(np.sum((apart / largest) ** 2)), MPI.SUM)
     points = comm.allreduce(len(size), MPI.SUM)
     worst = comm.allreduce(float(apart.max(initial=0.0)), MPI.MAX)
