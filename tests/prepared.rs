@@ -168,7 +168,7 @@ fn springs_of_any_kind_are_kept() {
     let mut random = Random(74);
     let mut network = classical(&mesh, Material::new(1e1, 0.3, State::Solid).unwrap());
     let angle = Measure::of_kind(SpringKind::Angle, 3, 3).unwrap();
-    network.others.push(spring(Measure::Function(Arc::new(angle)), vec![3, 0, 7], 0.4));
+    network.others.push(spring(Measure::Function(Arc::new(angle.into())), vec![3, 0, 7], 0.4));
     let law = Arc::new(Law::parse("k*s + m*s^3").unwrap());
     let law = Some(Box::new(SpringLaw::new(law, &[2.0, 5.0])));
     let lawful = MeasureSpring { law: law.clone(), ..spring(Measure::Length, vec![5, 2], 0.4) };

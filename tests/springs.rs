@@ -104,8 +104,8 @@ fn formulas_agree_with_closed_forms() {
     let mut random = Random(3);
     for _ in 0..10 {
         let x = distorted(&tetrahedron, &mut random);
-        let volume = Measure::Function(Measure::of_kind(SpringKind::Volume, 4, 3).unwrap().into());
-        let length = Measure::Function(Measure::of_kind(SpringKind::Length, 2, 3).unwrap().into());
+        let volume = Measure::Function(Arc::new(Measure::of_kind(SpringKind::Volume, 4, 3).unwrap().into()));
+        let length = Measure::Function(Arc::new(Measure::of_kind(SpringKind::Length, 2, 3).unwrap().into()));
         for (formula, closed, x) in
             [(volume, Measure::Content(tetrahedron.clone()), &x[..]), (length, Measure::Length, &x[..6])]
         {
@@ -114,7 +114,7 @@ fn formulas_agree_with_closed_forms() {
             assert!(a.gradient.iter().zip(&b.gradient).all(|(a, b)| (a - b).abs() < 1e-13));
             assert!(a.hessian.iter().zip(&b.hessian).all(|(a, b)| (a - b).abs() < 1e-12));
         }
-        let angle = Measure::Function(Measure::of_kind(SpringKind::Angle, 3, 3).unwrap().into());
+        let angle = Measure::Function(Arc::new(Measure::of_kind(SpringKind::Angle, 3, 3).unwrap().into()));
         let (u, v) = ([x[0] - x[3], x[1] - x[4], x[2] - x[5]], [x[6] - x[3], x[7] - x[4], x[8] - x[5]]);
         let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let cosine = dot(u, v) / (dot(u, u) * dot(v, v)).sqrt();

@@ -36,7 +36,7 @@ fn add_others(mesh: &Mesh, block: &CellBlock, fit: &CellFits, all: &mut Vec<Meas
         true => Measure::Content(block.element.clone()),
         false => {
             let formula = Measure::of_kind(kind, springs.nodes(), d);
-            Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space")))
+            Measure::Function(Arc::new(formula.expect("the area of a facet has a formula in any space").into()))
         }
     };
     let at_point =

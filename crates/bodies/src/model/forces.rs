@@ -132,25 +132,34 @@ impl Network {
         let (lengths, others) = tangent.split_at_mut(self.lengths.len() * d * (2 * d + 1));
         let mut total = of_dimension!(d, |D| pull_and_stiffen::<D>(&self.lengths, x, force, lengths, definite))?;
         let mut values = others.iter_mut();
-        let mut local = Vec::new();
+        let (mut local, mut gradient, mut hessian) = (Vec::new(), Vec::new(), Vec::new());
+        let mut places: Vec<usize> = Vec::new();
         let mut pulls = None;
         for spring in &self.others {
             local.resize(spring.points.len() * d, 0.0);
             gather(x, d, &spring.points, &mut local);
-            let Jet { value, gradient, hessian } = spring.measure.jet(&local, d);
+            let value;
+            if definite {
+                value = spring.measure.both(&local, d, &mut gradient);
+            } else {
+                Jet { value, gradient, hessian } = spring.measure.jet(&local, d);
+            }
             let ask = || function_pulls(self.others.iter(), x, d).into_iter();
             let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
             let [energy, tension, slope] = known.unwrap_or_else(|| spring.pull(value));
             // `slope g gᵀ` with a slope of at least zero is semidefinite; the other term may have any sign.
-            let (slope, bend) = if definite { (slope.max(0.0), 0.0) } else { (slope, tension) };
+            let slope = if definite { slope.max(0.0) } else { slope };
             total += energy;
-            for (a, row) in dofs(&spring.points, d).enumerate() {
+            places.clear();
+            places.extend(dofs(&spring.points, d));
+            for (a, &row) in places.iter().enumerate() {
                 force[row] += tension * gradient[a];
-                for (b, column) in dofs(&spring.points, d).enumerate() {
+                for (b, &column) in places.iter().enumerate() {
                     if row >= column
                         && let Some(entry) = values.next()
                     {
-                        *entry = slope * gradient[a] * gradient[b] + bend * hessian[a * local.len() + b];
+                        let bend = if definite { 0.0 } else { tension * hessian[a * local.len() + b] };
+                        *entry = slope * gradient[a] * gradient[b] + bend;
                     }
                 }
             }

@@ -165,8 +165,8 @@ impl MeasureSpring {
     /// `k g gᵀ + T H` at the points as they are, `[points · d × points · d]`: the slope, the gradient, the force, the second derivatives.
     pub fn tangent(&self, points: &[f64], d: usize, entries: &mut [f64]) {
         let x = gathered(points, d, &self.points);
-        let gradient = self.measure.gradient(&x, d);
-        let [_, pull, slope] = self.pull(self.measure.value(&x, d));
+        let mut gradient = Vec::new();
+        let [_, pull, slope] = self.pull(self.measure.both(&x, d, &mut gradient));
         // Springs that do not pull at rest need no second derivatives.
         let bend = if pull == 0.0 { Vec::new() } else { self.measure.jet(&x, d).hessian };
         for (at, entry) in entries.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Checks that a measure does not change when a body is moved or turned.
 
 use crate::error::{Error, Result};
-use crate::symbolic::{Expr, Jet};
+use crate::symbolic::{Expr, Program};
 
 /// The number of shapes that are moved. An expression that is not invariant changes on almost every shape.
 const TRIALS: usize = 12;
@@ -15,6 +15,7 @@ const TOLERANCE: f64 = 1e-9;
 /// # Errors
 /// The measure changes; the error has no key.
 pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> Result<()> {
+    let measure = Program::of(measure);
     let mut random = Sequence(0);
     let size = positions.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
     for _ in 0..TRIALS {
@@ -27,7 +28,7 @@ pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> 
         let turned = turned(&x, dimension, &mut random);
         for (moved, how) in [(shifted, "shifted"), (turned, "turned")] {
             let (before, after) = (measure.evaluate(&x), measure.evaluate(&moved));
-            let terms = before.abs() + weight(measure, &x) + weight(measure, &moved);
+            let terms = before.abs() + weight(&measure, &x) + weight(&measure, &moved);
             if before.is_finite() && !((after - before).abs() <= TOLERANCE * terms) {
                 let expected = "a measure that stays the same where the body is shifted or turned";
                 let found = format!("{before:?} and, {how}, {after:?}");
@@ -39,8 +40,8 @@ pub fn expect_invariant(measure: &Expr, positions: &[f64], dimension: usize) -> 
 }
 
 /// `Σ |∂c/∂x_i| |x_i|`, or zero if it is not finite.
-fn weight(measure: &Expr, x: &[f64]) -> f64 {
-    let sum: f64 = Jet::gradient(measure, x).iter().zip(x).map(|(g, x)| (g * x).abs()).sum();
+fn weight(measure: &Program, x: &[f64]) -> f64 {
+    let sum: f64 = measure.gradient(x).1.iter().zip(x).map(|(g, x)| (g * x).abs()).sum();
     if sum.is_finite() { sum } else { 0.0 }
 }
 

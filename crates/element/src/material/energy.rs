@@ -6,7 +6,7 @@ use super::{Material, Moduli};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::named::unknown;
-use crate::symbolic::{Expr, Program, Scope};
+use crate::symbolic::{Compiled, Program, Scope};
 use nalgebra::Vector3;
 use schemars::{JsonSchema, schema_for};
 use serde::ser::SerializeStruct;
@@ -69,7 +69,7 @@ pub(super) struct Formula {
     /// The names of the numbers beside the moduli.
     parameters: Vec<String>,
     /// A function of the invariants, then of the moduli, then of the parameters.
-    pub(super) expression: Expr,
+    pub(super) expression: Compiled,
     /// The derivatives in the invariants.
     pub(super) slopes: Vec<Program>,
     pub(super) by_stretches: bool,
@@ -194,7 +194,7 @@ impl Energy {
             source: definition.source,
             by_stretches: uses(4..7),
             slopes: (0..INVARIANTS.len()).map(|v| Program::of(&expression.derivative(v))).collect(),
-            expression,
+            expression: expression.into(),
             parameters: definition.parameters.keys().cloned().collect(),
         };
         let constants = moduli_of(material).into_iter().chain(definition.parameters.into_values()).collect();

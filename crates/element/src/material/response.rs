@@ -4,7 +4,7 @@
 
 use super::energy::Energy;
 use crate::symbolic::Jet;
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// The second derivative of the energy, `∂P_ij/∂F_kl` at `[3i + j][3k + l]`, in Pa.
 pub type Tangent = SMatrix<f64, 9, 9>;
@@ -38,15 +38,9 @@ impl Energy {
         if self.formula.by_stretches {
             let Some((n, stretch, big_n)) = principal(f) else { return Matrix3::repeat(f64::NAN) };
             at[4..7].copy_from_slice(stretch.as_slice());
-            let [g1, g2, g3] = [0, 1, 2].map(|v| self.formula.slopes[v].evaluate(&at));
-            let pull = |i: usize| {
-                let l = stretch[i];
-                let direct = self.formula.slopes[4 + i].evaluate(&at);
-                let others = stretch[(i + 1) % 3] * stretch[(i + 2) % 3];
-                // An energy may have invariants and stretches: by the chain rule `∂I1/∂λ = 2 λ`, `∂I2/∂λ = 2 λ (I1 − λ²)`.
-                direct + 2.0 * l * g1 + 2.0 * l * (i1 - l * l) * g2 + others * g3
-            };
-            return (0..3).map(|i| pull(i) * n.column(i) * big_n.column(i).transpose()).sum();
+            let slopes = SVector::<f64, 7>::from_fn(|v, _| self.formula.slopes[v].evaluate(&at));
+            let pull = of_stretches(&stretch).transpose() * slopes;
+            return (0..3).map(|i| pull[i] * n.column(i) * big_n.column(i).transpose()).sum();
         }
         let mut stress = Matrix3::zeros();
         let mut add = |v: usize, direction: &dyn Fn() -> Matrix3<f64>| {
@@ -73,21 +67,17 @@ impl Energy {
         Invariants { c, fibre, values: [i1, (i1 * i1 - (c * c).trace()) / 2.0, f.determinant(), i4] }
     }
 
-    /// The energy with its derivatives in the first invariants, or in the stretches.
-    fn jet(&self, variables: Vec<Jet>) -> Jet {
-        let n = variables[0].gradient.len();
-        let mut at = variables;
-        at.extend(self.constants.iter().map(|c| Jet::number(*c)));
-        self.formula.expression.jet(&at, n)
+    /// The energy with its derivatives in the first of these variables: I1, I2, J, I4 and the stretches.
+    fn jet(&self, at: [f64; 7], variables: usize) -> Jet {
+        let at: Vec<f64> = at.into_iter().chain(self.constants.iter().copied()).collect();
+        self.formula.expression.program().jet(&at, variables)
     }
 
     /// The chain rule on the invariants.
     fn by_invariants(&self, f: &Matrix3<f64>) -> (f64, Matrix3<f64>, Tangent) {
         let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
-        let mut variables = Jet::variables(&[i1, i2, j, i4]);
         // The stretches are not needed here.
-        variables.extend([1.0; 3].map(Jet::number));
-        let w = self.jet(variables);
+        let w = self.jet([i1, i2, j, i4, 1.0, 1.0, 1.0], 4);
         // cof F = J F^(−T), also at J = 0.
         let cofactor = cofactor(f);
         let firsts = [
@@ -98,6 +88,11 @@ impl Energy {
         ];
         let mut stress = Matrix3::zeros();
         firsts.iter().zip(&w.gradient).for_each(|(d, g)| stress += *g * d);
+        // Most energies have few second derivatives in the invariants.
+        let bends: Vec<(f64, &Matrix3<f64>, &Matrix3<f64>)> = (w.hessian.iter().enumerate())
+            .filter(|(_, bend)| **bend != 0.0)
+            .map(|(pair, bend)| (*bend, &firsts[pair / 4], &firsts[pair % 4]))
+            .collect();
         let b = f * f.transpose();
         let mut tangent = Tangent::zeros();
         for (row, i, k) in (0..9).map(|r| (r, r / 3, r % 3)) {
@@ -116,10 +111,8 @@ impl Energy {
                     + w.gradient[1] * second2
                     + w.gradient[2] * second3
                     + w.gradient[3] * second4;
-                for (p, dp) in firsts.iter().enumerate() {
-                    for (q, dq) in firsts.iter().enumerate() {
-                        entry += w.hessian[4 * p + q] * dp[(i, k)] * dq[(l, m)];
-                    }
+                for (bend, dp, dq) in &bends {
+                    entry += bend * dp[(i, k)] * dq[(l, m)];
                 }
                 tangent[(row, column)] = entry;
             }
@@ -132,15 +125,7 @@ impl Energy {
         let Some((n, stretch, big_n)) = principal(f) else {
             return (f64::NAN, Matrix3::repeat(f64::NAN), Tangent::repeat(f64::NAN));
         };
-        let l = Jet::variables(stretch.as_slice());
-        let square = |i: usize| l[i].clone().product(&l[i]);
-        let i1 = square(0).sum(&square(1)).sum(&square(2));
-        let pair = |i: usize, j: usize| square(i).product(&square(j));
-        let i2 = pair(0, 1).sum(&pair(1, 2)).sum(&pair(2, 0));
-        let j = l[0].clone().product(&l[1]).product(&l[2]);
-        let [l1, l2, l3] = [0, 1, 2].map(|i| l[i].clone());
-        let w = self.jet(vec![i1, i2, j, Jet::number(1.0), l1, l2, l3]);
-        let (g, h) = (&w.gradient, &w.hessian);
+        let (value, g, h) = self.in_stretches(&stretch);
         let direction = |i: usize, j: usize| n.column(i) * big_n.column(j).transpose();
         let mut stress = Matrix3::zeros();
         (0..3).for_each(|i| stress += g[i] * direction(i, i));
@@ -149,7 +134,7 @@ impl Energy {
         let flat = |a: Matrix3<f64>| SMatrix::<f64, 9, 1>::from_row_slice(a.transpose().as_slice());
         for i in 0..3 {
             for j in 0..3 {
-                tangent += h[3 * i + j] * flat(direction(i, i)) * flat(direction(j, j)).transpose();
+                tangent += h[(i, j)] * flat(direction(i, i)) * flat(direction(j, j)).transpose();
                 // An axis does not turn against itself: what follows is the part of rotations of two axes.
                 if i == j {
                     continue;
@@ -160,7 +145,7 @@ impl Energy {
                     ((a * g[i] - b * g[j]) / below, (b * g[i] - a * g[j]) / below)
                 } else {
                     // Means of the values at both stretches: the error is the square of their difference.
-                    let bend = ((h[4 * i] + h[4 * j]) / 2.0 - h[3 * i + j]) / 2.0;
+                    let bend = ((h[(i, i)] + h[(j, j)]) / 2.0 - h[(i, j)]) / 2.0;
                     let pull = (g[i] + g[j]) / (2.0 * (a + b));
                     (bend + pull, bend - pull)
                 };
@@ -168,8 +153,35 @@ impl Energy {
                 tangent += crossed * flat(direction(i, j)) * flat(direction(j, i)).transpose();
             }
         }
-        (w.value, stress, tangent)
+        (value, stress, tangent)
     }
+
+    /// The energy with its derivatives in the stretches, by the chain rule: an energy may have invariants and stretches.
+    fn in_stretches(&self, l: &Vector3<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
+        let squares = l.component_mul(l);
+        let i1 = squares.sum();
+        let i2 = squares[0] * squares[1] + squares[1] * squares[2] + squares[2] * squares[0];
+        let w = self.jet([i1, i2, l[0] * l[1] * l[2], 1.0, l[0], l[1], l[2]], 7);
+        let first = of_stretches(l);
+        let [g1, g2, g3] = [w.gradient[0], w.gradient[1], w.gradient[2]];
+        let bend = Matrix3::from_fn(|i, j| match i == j {
+            true => 2.0 * g1 + 2.0 * (i1 - squares[i]) * g2,
+            false => 4.0 * l[i] * l[j] * g2 + l[3 - i - j] * g3,
+        });
+        let second = first.transpose() * SMatrix::<f64, 7, 7>::from_row_slice(&w.hessian) * first + bend;
+        (w.value, first.transpose() * SVector::<f64, 7>::from_column_slice(&w.gradient), second)
+    }
+}
+
+/// The derivatives of I1, I2, J, I4 and the stretches λ in the stretches: `∂I1/∂λ = 2 λ`, `∂I2/∂λ = 2 λ (I1 − λ²)`.
+fn of_stretches(l: &Vector3<f64>) -> SMatrix<f64, 7, 3> {
+    SMatrix::from_fn(|v, i| match v {
+        0 => 2.0 * l[i],
+        1 => 2.0 * l[i] * (l.norm_squared() - l[i] * l[i]),
+        2 => l[(i + 1) % 3] * l[(i + 2) % 3],
+        3 => 0.0,
+        _ => f64::from(u8::from(v - 4 == i)),
+    })
 }
 
 /// The decomposition `F = Σ λ_i n_i N_iᵀ`: the n as columns, the λ, and the N as columns. A reflection appears as the

@@ -5,7 +5,7 @@
 use super::Springs;
 use super::angle::{angle_gradient, angle_sine};
 use crate::element::SpringKind;
-use crate::symbolic::{Differentiable, Jet};
+use crate::symbolic::Differentiable;
 
 impl Springs {
     /// Writes the rows of the springs on functions alone, `[functions × nodes·dimension]`, into `rows`, which must be
@@ -20,7 +20,7 @@ impl Springs {
             let at: Vec<T> = spring.nodes.iter().flat_map(|&a| &x[a * d..(a + 1) * d]).cloned().collect();
             let gradient = match spring.kind == SpringKind::Angle {
                 true => angle_gradient(&at, d),
-                false => Jet::gradient(&spring.function, &at),
+                false => spring.function.program().gradient(&at).1,
             };
             for (&a, g) in spring.nodes.iter().zip(gradient.chunks_exact(d)) {
                 // Added, because a coupling may name a node twice.

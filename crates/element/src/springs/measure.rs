@@ -6,7 +6,7 @@ use super::squares::Squares;
 use super::turns::Turns;
 use crate::element::{Element, Formula, SpringKind, Tabulation, dot};
 use crate::error::{Error, ErrorKind, Result};
-use crate::symbolic::{Expr, Jet};
+use crate::symbolic::{Compiled, Expr, Jet};
 use std::sync::Arc;
 
 /// One number c that depends on the positions of some points.
@@ -28,7 +28,7 @@ pub enum Measure {
     /// A weighted sum of squared distances, behind a pointer as well.
     Squares(Box<Squares>),
     /// A function of the coordinates of the points, in the order x₀, y₀, (z₀,) x₁, …
-    Function(Arc<Expr>),
+    Function(Arc<Compiled>),
 }
 
 /// Energy, force and tangent of a spring at given positions.
@@ -97,7 +97,7 @@ impl Measure {
             Measure::Patch(patch) => patch.jet(x, dimension),
             Measure::Turns(turns) => turns.jet(x),
             Measure::Squares(squares) => squares.jet(x, dimension),
-            Measure::Function(function) => Jet::evaluate(function, x),
+            Measure::Function(function) => function.program().jet(x, x.len()),
         }
     }
 
@@ -118,7 +118,7 @@ impl Measure {
     /// The gradient `∇c` at the positions `x`, `[points × dimension]`.
     pub fn gradient(&self, x: &[f64], dimension: usize) -> Vec<f64> {
         match self {
-            Measure::Function(function) => Jet::gradient(function, x),
+            Measure::Function(function) => function.program().gradient(x).1,
             Measure::Length => self.jet(x, dimension).gradient,
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).gradient(),
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).gradient(),
@@ -137,7 +137,12 @@ impl Measure {
             Measure::Content(element) => Content::of_cell(&element.tabulation, x).both(gradient),
             Measure::PointContent(element, q) => Content::of_point(&element.tabulation, *q as usize, x).both(gradient),
             Measure::Span(table) => Content::of_point(table, 0, x).both(gradient),
-            Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Squares(_) | Measure::Function(_) => {
+            Measure::Function(function) => {
+                let (value, slopes) = function.program().gradient(x);
+                *gradient = slopes;
+                value
+            }
+            Measure::Length | Measure::Patch(_) | Measure::Turns(_) | Measure::Squares(_) => {
                 *gradient = self.gradient(x, dimension);
                 self.value(x, dimension)
             }
@@ -176,11 +181,13 @@ fn length(x: &[f64], d: usize) -> Jet {
     let value = super::distance(a, b);
     let n: Vec<f64> = a.iter().zip(b).map(|(a, b)| (b - a) / value).collect();
     let gradient = n.iter().map(|n| -n).chain(n.iter().copied()).collect();
-    let entry = |i: usize| {
-        let (row, column) = (i / (2 * d), i % (2 * d));
-        let sign = if (row < d) == (column < d) { 1.0 } else { -1.0 };
-        let identity = f64::from(u8::from(row % d == column % d));
-        sign * (identity - n[row % d] * n[column % d]) / value
-    };
-    Jet { value, gradient, hessian: (0..4 * d * d).map(entry).collect() }
+    let mut hessian = vec![0.0; 4 * d * d];
+    for (row, column) in (0..d).flat_map(|row| (0..d).map(move |column| (row, column))) {
+        let identity = f64::from(u8::from(row == column));
+        let entry = (identity - n[row] * n[column]) / value;
+        for (first, second, entry) in [(0, 0, entry), (0, d, -entry), (d, 0, -entry), (d, d, entry)] {
+            hessian[(first + row) * 2 * d + second + column] = entry;
+        }
+    }
+    Jet { value, gradient, hessian }
 }

@@ -32,7 +32,7 @@ use self::areas::area_tables;
 use crate::element::{Element, SpringKind, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
 use crate::stiffness::Geometry;
-use crate::symbolic::Expr;
+use crate::symbolic::Compiled;
 use std::sync::Arc;
 
 /// The springs of one element type that a fit uses.
@@ -76,9 +76,9 @@ pub struct FunctionSpring {
     /// The nodes of the element, in the order of the function's coordinates.
     pub nodes: Vec<usize>,
     /// The function of the coordinates of these nodes.
-    pub function: Arc<Expr>,
+    pub function: Arc<Compiled>,
     /// On a surface or curve in space: the same measure as a function of the coordinates in space.
-    pub in_space: Option<Arc<Expr>>,
+    pub in_space: Option<Arc<Compiled>>,
 }
 
 impl Springs {
@@ -126,13 +126,14 @@ impl Springs {
             }
             for nodes in &group.nodes {
                 let (function, in_space) = match (&group.measure, springs.functions.last()) {
-                    (Some(measure), _) => (Arc::new(measure.clone()), None),
+                    (Some(measure), _) => (Arc::new(measure.clone().into()), None),
                     (_, Some(last)) if last.kind == group.kind && last.nodes.len() == nodes.len() => {
                         (last.function.clone(), last.in_space.clone())
                     }
                     _ => {
                         let known = |d: usize| {
-                            let known = Measure::of_kind(group.kind, nodes.len(), d).map(Arc::new);
+                            let known =
+                                Measure::of_kind(group.kind, nodes.len(), d).map(|known| Arc::new(known.into()));
                             known.map_err(|e| e.at_key(format!("springs.{}", group.name)))
                         };
                         (known(springs.dimension)?, embedded.then(|| known(springs.space)).transpose()?)

@@ -4,7 +4,9 @@
 
 use super::Geometry;
 use crate::material::{Energy, State, Tangent};
+use crate::scalar::of_dimension;
 use nalgebra::{DMatrix, Matrix3};
+use std::array::from_fn;
 
 /// The largest number of steps of the search for the stretch through the thickness that leaves no stress there.
 // Newton's steps double the digits, and twenty steps back end the search as well: one that takes more does not end.
@@ -33,8 +35,7 @@ impl Geometry {
         if x.len() > n * d {
             return self.respond_in_space(energy, state, x);
         }
-        let mut response =
-            ElementResponse { energy: 0.0, force: vec![0.0; n * d], tangent: DMatrix::zeros(n * d, n * d) };
+        let (mut stored, mut force, mut rows) = (0.0, vec![0.0; n * d], vec![0.0; (n * d).pow(2)]);
         let free = free_axes(state);
         for (grad, v) in self.weighted() {
             let f = deformation(grad, x, d);
@@ -47,24 +48,11 @@ impl Geometry {
                 return None;
             }
             let v = v * state.thickness();
-            response.energy += v * w;
-            for (a, ga) in grad.chunks_exact(d).enumerate() {
-                for k in 0..d {
-                    let row = a * d + k;
-                    response.force[row] += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
-                    // ∇N_a · ∂P_k·/∂F, then its product with every ∇N_b.
-                    let half: Vec<f64> =
-                        (0..9).map(|s| v * (0..d).map(|l| ga[l] * tangent[(3 * k + l, s)]).sum::<f64>()).collect();
-                    for (b, gb) in grad.chunks_exact(d).enumerate() {
-                        for m in 0..d {
-                            let entry: f64 = (0..d).map(|l| half[3 * m + l] * gb[l]).sum();
-                            response.tangent[(row, b * d + m)] += entry;
-                        }
-                    }
-                }
-            }
+            stored += v * w;
+            add_forces(&stress, grad, v, d, &mut force);
+            of_dimension!(d, |D| add_tangent::<D>(&tangent, grad, v, &mut rows));
         }
-        Some(response)
+        Some(ElementResponse { energy: stored, force, tangent: DMatrix::from_row_slice(n * d, n * d, &rows) })
     }
 
     /// Writes the nodal forces of [`Geometry::respond`] alone into `force`. False if the energy is not finite, or if
@@ -126,6 +114,24 @@ fn add_forces(stress: &Matrix3<f64>, grad: &[f64], v: f64, d: usize, force: &mut
     for (force, ga) in force.chunks_exact_mut(d).zip(grad.chunks_exact(d)) {
         for (k, force) in force.iter_mut().enumerate() {
             *force += v * (0..d).map(|l| stress[(k, l)] * ga[l]).sum::<f64>();
+        }
+    }
+}
+
+/// Adds `v ∇N_a · (∂P/∂F) ∇N_b` for each pair of nodes to the `rows`, `[nodes·D × nodes·D]`.
+fn add_tangent<const D: usize>(tangent: &Tangent, grad: &[f64], v: f64, rows: &mut [f64]) {
+    let (gradients, _) = grad.as_chunks::<D>();
+    let size = grad.len();
+    for (rows, ga) in rows.chunks_exact_mut(D * size).zip(gradients) {
+        for (k, row) in rows.chunks_exact_mut(size).enumerate() {
+            // ∇N_a · ∂P_k·/∂F, then its product with every ∇N_b.
+            let half: [[f64; D]; D] =
+                from_fn(|m| from_fn(|s| v * (0..D).map(|l| ga[l] * tangent[(3 * k + l, 3 * m + s)]).sum::<f64>()));
+            for (entries, gb) in row.as_chunks_mut::<D>().0.iter_mut().zip(gradients) {
+                for m in 0..D {
+                    entries[m] += (0..D).map(|l| half[m][l] * gb[l]).sum::<f64>();
+                }
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Values of expressions in any kind of number.
 
 use super::{Expr, Function};
+use crate::scalar::{DoubleDouble, Real};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
@@ -28,6 +29,15 @@ pub trait Value: Clone {
     fn is_moderate(&self) -> bool {
         true
     }
+}
+
+/// The numbers in which a program computes values and derivatives: `f64` and [`DoubleDouble`].
+pub trait Differentiable: Value + Real + From<f64> + From<DoubleDouble> {
+    /// `self` to the power of a whole number.
+    fn whole_power(self, exponent: i32) -> Self;
+
+    /// `self` to the power of a number that is not whole.
+    fn fractional_power(self, exponent: DoubleDouble) -> Self;
 }
 
 impl Value for f64 {
@@ -67,6 +77,16 @@ impl Value for f64 {
             Function::Abs => self.abs(),
             Function::Step => f64::from(u8::from(self >= 0.0)),
         })
+    }
+}
+
+impl Differentiable for f64 {
+    fn whole_power(self, exponent: i32) -> f64 {
+        self.powi(exponent)
+    }
+
+    fn fractional_power(self, exponent: DoubleDouble) -> f64 {
+        self.powf(exponent.hi)
     }
 }
 

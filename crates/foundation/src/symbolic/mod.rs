@@ -18,12 +18,13 @@ mod predicate;
 mod print;
 mod program;
 
+pub use evaluate::Differentiable;
 pub use fraction::{Fraction, Polynomial};
-pub use jet::{Differentiable, Jet};
+pub use jet::Jet;
 pub use lex::variables_of;
 pub use parse::{Scope, parse_rational};
 pub use predicate::Predicate;
-pub use program::Program;
+pub use program::{Compiled, Program};
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};

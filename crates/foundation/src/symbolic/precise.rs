@@ -3,7 +3,7 @@
 //! Theory: page *Precision* of the book.
 
 use super::Function;
-use super::evaluate::Value;
+use super::evaluate::{Differentiable, Value};
 use crate::scalar::{DoubleDouble, Real, Scalar};
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -36,22 +36,10 @@ impl Value for DoubleDouble {
     }
 
     fn to_power(self, exponent: &BigRational) -> Option<DoubleDouble> {
-        let doubled = exponent + exponent;
-        // Powers of halves are products and one root. They keep digits that
-        // the product of exponent and logarithm would lose for large results.
-        let Some(halves) = doubled.to_i32().filter(|_| doubled.is_integer()) else {
-            let p = DoubleDouble::from_rational(exponent)?;
-            return (p * &self.apply(Function::Ln)?).apply(Function::Exp);
-        };
-        let base = if halves % 2 == 0 { self } else { self.sqrt() };
-        let mut count = if halves % 2 == 0 { halves / 2 } else { halves }.unsigned_abs();
-        let (mut power, mut square) = (self.one(), base);
-        while count > 0 {
-            power = if count % 2 == 1 { power * &square } else { power };
-            count /= 2;
-            square = if count > 0 { square.squared() } else { square };
-        }
-        Some(if halves < 0 { self.one() / &power } else { power })
+        Some(match exponent.to_i32().filter(|_| exponent.is_integer()) {
+            Some(n) => self.whole_power(n),
+            None => self.fractional_power(DoubleDouble::from_rational(exponent)?),
+        })
     }
 
     fn apply(self, function: Function) -> Option<DoubleDouble> {
@@ -77,6 +65,30 @@ impl Value for DoubleDouble {
             Function::Abs => self,
             Function::Step => first,
         })
+    }
+}
+
+impl Differentiable for DoubleDouble {
+    fn whole_power(self, exponent: i32) -> DoubleDouble {
+        let mut count = exponent.unsigned_abs();
+        let (mut power, mut square) = (self.one(), self);
+        while count > 0 {
+            power = if count % 2 == 1 { power * &square } else { power };
+            count /= 2;
+            square = if count > 0 { square.squared() } else { square };
+        }
+        if exponent < 0 { self.one() / &power } else { power }
+    }
+
+    fn fractional_power(self, exponent: DoubleDouble) -> DoubleDouble {
+        let doubled = 2.0 * exponent.hi;
+        // Powers of halves are products and one root. They keep digits that
+        // the product of exponent and logarithm would lose for large results.
+        if exponent.lo == 0.0 && doubled.fract() == 0.0 && doubled.abs() <= f64::from(i32::MAX) {
+            return self.sqrt().whole_power(doubled as i32);
+        }
+        let logarithm = self.apply(Function::Ln).unwrap_or(DoubleDouble::from(f64::NAN));
+        (exponent * &logarithm).apply(Function::Exp).unwrap_or(DoubleDouble::from(f64::NAN))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::record::{MeasureKind, NetworkRecord, SpringRecord};
 use crate::element::coordinate_names;
 use crate::error::{Error, ErrorKind, Result};
-use crate::symbolic::{Jet, Scope};
+use crate::symbolic::{Program, Scope};
 
 /// The largest sum of gradients beside the sum of their sizes: some digits of single precision, in which other programs may have
 /// written them.
@@ -54,7 +54,7 @@ impl<'a> Balance<'a> {
             Err(error) => return Err(error.under(format!("measures[{}].expression", spring.measure))),
         };
         let at: Vec<f64> = spring.points.iter().flat_map(|&p| self.network.points[p].iter().copied()).collect();
-        let slopes = Jet::gradient(&expression, &at);
+        let slopes = Program::of(&expression).gradient(&at).1;
         (0..d).try_for_each(|k| vanishes(spring.measure, slopes.iter().skip(k).step_by(d).copied()))
     }
 }

@@ -74,7 +74,7 @@ impl Measuring {
                 let text = record.expression.as_deref().unwrap_or_default();
                 let names = coordinate_names(points, self.dimension);
                 let expression = Scope::new(&names).expression(text).map_err(|e| e.at_key("expression"))?;
-                Ok(Measure::Function(Arc::new(expression)))
+                Ok(Measure::Function(Arc::new(expression.into())))
             }
             MeasureKind::Content => self.content(record, kind, points),
             MeasureKind::Turn => {

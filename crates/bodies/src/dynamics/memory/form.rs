@@ -181,7 +181,7 @@ impl Form {
             }
             energy += k * square / 2.0;
         }
-        let mut entry = 0;
+        let (mut entry, mut straight) = (0, Vec::new());
         if !tangent.is_empty() {
             for k in constants {
                 for _ in 0..d {
@@ -219,14 +219,17 @@ impl Form {
             if !tangent.is_empty() {
                 let spatial: Vec<Vector3<f64>> = spatial.collect();
                 let (n, scale) = (spatial.len(), c * weight * size);
-                let straight = |at: usize| match &pushed {
-                    Some((_, g)) => weight * point.gradients[at / n].dot(&(g * point.gradients[at % n])),
-                    None => 0.0,
-                };
+                straight.clear();
+                straight.resize(n * n, 0.0);
+                if let Some((_, g)) = &pushed {
+                    for (row, a) in straight.chunks_exact_mut(n).zip(point.gradients) {
+                        row.iter_mut().zip(point.gradients).for_each(|(entry, b)| *entry = weight * a.dot(&(g * b)));
+                    }
+                }
                 each_entry(point.nodes, d, |_, _, [a, b], [k, l]| {
                     let (p, q) = (&spatial[a], &spatial[b]);
                     let content = scale * (p[l] * q[k] - 2.0 / 3.0 * p[k] * q[l]);
-                    tangent[entry] = content + if k == l { straight(a * n + b) } else { 0.0 };
+                    tangent[entry] = content + if k == l { straight[a * n + b] } else { 0.0 };
                     entry += 1;
                 });
             }

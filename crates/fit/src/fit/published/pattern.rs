@@ -6,7 +6,7 @@ use super::method::{Cover, Method};
 use crate::element::{Element, SpringKind};
 use crate::error::{Error, Result};
 use crate::springs::{FunctionSpring, Measure, Springs};
-use crate::symbolic::Expr;
+use crate::symbolic::{Compiled, Expr};
 use std::sync::Arc;
 
 /// The springs of a method on an element, and the pairs of nodes in its formula.
@@ -91,9 +91,9 @@ fn measured<'a>(
     nodes: impl Iterator<Item = Vec<usize>>,
     function: impl Fn(usize) -> Result<Expr>,
 ) -> Result<Vec<(&'a str, FunctionSpring)>> {
-    let own = Arc::new(function(springs.dimension())?);
+    let own = Arc::new(Compiled::from(function(springs.dimension())?));
     let embedded = springs.space() > springs.dimension();
-    let in_space = embedded.then(|| function(springs.space()).map(Arc::new)).transpose()?;
+    let in_space = embedded.then(|| function(springs.space()).map(|own| Arc::new(Compiled::from(own)))).transpose()?;
     let spring = |nodes| FunctionSpring { kind, nodes, function: own.clone(), in_space: in_space.clone() };
     Ok(nodes.map(|nodes| (group, spring(nodes))).collect())
 }

@@ -251,11 +251,14 @@ impl Springs<'_> {
             None => {
                 let measure = match kind {
                     SpringKind::Length => Measure::Length,
-                    _ => Measure::Function(Arc::new(Measure::of_kind(kind, nodes.len(), self.d).map_err(|e| {
-                        let words =
-                            "; a table does not say what such a spring measures: the JSON file of the network does";
-                        e.at_key("kind").followed_by(words)
-                    })?)),
+                    _ => {
+                        let function = Measure::of_kind(kind, nodes.len(), self.d).map_err(|e| {
+                            let words =
+                                "; a table does not say what such a spring measures: the JSON file of the network does";
+                            e.at_key("kind").followed_by(words)
+                        });
+                        Measure::Function(Arc::new(function?.into()))
+                    }
                 };
                 self.known.insert((kind, nodes.len()), measure.clone());
                 measure
