@@ -391,7 +391,7 @@ def rest_fitted(target, folder, load, setting):
         run(["cc", "-std=c99", "-O2", "-o", "run", "run.c", "-lm"], folder)
         run(["./run", "--rest", "rest.txt", "--load", load], folder)
         found, words = np.loadtxt(folder / "rest.txt"), ["./run"]
-    # Much fewer substeps make the body of some engines so soft that it folds, which ends the program.
+    # Far fewer substeps make the body of some engines so soft that it folds, which ends the program.
     for substeps, is_told in [([], False), (["--substeps", setting["substeps"] + 2], True)]:
         said = run([*words, 0.02, *substeps], folder).stderr
         assert ("Beware: the constants were fitted for" in said) == is_told, f"{substeps}: {said}"

@@ -65,6 +65,13 @@ fn a_program_has_the_derivatives_of_its_expression() {
             }
         }
     }
+    // A constant has no derivatives, however steep its function is there: the square root of the last variable, which is zero.
+    let steep = Program::of(&scope.expression("sqrt(w)*(x - 1)^4 + x^2*exp(y*ln(2 + w))").unwrap());
+    let jet = steep.jet(&[3.0, 2.0, 0.0, 0.0, 0.0], 2);
+    assert!(jet.hessian.iter().chain(&jet.gradient).all(|slope| slope.is_finite()), "{jet:?}");
+    assert!((jet.hessian[0] - 8.0).abs() < 1e-13, "{jet:?}");
+    let huge = Program::of(&scope.expression("x^(-2147483648)").unwrap()).jet(&[2.0, 0.0, 0.0, 0.0, 0.0], 1);
+    assert_eq!((huge.gradient[0], huge.hessian[0]), (0.0, 0.0));
     // A square root has no slope at zero, but the other variables have theirs.
     let (_, gradient) = Program::of(&scope.expression("sqrt(x) + 3*y").unwrap()).gradient(&[0.0, 1.0, 0.0, 0.0, 0.0]);
     assert_eq!(gradient[..3], [f64::INFINITY, 3.0, 0.0]);

@@ -132,7 +132,7 @@ class Material:
             poisson: Poisson's ratio ν.
             shear_modulus: The shear modulus μ, Pa.
             bulk_modulus: The bulk modulus K, Pa.
-            lam: Lamé's first constant λ, Pa.
+            lam: Lamé's first constant λ, Pa. Errors name it ``lambda``, as its key in a scene is.
             others: What a material has besides, such as ``density``.
 
         Raises:
@@ -147,7 +147,7 @@ class Material:
         constants = {key: value for key, value in given.items() if value is not None}
         if len(constants) != 2:
             expected = "two of young, poisson, shear_modulus, bulk_modulus and lam"
-            raise failure("material", expected, " and ".join(constants) or "none")
+            raise failure("material", expected, " and ".join(constants).replace("lambda", "lam") or "none")
         return cls(*_core.young_and_poisson(constants), **others)
 
     def _entry(self, held: dict[str, Any] | None) -> dict[str, Any]:

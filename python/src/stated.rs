@@ -148,7 +148,7 @@ pub fn checked_material(material: &Bound<PyAny>, keys: Vec<String>) -> PyResult<
 pub fn young_and_poisson(constants: &Bound<PyAny>) -> PyResult<(f64, f64)> {
     let materials = parsed(constants, &[])?;
     let number = |key: &str| {
-        let expected = || Error::expected(key, "a number, or a text with a unit", "an expression");
+        let expected = || Error::expected(key, "a number, or a text with a unit", "an expression or a file");
         materials.number(key).ok_or_else(|| raised(constants.py(), expected()))
     };
     Ok((number("young")?, number("poisson")?))

@@ -32,7 +32,7 @@ pub struct DisplacementError {
     #[serde(rename = "e_max")]
     #[schemars(with = "Option<f64>")]
     pub max: f64,
-    /// The error at the point that moves most in the finite elements is in percent of the largest displacement.
+    /// The error at the point that moves most in the finite elements, or the largest of equal ones, is in percent of the largest displacement.
     #[serde(rename = "e_tip")]
     #[schemars(with = "Option<f64>")]
     pub tip: f64,

@@ -5,7 +5,6 @@ use super::network::{LengthSpring, MeasureSpring, Network};
 use super::numbering::dofs;
 use crate::scalar::of_dimension;
 use crate::stiffness::gather;
-use crate::symbolic::Jet;
 use std::array::from_fn;
 
 impl Network {
@@ -138,12 +137,13 @@ impl Network {
         for spring in &self.others {
             local.resize(spring.points.len() * d, 0.0);
             gather(x, d, &spring.points, &mut local);
-            let value;
-            if definite {
-                value = spring.measure.both(&local, d, &mut gradient);
+            let value = if definite {
+                spring.measure.both(&local, d, &mut gradient)
             } else {
-                Jet { value, gradient, hessian } = spring.measure.jet(&local, d);
-            }
+                let jet = spring.measure.jet(&local, d);
+                (gradient, hessian) = (jet.gradient, jet.hessian);
+                jet.value
+            };
             let ask = || function_pulls(self.others.iter(), x, d).into_iter();
             let known = spring.function().and_then(|_| pulls.get_or_insert_with(ask).next());
             let [energy, tension, slope] = known.unwrap_or_else(|| spring.pull(value));

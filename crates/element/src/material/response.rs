@@ -30,7 +30,7 @@ impl Energy {
         if self.formula.by_stretches { self.by_stretches(f) } else { self.by_invariants(f) }
     }
 
-    /// The stress `P = ∂W/∂F` alone, at a tenth of the cost.
+    /// The stress `P = ∂W/∂F` alone, at a fraction of the cost.
     pub fn stress(&self, f: &Matrix3<f64>) -> Matrix3<f64> {
         let Invariants { c, fibre, values: [i1, i2, j, i4] } = self.invariants(f);
         let mut at = vec![i1, i2, j, i4, 1.0, 1.0, 1.0];
@@ -165,7 +165,7 @@ impl Energy {
         let first = of_stretches(l);
         let [g1, g2, g3] = [w.gradient[0], w.gradient[1], w.gradient[2]];
         let bend = Matrix3::from_fn(|i, j| match i == j {
-            true => 2.0 * g1 + 2.0 * (i1 - squares[i]) * g2,
+            true => 2.0 * g1 + 2.0 * (squares[(i + 1) % 3] + squares[(i + 2) % 3]) * g2,
             false => 4.0 * l[i] * l[j] * g2 + l[3 - i - j] * g3,
         });
         let second = first.transpose() * SMatrix::<f64, 7, 7>::from_row_slice(&w.hessian) * first + bend;
@@ -173,11 +173,11 @@ impl Energy {
     }
 }
 
-/// The derivatives of I1, I2, J, I4 and the stretches λ in the stretches: `∂I1/∂λ = 2 λ`, `∂I2/∂λ = 2 λ (I1 − λ²)`.
+/// The derivatives of I1, I2, J, I4 and the stretches λ in the stretches: `∂I1/∂λ_i = 2 λ_i`, `∂I2/∂λ_i = 2 λ_i (λ_j² + λ_k²)`.
 fn of_stretches(l: &Vector3<f64>) -> SMatrix<f64, 7, 3> {
     SMatrix::from_fn(|v, i| match v {
         0 => 2.0 * l[i],
-        1 => 2.0 * l[i] * (l.norm_squared() - l[i] * l[i]),
+        1 => 2.0 * l[i] * (l[(i + 1) % 3].powi(2) + l[(i + 2) % 3].powi(2)),
         2 => l[(i + 1) % 3] * l[(i + 2) % 3],
         3 => 0.0,
         _ => f64::from(u8::from(v - 4 == i)),

@@ -124,9 +124,10 @@ impl Springs {
                 springs.pairs.extend(group.nodes.iter().map(|nodes| [nodes[0], nodes[1]]));
                 continue;
             }
+            let measure = group.measure.clone().map(|measure| Arc::new(Compiled::from(measure)));
             for nodes in &group.nodes {
-                let (function, in_space) = match (&group.measure, springs.functions.last()) {
-                    (Some(measure), _) => (Arc::new(measure.clone().into()), None),
+                let (function, in_space) = match (&measure, springs.functions.last()) {
+                    (Some(measure), _) => (measure.clone(), None),
                     (_, Some(last)) if last.kind == group.kind && last.nodes.len() == nodes.len() => {
                         (last.function.clone(), last.in_space.clone())
                     }

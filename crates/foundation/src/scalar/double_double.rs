@@ -27,12 +27,6 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-impl From<DoubleDouble> for f64 {
-    fn from(value: DoubleDouble) -> f64 {
-        value.hi
-    }
-}
-
 /// One of the two parts of a number, or of as many numbers as a register holds.
 trait Part: Copy {
     fn plus(self, other: Self) -> Self;

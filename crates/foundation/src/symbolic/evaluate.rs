@@ -32,12 +32,15 @@ pub trait Value: Clone {
 }
 
 /// The numbers in which a program computes values and derivatives: `f64` and [`DoubleDouble`].
-pub trait Differentiable: Value + Real + From<f64> + From<DoubleDouble> {
+pub trait Differentiable: Value + Real + From<f64> {
+    /// The nearest number to `c`.
+    fn number(c: DoubleDouble) -> Self;
+
     /// `self` to the power of a whole number.
     fn whole_power(self, exponent: i32) -> Self;
 
-    /// `self` to the power of a number that is not whole.
-    fn fractional_power(self, exponent: DoubleDouble) -> Self;
+    /// `self` to the power of any number.
+    fn real_power(self, exponent: DoubleDouble) -> Self;
 }
 
 impl Value for f64 {
@@ -81,11 +84,15 @@ impl Value for f64 {
 }
 
 impl Differentiable for f64 {
+    fn number(c: DoubleDouble) -> f64 {
+        c.hi
+    }
+
     fn whole_power(self, exponent: i32) -> f64 {
         self.powi(exponent)
     }
 
-    fn fractional_power(self, exponent: DoubleDouble) -> f64 {
+    fn real_power(self, exponent: DoubleDouble) -> f64 {
         self.powf(exponent.hi)
     }
 }

@@ -3,10 +3,10 @@
 use super::Function;
 use super::evaluate::Differentiable;
 use super::program::{Program, Step};
-use crate::scalar::{DoubleDouble, Real};
+use crate::scalar::DoubleDouble;
 
-/// Directions whose second derivatives are computed together.
-const TOGETHER: usize = 4;
+/// Directions along which second derivatives are computed together.
+const DIRECTIONS: usize = 4;
 
 /// A number with its first and second derivatives in some variables.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,56 +20,100 @@ pub struct Jet<T = f64> {
 }
 
 impl Program {
-    /// The value and the gradient, `[variables]`, at the point `at`; NaN where there is none.
+    /// The value and the gradient, `[variables]`, at the point `at`; NaN or infinite where there is none.
     ///
     /// One sweep from the last step to the first has the derivatives of the value in the results of all steps (Griewank and Walther,
     /// Evaluating Derivatives, 2nd ed. 2008, 3.2). For any number of variables it takes a few times as long as the value.
     pub fn gradient<T: Differentiable>(&self, at: &[T]) -> (T, Vec<T>) {
-        let results = self.results(at);
-        let mut gradient = vec![T::from(0.0); at.len()];
-        let mut weights = self.weights::<T>();
-        for (i, step) in self.steps.iter().enumerate().rev() {
-            let weight = weights[i].clone();
-            match *step {
-                Step::Number(_) => {}
-                Step::Variable(v) => gradient[v] = weight,
-                Step::Add(a, b) => [a, b].iter().for_each(|&part| add(&mut weights[part], &weight)),
-                Step::Multiply(a, b) => {
-                    add(&mut weights[a], &(weight.clone() * &results[b]));
-                    add(&mut weights[b], &(weight * &results[a]));
-                }
-                Step::WholePower(a, _) | Step::Root(a) | Step::Power(a, _) | Step::Call(a, _) => {
-                    add(&mut weights[a], &(weight * &step.slopes(&results[a], &results[i])[0]));
-                }
-            }
-        }
-        (results[results.len() - 1].clone(), gradient)
+        let sweep = Sweep::of(self, at);
+        (sweep.value(), sweep.gradient(at.len()))
     }
 
     /// The value with the derivatives in the first `variables` variables at the point `at`, which has one entry for each variable of the
-    /// expression; NaN where there are none.
+    /// expression; NaN or infinite where there are none.
     ///
     /// The sweep of [`Program::gradient`] is differentiated along some directions at once (Griewank and Walther 2008, 5.1).
     pub fn jet<T: Differentiable>(&self, at: &[T], variables: usize) -> Jet<T> {
-        let results = self.results(at);
-        let slopes: Vec<[T; 2]> =
-            self.steps.iter().zip(&results).map(|(step, y)| step.slopes_of(&results, y)).collect();
-        let mut jet = Jet {
-            value: results[results.len() - 1].clone(),
-            gradient: vec![T::from(0.0); variables],
-            hessian: vec![T::from(0.0); variables * variables],
-        };
-        for first in (0..variables).step_by(TOGETHER) {
-            let tangents = self.tangents(&results, &slopes, first);
-            self.bend(&results, &slopes, &tangents, first, &mut jet);
+        let sweep = Sweep::of(self, at);
+        Jet { value: sweep.value(), gradient: sweep.gradient(variables), hessian: sweep.hessian(variables) }
+    }
+}
+
+/// The results of all steps at a point, and their derivatives.
+struct Sweep<'a, T> {
+    steps: &'a [Step],
+    results: Vec<T>,
+    /// The derivative of the result of each step in the one that it works on; zero for steps that work on two or on none.
+    slopes: Vec<T>,
+    /// The derivative of the last result in each result.
+    adjoints: Vec<T>,
+}
+
+impl<'a, T: Differentiable> Sweep<'a, T> {
+    fn of(program: &'a Program, at: &[T]) -> Sweep<'a, T> {
+        let results = program.results(at);
+        let slopes: Vec<T> = program.steps.iter().zip(&results).map(|(step, y)| step.slope(&results, y)).collect();
+        let mut adjoints = vec![T::from(0.0); results.len()];
+        adjoints[results.len() - 1] = T::from(1.0);
+        for (i, step) in program.steps.iter().enumerate().rev() {
+            let adjoint = adjoints[i].clone();
+            match *step {
+                Step::Number(_) | Step::Variable(_) => {}
+                Step::Add(a, b) => [a, b].iter().for_each(|&part| add(&mut adjoints[part], &adjoint)),
+                Step::Multiply(a, b) => {
+                    add(&mut adjoints[a], &(adjoint.clone() * &results[b]));
+                    add(&mut adjoints[b], &(adjoint * &results[a]));
+                }
+                Step::WholePower(a, _) | Step::Root(a) | Step::Power(a, _) | Step::Call(a, _) => {
+                    add(&mut adjoints[a], &(adjoint * &slopes[i]));
+                }
+            }
         }
-        jet
+        Sweep { steps: &program.steps, results, slopes, adjoints }
+    }
+
+    fn value(&self) -> T {
+        self.results[self.results.len() - 1].clone()
+    }
+
+    /// The steps that are one of the first variables, with its number.
+    fn variables(&self, count: usize) -> impl Iterator<Item = (usize, usize)> {
+        let steps = self.steps.iter().enumerate();
+        steps.filter_map(move |(i, step)| match *step {
+            Step::Variable(v) if v < count => Some((i, v)),
+            _ => None,
+        })
+    }
+
+    fn gradient(&self, count: usize) -> Vec<T> {
+        let mut gradient = vec![T::from(0.0); count];
+        self.variables(count).for_each(|(i, v)| gradient[v] = self.adjoints[i].clone());
+        gradient
+    }
+
+    fn hessian(&self, count: usize) -> Vec<T> {
+        let curvatures: Vec<T> = (self.steps.iter().zip(&self.results).zip(&self.slopes))
+            .map(|((step, y), slope)| step.curvature(&self.results, y, slope))
+            .collect();
+        let mut hessian = vec![T::from(0.0); count * count];
+        for first in (0..count).step_by(DIRECTIONS) {
+            let changes = self.adjoint_tangents(&curvatures, &self.tangents(first));
+            for (i, v) in self.variables(count) {
+                // One triangle is computed, so that the Hessian is symmetric to the last digit.
+                for (column, entry) in (first..count).zip(&changes[i]).filter(|(column, _)| v <= *column) {
+                    hessian[v * count + column] = entry.clone();
+                    hessian[column * count + v] = entry.clone();
+                }
+            }
+        }
+        hessian
     }
 
     /// The derivatives of all results in the variables from the `first` on.
-    fn tangents<T: Differentiable>(&self, results: &[T], slopes: &[[T; 2]], first: usize) -> Vec<[T; TOGETHER]> {
-        let mut tangents: Vec<[T; TOGETHER]> = Vec::with_capacity(results.len());
-        for (i, step) in self.steps.iter().enumerate() {
+    fn tangents(&self, first: usize) -> Vec<[T; DIRECTIONS]> {
+        let results = &self.results;
+        let mut tangents: Vec<[T; DIRECTIONS]> = Vec::with_capacity(results.len());
+        for (step, slope) in self.steps.iter().zip(&self.slopes) {
             tangents.push(match *step {
                 Step::Number(_) => std::array::from_fn(|_| T::from(0.0)),
                 Step::Variable(v) => std::array::from_fn(|l| T::from(f64::from(u8::from(v == first + l)))),
@@ -78,141 +122,110 @@ impl Program {
                     results[a].clone() * &tangents[b][l] + &(results[b].clone() * &tangents[a][l])
                 }),
                 Step::WholePower(a, _) | Step::Root(a) | Step::Power(a, _) | Step::Call(a, _) => {
-                    std::array::from_fn(|l| slopes[i][0].clone() * &tangents[a][l])
+                    std::array::from_fn(|l| times(slope, &tangents[a][l]))
                 }
             });
         }
         tangents
     }
 
-    /// Writes the gradient, and the rows and columns of the Hessian that belong to these directions.
-    fn bend<T: Differentiable>(
-        &self,
-        results: &[T],
-        slopes: &[[T; 2]],
-        tangents: &[[T; TOGETHER]],
-        first: usize,
-        jet: &mut Jet<T>,
-    ) {
-        let n = jet.gradient.len();
-        let mut weights = self.weights::<T>();
-        let mut bends: Vec<[T; TOGETHER]> = vec![std::array::from_fn(|_| T::from(0.0)); results.len()];
+    /// The derivatives of all adjoints along the directions of the tangents.
+    fn adjoint_tangents(&self, curvatures: &[T], tangents: &[[T; DIRECTIONS]]) -> Vec<[T; DIRECTIONS]> {
+        let mut all: Vec<[T; DIRECTIONS]> = vec![std::array::from_fn(|_| T::from(0.0)); self.steps.len()];
         for (i, step) in self.steps.iter().enumerate().rev() {
-            let (weight, bend) = (weights[i].clone(), bends[i].clone());
-            // The result has this slope in that of step `a`, which changes so along the directions.
-            let mut pass = |a: usize, slope: &T, change: [T; TOGETHER]| {
-                add(&mut weights[a], &(weight.clone() * slope));
-                for (sum, (bend, change)) in bends[a].iter_mut().zip(bend.iter().zip(&change)) {
-                    add(sum, &(bend.clone() * slope + &(weight.clone() * change)));
+            let (adjoint, own) = (&self.adjoints[i], all[i].clone());
+            // The result of this step has the derivative `slope` in that of step `a`, and `change` is how the slope changes.
+            let mut pass = |a: usize, slope: &T, change: [T; DIRECTIONS]| {
+                for (sum, (own, change)) in all[a].iter_mut().zip(own.iter().zip(&change)) {
+                    add(sum, &(own.clone() * slope + &(adjoint.clone() * change)));
                 }
             };
             match *step {
-                Step::Number(_) => {}
-                Step::Variable(v) => {
-                    // One triangle is computed, so that the Hessian is symmetric to the last digit.
-                    for (column, entry) in (first..n).zip(bend).filter(|(column, _)| v <= *column) {
-                        jet.hessian[v * n + column] = entry.clone();
-                        jet.hessian[column * n + v] = entry;
-                    }
-                    if let Some(entry) = jet.gradient.get_mut(v) {
-                        *entry = weight;
-                    }
-                }
+                Step::Number(_) | Step::Variable(_) => {}
                 Step::Add(a, b) => {
                     for part in [a, b] {
-                        add(&mut weights[part], &weight);
-                        bends[part].iter_mut().zip(&bend).for_each(|(sum, bend)| add(sum, bend));
+                        all[part].iter_mut().zip(&own).for_each(|(sum, own)| add(sum, own));
                     }
                 }
                 Step::Multiply(a, b) => {
-                    pass(a, &results[b], tangents[b].clone());
-                    pass(b, &results[a], tangents[a].clone());
+                    pass(a, &self.results[b], tangents[b].clone());
+                    pass(b, &self.results[a], tangents[a].clone());
                 }
                 Step::WholePower(a, _) | Step::Root(a) | Step::Power(a, _) | Step::Call(a, _) => {
-                    let [slope, curvature] = &slopes[i];
-                    pass(a, slope, std::array::from_fn(|l| curvature.clone() * &tangents[a][l]));
+                    pass(a, &self.slopes[i], std::array::from_fn(|l| times(&curvatures[i], &tangents[a][l])));
                 }
             }
         }
-    }
-
-    /// The derivative of the last result in itself, and none yet in the others.
-    fn weights<T: Differentiable>(&self) -> Vec<T> {
-        let mut weights = vec![T::from(0.0); self.steps.len()];
-        weights[self.steps.len() - 1] = T::from(1.0);
-        weights
+        all
     }
 }
 
 impl Step {
-    /// The derivatives of the result `y` in that of the step on which it works; zero if it works on two or none.
-    fn slopes_of<T: Differentiable>(&self, results: &[T], y: &T) -> [T; 2] {
-        match *self {
-            Step::WholePower(a, _) | Step::Root(a) | Step::Power(a, _) | Step::Call(a, _) => {
-                self.slopes(&results[a], y)
-            }
-            Step::Number(_) | Step::Variable(_) | Step::Add(..) | Step::Multiply(..) => [T::from(0.0), T::from(0.0)],
-        }
-    }
-
-    /// The first and second derivative of the result `y` of a step that works on `x` alone.
-    fn slopes<T: Differentiable>(&self, x: &T, y: &T) -> [T; 2] {
+    /// The derivative of the result `y` in the one that the step works on; zero if it works on two or on none.
+    fn slope<T: Differentiable>(&self, results: &[T], y: &T) -> T {
         let number = |c: f64| T::from(c);
         match *self {
-            Step::WholePower(_, exponent) => {
-                let p = f64::from(exponent);
-                // A factor of zero stays zero even if the lower power is infinite.
-                let lower = |factor: f64, by: i32| match factor == 0.0 {
-                    true => number(0.0),
-                    false => number(factor) * &x.clone().whole_power(exponent - by),
-                };
-                [lower(p, 1), lower(p * (p - 1.0), 2)]
+            Step::Number(_) | Step::Variable(_) | Step::Add(..) | Step::Multiply(..) => number(0.0),
+            Step::WholePower(a, n) => lower_power(&results[a], f64::from(n), n.saturating_sub(1)),
+            Step::Root(_) => number(0.5) / &y.magnitude(),
+            Step::Power(a, p) => T::number(p) * &results[a].clone().real_power(p - &DoubleDouble::from(1.0)),
+            Step::Call(a, function) => {
+                let x = &results[a];
+                let of = |function| x.clone().apply(function).unwrap_or_else(|| number(f64::NAN));
+                match function {
+                    Function::Exp => y.clone(),
+                    Function::Ln => number(1.0) / x,
+                    Function::Sin => of(Function::Cos),
+                    Function::Cos => of(Function::Sin).negated(),
+                    Function::Tan => number(1.0) + &y.clone().squared(),
+                    Function::Asin => number(1.0) / &(number(1.0) - &x.clone().squared()).sqrt(),
+                    Function::Acos => number(-1.0) / &(number(1.0) - &x.clone().squared()).sqrt(),
+                    Function::Atan => number(1.0) / &(number(1.0) + &x.clone().squared()),
+                    // At zero the absolute value has no derivative. The slope to the right of zero is taken.
+                    Function::Abs => number(x.rounded().signum()),
+                    Function::Step => number(0.0),
+                }
             }
-            Step::Root(_) => {
-                let slope = number(0.5) / y;
-                [slope.clone(), number(-0.5) * &slope / x]
+        }
+    }
+
+    /// The second derivative of the result `y`, with its first.
+    fn curvature<T: Differentiable>(&self, results: &[T], y: &T, slope: &T) -> T {
+        let number = |c: f64| T::from(c);
+        match *self {
+            Step::Number(_) | Step::Variable(_) | Step::Add(..) | Step::Multiply(..) => number(0.0),
+            Step::WholePower(a, n) => {
+                lower_power(&results[a], f64::from(n) * (f64::from(n) - 1.0), n.saturating_sub(2))
             }
-            Step::Power(_, exponent) => {
-                let (p, one) = (T::from(exponent), DoubleDouble::from(1.0));
-                let slope = p.clone() * &x.clone().fractional_power(exponent - &one);
-                let curvature = p.clone() * &(p - &number(1.0)) * &x.clone().fractional_power(exponent - &one - &one);
-                [slope, curvature]
+            Step::Root(a) => number(-0.5) * slope / &results[a],
+            Step::Power(a, p) => {
+                let before = p - &DoubleDouble::from(1.0);
+                let power = results[a].clone().real_power(before - &DoubleDouble::from(1.0));
+                T::number(p) * &T::number(before) * &power
             }
-            Step::Call(_, function) => slopes_of_call(function, x, y),
-            Step::Number(_) | Step::Variable(_) | Step::Add(..) | Step::Multiply(..) => [number(0.0), number(0.0)],
+            Step::Call(a, function) => match function {
+                Function::Exp => y.clone(),
+                Function::Ln => slope.clone().squared().negated(),
+                Function::Sin | Function::Cos => y.negated(),
+                Function::Tan => number(2.0) * y * slope,
+                Function::Asin | Function::Acos => results[a].clone() * &(slope.clone().squared() * slope),
+                Function::Atan => number(-2.0) * &results[a] * &slope.clone().squared(),
+                Function::Abs | Function::Step => number(0.0),
+            },
         }
     }
 }
 
-/// `f′` and `f″` at `x`, where the function has the value `y`.
-fn slopes_of_call<T: Differentiable>(function: Function, x: &T, y: &T) -> [T; 2] {
-    let number = |c: f64| T::from(c);
-    let of = |function| x.clone().apply(function).unwrap_or_else(|| number(f64::NAN));
-    match function {
-        Function::Exp => [y.clone(), y.clone()],
-        Function::Ln => [number(1.0) / x, number(-1.0) / &(x.clone() * x)],
-        Function::Sin => [of(Function::Cos), y.negated()],
-        Function::Cos => [of(Function::Sin).negated(), y.negated()],
-        Function::Tan => {
-            let slope = number(1.0) + &(y.clone() * y);
-            [slope.clone(), number(2.0) * y * &slope]
-        }
-        Function::Asin | Function::Acos => {
-            let root = (number(1.0) - &(x.clone() * x)).sqrt();
-            let sign = number(if function == Function::Asin { 1.0 } else { -1.0 });
-            let cube = root.clone() * &root * &root;
-            [sign.clone() / &root, sign * x / &cube]
-        }
-        Function::Atan => {
-            let slope = number(1.0) / &(number(1.0) + &(x.clone() * x));
-            [slope.clone(), number(-2.0) * x * &slope * &slope]
-        }
-        // At zero the absolute value has no derivative. The slope to the right of zero is taken.
-        Function::Abs => [number(x.rounded().signum()), number(0.0)],
-        Function::Step => [number(0.0), number(0.0)],
-    }
+/// `factor xⁿ`; zero if the factor is, even if the power is infinite.
+fn lower_power<T: Differentiable>(x: &T, factor: f64, n: i32) -> T {
+    if factor == 0.0 { T::from(0.0) } else { T::from(factor) * &x.clone().whole_power(n) }
 }
 
-fn add<T: Real>(sum: &mut T, term: &T) {
+/// The change of a result by that of the one on which it depends; none if that does not change, however steep the result is there.
+fn times<T: Differentiable>(slope: &T, tangent: &T) -> T {
+    if tangent.rounded() == 0.0 { T::from(0.0) } else { slope.clone() * tangent }
+}
+
+fn add<T: Differentiable>(sum: &mut T, term: &T) {
     *sum = sum.clone() + term;
 }

@@ -38,7 +38,7 @@ impl Value for DoubleDouble {
     fn to_power(self, exponent: &BigRational) -> Option<DoubleDouble> {
         Some(match exponent.to_i32().filter(|_| exponent.is_integer()) {
             Some(n) => self.whole_power(n),
-            None => self.fractional_power(DoubleDouble::from_rational(exponent)?),
+            None => self.real_power(DoubleDouble::from_rational(exponent)?),
         })
     }
 
@@ -69,6 +69,10 @@ impl Value for DoubleDouble {
 }
 
 impl Differentiable for DoubleDouble {
+    fn number(c: DoubleDouble) -> DoubleDouble {
+        c
+    }
+
     fn whole_power(self, exponent: i32) -> DoubleDouble {
         let mut count = exponent.unsigned_abs();
         let (mut power, mut square) = (self.one(), self);
@@ -80,7 +84,7 @@ impl Differentiable for DoubleDouble {
         if exponent < 0 { self.one() / &power } else { power }
     }
 
-    fn fractional_power(self, exponent: DoubleDouble) -> DoubleDouble {
+    fn real_power(self, exponent: DoubleDouble) -> DoubleDouble {
         let doubled = 2.0 * exponent.hi;
         // Powers of halves are products and one root. They keep digits that
         // the product of exponent and logarithm would lose for large results.

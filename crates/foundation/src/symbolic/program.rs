@@ -129,13 +129,13 @@ impl Step {
     #[inline(always)]
     fn result<T: Differentiable>(&self, results: &[T], at: &[T]) -> T {
         match *self {
-            Step::Number(c) => T::from(c),
+            Step::Number(c) => T::number(c),
             Step::Variable(v) => at[v].clone(),
             Step::Add(a, b) => results[a].clone() + &results[b],
             Step::Multiply(a, b) => results[a].clone() * &results[b],
             Step::WholePower(a, n) => results[a].clone().whole_power(n),
             Step::Root(a) => results[a].clone().sqrt(),
-            Step::Power(a, p) => results[a].clone().fractional_power(p),
+            Step::Power(a, p) => results[a].clone().real_power(p),
             Step::Call(a, f) => results[a].clone().apply(f).unwrap_or_else(|| T::from(f64::NAN)),
         }
     }
@@ -145,7 +145,7 @@ impl Step {
         match *self {
             Step::Number(c) => (0, 0, bits(c)),
             Step::Variable(v) => (1, v as u64, [0; 2]),
-            // Neither depends on the order of its two parts.
+            // A sum or a product does not depend on the order of its two parts, but for the last digits of pairs of doubles.
             Step::Add(a, b) => (2, a.min(b) as u64, [a.max(b) as u64, 0]),
             Step::Multiply(a, b) => (3, a.min(b) as u64, [a.max(b) as u64, 0]),
             Step::WholePower(a, n) => (4, a as u64, [n as u64, 0]),
@@ -156,7 +156,7 @@ impl Step {
     }
 }
 
-/// An expression with its program: a formula, and its values at many points.
+/// An expression with the program that evaluates it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compiled {
     expression: Expr,

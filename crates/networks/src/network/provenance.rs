@@ -92,7 +92,7 @@ pub struct LoadErrorsRecord {
     pub e_rms: Option<f64>,
     /// The largest error is in percent of the largest displacement.
     pub e_max: Option<f64>,
-    /// The error at the point that moves most is in percent of the largest displacement.
+    /// The error at the point that moves most, or the largest of equal ones, is in percent of the largest displacement.
     pub e_tip: Option<f64>,
     /// The network is softer than the finite elements by this error of the compliance, percent, from the work of the load.
     pub e_energy: Option<f64>,

@@ -59,7 +59,7 @@ pub struct Measured {
     pub fem_e_rms: Option<f64>,
     /// The finite elements have this largest distance from the known displacements, percent of the largest.
     pub fem_e_max: Option<f64>,
-    /// The finite elements have this error at the point that moves most, percent of the largest displacement.
+    /// The finite elements have this error at the point that moves most, or the largest of equal ones, percent of the largest displacement.
     #[serde(default)]
     pub fem_e_tip: Option<f64>,
     /// The finite elements have this error of the compliance, percent; it is null where displacements were measured.
