@@ -16,7 +16,7 @@ pub use sum::Sum;
 use crate::error::{Error, ErrorKind, Result};
 use crate::named::suggestion;
 use node::Fault;
-use partial::Partial;
+use partial::{Partial, not_abandoned};
 use std::fs;
 use std::io::{self, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -221,7 +221,7 @@ pub fn files_in(folder: &Path, ending: &str) -> Result<Vec<PathBuf>> {
 /// # Errors
 /// A file is in the place of a folder, or the folder above is read-only.
 pub fn create_folder(path: &Path) -> Result<()> {
-    fs::create_dir_all(path).map_err(|e| Error::io("the folder cannot be created", e).in_file(path))
+    not_abandoned(|| fs::create_dir_all(path)).map_err(|e| Error::io("the folder cannot be created", e).in_file(path))
 }
 
 /// Reads TOML into a structure. Errors name the key and the line.

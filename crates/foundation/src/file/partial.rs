@@ -53,6 +53,12 @@ pub fn abandon() {
     std::mem::forget((placing, begun));
 }
 
+/// Does what must not come after [`abandon`], such as making the folder again that it has removed. It waits until the program has ended then.
+pub(super) fn not_abandoned<T>(work: impl FnOnce() -> T) -> T {
+    let _begun = locked(&BEGUN);
+    work()
+}
+
 /// Does what an interrupt must not break off.
 pub(super) fn unbroken<T>(work: impl FnOnce() -> T) -> T {
     let _placing = locked(&PLACING);
