@@ -53,7 +53,8 @@ pub fn abandon() {
     std::mem::forget((placing, begun));
 }
 
-/// Does what must not come after [`abandon`], such as making the folder again that it has removed. It waits until the program has ended then.
+/// Does work that must not come after [`abandon`], such as making a folder that was removed there. After it the work never begins: its thread
+/// waits until the program ends.
 pub(super) fn not_abandoned<T>(work: impl FnOnce() -> T) -> T {
     let _begun = locked(&BEGUN);
     work()

@@ -20,7 +20,8 @@ pub struct Jet<T = f64> {
 }
 
 impl Program {
-    /// The value and the gradient, `[variables]`, at the point `at`; NaN or infinite where there is none.
+    /// Computes the value of the expression and its gradient, `[variables]`, at the point `at`, which has one entry for each variable. A number is
+    /// NaN or infinite where the expression has no value or no derivative.
     ///
     /// One sweep from the last step to the first has the derivatives of the value in the results of all steps (Griewank and Walther,
     /// Evaluating Derivatives, 2nd ed. 2008, 3.2). For any number of variables it takes a few times as long as the value.
@@ -29,8 +30,8 @@ impl Program {
         (sweep.value(), sweep.gradient(at.len()))
     }
 
-    /// The value with the derivatives in the first `variables` variables at the point `at`, which has one entry for each variable of the
-    /// expression; NaN or infinite where there are none.
+    /// Computes the value of the expression at the point `at`, as [`Program::gradient`] does, with its first and second derivatives in the
+    /// first `variables` variables. The other variables count as constants.
     ///
     /// The sweep of [`Program::gradient`] is differentiated along some directions at once (Griewank and Walther 2008, 5.1).
     pub fn jet<T: Differentiable>(&self, at: &[T], variables: usize) -> Jet<T> {
