@@ -208,6 +208,13 @@ fn what_needs_nodes_alone_is_refused() {
     assert_eq!(exact.to_string(), expected);
     let derived = ClosedForm::new(&element, &springs, false).unwrap_err().to_string();
     assert!(derived.contains("closed forms, which are linear in the moduli"), "{derived}");
+    // Springs of an element with the same nodes know nothing of the condensed functions.
+    let plain = Springs::select(&Element::load("quad4").unwrap(), None).unwrap();
+    let fit = Fit::new(Objective::Frobenius(Weight::None));
+    let error = fit_element(&element, &plain, &x, material.moduli(), &fit).unwrap_err().to_string();
+    let expected =
+        "springs: expected those of quad4_wilson: with condensed functions, found without condensed functions";
+    assert_eq!(error, expected);
 
     let folder = tempfile::tempdir().unwrap();
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/elements/quad4_wilson.toml");

@@ -214,7 +214,7 @@ impl Levels {
             columns.iter_mut().zip(found).for_each(|(x, found)| gather(&found, x));
             Ok(())
         };
-        modes_of(&free, apply, solve, masses, dimension, count)
+        modes_of(&free, &apply, &solve, masses, dimension, count)
     }
 
     /// The given displacements, and the forces that these cause.

@@ -84,7 +84,7 @@ fn modes_of_system<'a>(
         factor.solve(x);
         Ok(())
     };
-    modes_of(system.free(), |x| system.apply(x), solve, masses, dimension, count)
+    modes_of(system.free(), &|x| system.apply(x), &solve, masses, dimension, count)
 }
 
 /// [`lowest_modes`] of a stiffness on the degrees of freedom `free`, positive definite, as its product and what solves with it,
@@ -94,8 +94,8 @@ fn modes_of_system<'a>(
 /// As there, and those of `solve`.
 pub(super) fn modes_of(
     free: &[usize],
-    apply: impl Fn(&[f64]) -> Vec<f64>,
-    solve: impl Fn(&mut [f64]) -> Result<()>,
+    apply: &dyn Fn(&[f64]) -> Vec<f64>,
+    solve: &dyn Fn(&mut [f64]) -> Result<()>,
     masses: Masses,
     dimension: usize,
     count: usize,

@@ -132,6 +132,19 @@ impl<C> Stiffness<C> {
     }
 }
 
+impl<T: Scalar> Stiffness<T> {
+    /// Returns the stiffness itself, in kernels that are compiled for anisotropic materials. A kernel calls it first, so that the compiler
+    /// drops the code behind it for numbers that only isotropic materials use.
+    ///
+    /// # Panics
+    /// The kind of number is one that only isotropic materials use, see [`Scalar::ANISOTROPIC`].
+    #[inline(always)]
+    pub fn compiled(&self) -> &Stiffness<T> {
+        assert!(T::ANISOTROPIC, "only isotropic materials use this kind of number");
+        self
+    }
+}
+
 /// λ of the projection on the isotropic tensors: `C_iijj = d² λ + 2 d μ` and `C_ijij = d λ + d (d + 1) μ`.
 fn nearest_lambda(dimension: usize, entries: &[f64]) -> f64 {
     let (s, d) = (strains(dimension), dimension as f64);

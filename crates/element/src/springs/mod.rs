@@ -254,7 +254,7 @@ impl Springs {
         lengths.chain(functions).chain(areas).chain(points).chain(content).collect()
     }
 
-    /// Checks that the springs belong to this element, or to one with as many nodes and dimensions.
+    /// Checks that the springs belong to this element, or to one with as many nodes and dimensions and, like it, with or without condensed functions.
     ///
     /// # Errors
     /// They do not.
@@ -265,6 +265,11 @@ impl Springs {
                 |(nodes, dimension, space)| format!("{nodes} nodes, {dimension} dimensions in space of {space}");
             let expected = format!("those of {}: {}", element.name, words(expected));
             return Err(Error::expected("springs", expected, words((self.nodes, self.dimension, self.space))));
+        }
+        if self.condensed != (element.modes() > 0) {
+            let words = |condensed| if condensed { "with condensed functions" } else { "without condensed functions" };
+            let expected = format!("those of {}: {}", element.name, words(!self.condensed));
+            return Err(Error::expected("springs", expected, words(self.condensed)));
         }
         Ok(())
     }

@@ -3,9 +3,9 @@
 //! With the amplitudes a of the modes the cell has the energy `½ uᵀ R_uu u + aᵀ R_au u + ½ aᵀ R_aa a`. It is least at `a = −R_aa⁻¹ R_au u`,
 //! which leaves `R = R_uu − R_ua R_aa⁻¹ R_au`. Theory: page *Stiffness and the reduced space* of the book.
 
-use super::{Geometry, add_anisotropic, add_isotropic, jacobian};
+use super::{Geometry, add_stiffness, jacobian};
 use crate::element::Tabulation;
-use crate::material::{Hooke, Moduli};
+use crate::material::Hooke;
 use crate::scalar::{Scalar, adjugate, multiple, of_dimension};
 
 impl<T: Scalar> Geometry<T> {
@@ -16,9 +16,13 @@ impl<T: Scalar> Geometry<T> {
 
     /// `R = ∫ Bᵀ D B dV`, `[nodes·dimension × nodes·dimension]`, in any kind of number; functions beside those of the nodes are condensed.
     pub fn entries(&self, hooke: &Hooke<T>) -> Vec<T> {
-        of_dimension!(self.dimension, |D| self.entries_in::<D>(hooke))
+        self.volumes[0].vectorize(
+            #[inline(always)]
+            || of_dimension!(self.dimension, |D| self.entries_in::<D>(hooke)),
+        )
     }
 
+    #[inline(always)]
     fn entries_in<const D: usize>(&self, hooke: &Hooke<T>) -> Vec<T> {
         let size = (self.nodes + self.mode_count) * D;
         let mut r = vec![self.volumes[0].zero(); size * size];
@@ -28,21 +32,17 @@ impl<T: Scalar> Geometry<T> {
             all.clear();
             all.extend_from_slice(grad);
             all.extend_from_slice(&self.modes[q * own..(q + 1) * own]);
-            let grad = all.as_chunks::<D>().0;
-            match hooke {
-                Hooke::Isotropic(Moduli { lambda, mu }) => {
-                    add_isotropic(&mut r, grad, &(w.clone() * lambda), &(v.clone() * mu));
-                }
-                Hooke::Anisotropic(stiffness) => add_anisotropic(&mut r, grad, stiffness, v, w),
-            }
+            add_stiffness(&mut r, all.as_chunks::<D>().0, hooke, v, w);
         }
         eliminated(r, size, self.nodes * D)
     }
 
     /// The gradients of the modes with nodes at `x`: `J⁻ᵀ ∂M/∂ξ` of bubbles; of others `(j₀/j) J₀⁻ᵀ ∂M/∂ξ`, with J₀ and its determinant j₀
     /// at the centre of the cell, whose integral vanishes with that of `∂M/∂ξ` on every shape (Taylor, Beresford and Wilson 1976).
-    pub(super) fn update_modes<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[[T; D]]) {
+    #[inline(always)]
+    pub(super) fn update_modes<const D: usize>(&mut self, table: &Tabulation<T::Constant>, x: &[T]) {
         let Some(modes) = &table.modes else { return };
+        let (x, n) = (x.as_chunks::<D>().0, self.nodes);
         let (middle, middle_determinant) = adjugate(&jacobian(x, &modes.centre.as_chunks::<D>().0[..n]));
         let middle = multiple(&(middle_determinant.one() / &middle_determinant), &middle);
         let count = modes.count();
@@ -69,6 +69,7 @@ impl<T: Scalar> Geometry<T> {
 
 /// Takes the degrees of freedom from `kept` on out of a symmetric matrix, `[size × size]`, of which the lower triangle is read; writes both
 /// triangles of `[kept × kept]`.
+#[inline(always)]
 fn eliminated<T: Scalar>(mut matrix: Vec<T>, size: usize, kept: usize) -> Vec<T> {
     // Elimination from the last row up leaves the kept rows in place, and needs neither a factor nor a root.
     for last in (kept..size).rev() {

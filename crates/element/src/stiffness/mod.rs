@@ -57,6 +57,18 @@ impl<T: Scalar> Geometry<T> {
     /// Fills in the element whose nodes are at `x`, `[nodes × dimension]`, m. Returns false if a Jacobian determinant
     /// is not safely positive, see [`Scalar::delicate`]; [`Geometry::set`] then finds the fault.
     pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
+        let positive = self.update_nodes(table, x);
+        if self.is_condensed() {
+            x[0].vectorize(
+                #[inline(always)]
+                || of_dimension!(table.dimension, |D| self.update_modes::<D>(table, x)),
+            );
+        }
+        positive
+    }
+
+    /// [`Geometry::update`] of an element without condensed functions.
+    pub fn update_nodes(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let n = self.nodes;
         x[0].vectorize(
             #[inline(always)]
@@ -64,7 +76,7 @@ impl<T: Scalar> Geometry<T> {
         )
     }
 
-    /// [`Geometry::update`] in D dimensions; a number of nodes that the compiler knows lets it unroll the loops.
+    /// [`Geometry::update_nodes`] in D dimensions, as part of a kernel.
     #[inline(always)]
     pub fn update_in<const D: usize>(&mut self, n: usize, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let x = &x.as_chunks::<D>().0[..n];
@@ -97,7 +109,6 @@ impl<T: Scalar> Geometry<T> {
                 }
             }
         }
-        self.update_modes(n, table, x);
         positive
     }
 
@@ -257,7 +268,7 @@ impl Geometry {
 /// Adds `v B_aᵀ D B_b + (w − v) λ g_a g_bᵀ` for all b ≤ a to r, `[nodes·D × nodes·D]`, with D and the λ of the nearest isotropic law;
 /// blocks above the diagonal stay. v is the volume of the point, w that for changes of volume.
 #[inline(always)]
-pub fn add_anisotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], stiffness: &Stiffness<T>, v: &T, w: &T) {
+fn add_anisotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], stiffness: &Stiffness<T>, v: &T, w: &T) {
     let (zero, size, s) = (v.zero(), g.len() * D, strains(D));
     let entries = stiffness.entries();
     let volumetric = (w.clone() - v) * stiffness.lambda();
@@ -289,9 +300,21 @@ pub fn add_anisotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], sti
     }
 }
 
+/// Adds `v Bᵀ D B` of a quadrature point with the gradients g, and the volumes v and, for the term λ (div u)², w, to the blocks b ≤ a of r,
+/// `[nodes·D × nodes·D]`.
+#[inline(always)]
+pub fn add_stiffness<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], hooke: &Hooke<T>, v: &T, w: &T) {
+    match hooke {
+        Hooke::Isotropic(Moduli { lambda, mu }) => {
+            add_isotropic(r, g, &(w.clone() * lambda), &(v.clone() * mu));
+        }
+        Hooke::Anisotropic(stiffness) => add_anisotropic(r, g, stiffness, v, w),
+    }
+}
+
 /// Adds `λ g_a g_bᵀ + μ (g_b g_aᵀ + g_a·g_b I)` for all b ≤ a to r, `[nodes·D × nodes·D]`; blocks above the diagonal stay.
 #[inline(always)]
-pub fn add_isotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], lambda: &T, mu: &T) {
+fn add_isotropic<T: Scalar, const D: usize>(r: &mut [T], g: &[[T; D]], lambda: &T, mu: &T) {
     let (zero, size) = (lambda.zero(), g.len() * D);
     for (a, ga) in g.iter().enumerate() {
         let (lambda_a, mu_a): ([T; D], [T; D]) =

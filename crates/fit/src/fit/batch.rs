@@ -9,6 +9,7 @@ use super::method::{Certificate, LEAST_MEASURED_PIVOT, Method, Verdict};
 use super::normal::{Normal, Rank};
 use super::packed_hooke::PackedHooke;
 use super::packing::{Packing, fill};
+use super::reduction::Source;
 use super::rows::Rows;
 use super::settings::Fit;
 use super::vectorized_normal::VectorizedNormal;
@@ -142,7 +143,8 @@ impl<'a, T: Packed> Workspace<'a, T> {
         let regular = self.geometry.update(&self.element.tabulation, &self.packing.x)
             && self.measure(nodes.len() / self.element.nodes());
         if regular {
-            method.solve(self.springs, &self.packing.x, &self.geometry, &self.hooke.lanes, &self.measured);
+            let source = Source::Element(&self.geometry, &self.hooke.lanes);
+            method.solve(self.springs, &self.packing.x, source, &self.measured);
             let n = self.element.nodes();
             for (lane, constants) in constants.chunks_exact_mut(self.springs.len()).enumerate() {
                 let quality = || Geometry::quality(&self.element.tabulation, &self.packing.lane(lane));
@@ -241,7 +243,7 @@ impl<'a, T: Packed> Workspace<'a, T> {
             }
         }
         if let Some(mut method) = Method::like(&0.0, self.springs, &self.fit) {
-            method.solve(self.springs, &x, &geometry, &hooke.of_kind(&0.0), &measured);
+            method.solve(self.springs, &x, Source::Element(&geometry, &hooke.of_kind(&0.0)), &measured);
             return Ok(method.finish(|value| *value, || quality, constants));
         }
         let normal = match &self.closed {

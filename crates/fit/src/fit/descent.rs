@@ -8,7 +8,7 @@
 //! mass-spring models based on FEM reference deformations", MICCAI 2004.
 
 use super::objective::Objective;
-use super::reduction::Reduced;
+use super::reduction::{Reduced, Source};
 use super::settings::Fit;
 use super::solver::{Search, Topology};
 use super::weight::MotionWeight;
@@ -141,7 +141,7 @@ pub fn search(
     let mut reduced = Reduced::like(&0.0, springs, fit.tied);
     let mut measured = vec![0.0; springs.functions().len() * x.len()];
     springs.function_gradients(x, &mut measured);
-    reduced.set(weight, springs, x, geometry, hooke, &measured);
+    reduced.set(weight, springs, x, Source::Element(geometry, hooke), &measured);
     let count = reduced.scales.len();
     let mut start = vec![reduced.uniform(); count];
     // Best equal constants tell the size of κ, of which a search knows nothing else.

@@ -5,7 +5,7 @@
 use super::linear_motions::{LinearMotions, from_mean};
 use super::weight::{ClosedWeight, Higher};
 use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};
-use crate::scalar::{Scalar, difference, dot};
+use crate::scalar::{Scalar, difference, dot, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -72,7 +72,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
         let rhs = &mut rhs[..self.q.len()];
         match self.hooke {
             Hooke::Isotropic(moduli) => self.isotropic(rhs, moduli, gradients),
-            Hooke::Anisotropic(stiffness) => self.anisotropic(rhs, stiffness, gradients),
+            Hooke::Anisotropic(stiffness) => self.anisotropic(rhs, stiffness.compiled(), gradients),
         }
     }
 
@@ -107,7 +107,10 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
             for (grad, v, w) in self.geometry.each_point() {
                 let gradients = gradients(s, &grad.as_chunks::<D>().0[..n]);
                 let (y, z) = gradients.both();
-                let image: [T; D] = std::array::from_fn(|j| dot(&tensor[j], z));
+                let mut image: [T; D] = zeros(&sum);
+                for j in 0..D {
+                    image[j] = dot(&tensor[j], z);
+                }
                 // The stiffness is summed with v as a whole; what a rule of the volumetric part changes is the term with λ alone.
                 let volumetric = (w.clone() - v) * stiffness.lambda();
                 sum = sum.plus_product(v, &dot(y, &image));
@@ -221,6 +224,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
                 (lambda * &trace.squared()).plus_product(&mu, &squares)
             }
             Hooke::Anisotropic(stiffness) => {
+                let stiffness = stiffness.compiled();
                 // There are six strains in space and three in the plane, whose places after the third stay empty and
                 // are passed over.
                 let mut strain = [const { None }; 6];

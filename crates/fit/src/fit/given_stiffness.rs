@@ -7,6 +7,7 @@ use super::input::{check_finite, check_length};
 use super::method::{Certificate, Method};
 use super::normal::{Normal, Rank};
 use super::objective::Objective;
+use super::reduction::Source;
 use super::reference_fit;
 use super::settings::Fit;
 use super::weight::Weight;
@@ -351,7 +352,7 @@ impl GivenStiffness {
         let independent = || true;
         let mut plainly = || {
             let mut method = Method::weighted(&0.0, springs, fit, weight);
-            method.solve_matrix(springs, &x, r);
+            method.solve(springs, &x, Source::Matrix(r), &[]);
             method.finish_alone(independent, constants)
         };
         let is_closed = matches!(fit.objective, Objective::Frobenius(_));
@@ -362,7 +363,7 @@ impl GivenStiffness {
                 let many =
                     |values: &[f64]| -> Vec<DoubleDouble> { values.iter().map(|x| DoubleDouble::from(*x)).collect() };
                 let mut method = Method::weighted(&DoubleDouble::from(0.0), springs, fit, weight);
-                method.solve_matrix(springs, &many(&x), &many(r));
+                method.solve(springs, &many(&x), Source::Matrix(&many(r)), &[]);
                 method.finish_alone(independent, constants)
             }
         };

@@ -20,7 +20,6 @@ use super::linear_motions::{LinearMotions, from_mean};
 use super::node_equations::{NodeEquations, is_shorter};
 use super::normal::Normal;
 use super::settings::Fit;
-use super::sizes::of_size;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Hooke;
@@ -102,12 +101,14 @@ impl<T: Real> Closed<T> {
         hooke: &Hooke<T>,
     ) -> bool {
         if self.equations == Equations::PerNode {
-            return geometry.update(table, x)
+            return geometry.update_nodes(table, x)
                 && self.node_equations.solve(springs, x, geometry, hooke, &mut self.normal);
         }
-        let regular = of_size!(T, x[0], (springs.dimension(), springs.nodes()), |D, n| {
-            self.solve_in::<D>(n, table, springs, x, geometry, hooke)
-        });
+        let n = springs.nodes();
+        let regular = x[0].vectorize(
+            #[inline(always)]
+            || of_dimension!(springs.dimension(), |D| self.solve_in::<D>(n, table, springs, x, geometry, hooke)),
+        );
         regular && self.finish(springs)
     }
 
@@ -264,7 +265,7 @@ pub fn normal_equations<T: Scalar>(
     );
 }
 
-/// [`normal_equations`] in D dimensions; a number of nodes that the compiler knows lets it unroll the loops.
+/// [`normal_equations`] in D dimensions, as part of a kernel.
 #[inline(always)]
 fn equations<T: Scalar, const D: usize>(
     n: usize,

@@ -8,14 +8,12 @@ use super::dense::{factorize, inner, row_products};
 use super::divergence::Divergence;
 use super::normal::{Normal, Rank};
 use super::objective::Objective;
-use super::reduction::Reduced;
+use super::reduction::{Reduced, Source};
 use super::settings::Fit;
 use super::spectral::{AMBIGUOUS, EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
 use super::weight::{MotionWeight, Route};
-use crate::material::Hooke;
 use crate::scalar::Real;
 use crate::springs::Springs;
-use crate::stiffness::Geometry;
 
 /// If a motion is softer than this, relative to the stiffest motion, the squares in the normal equations have lost half
 /// of the digits of `f64`.
@@ -132,19 +130,9 @@ impl<T: Real> Method<T> {
         Method { reduced, weight, nonnegative: fit.nonnegative, measures, solver }
     }
 
-    /// Solves for the element with nodes at `x`; `measured` as [`Reduced::set`] requires it.
-    pub fn solve(&mut self, springs: &Springs, x: &[T], geometry: &Geometry<T>, hooke: &Hooke<T>, measured: &[T]) {
-        self.reduced.set(self.weight, springs, x, geometry, hooke, measured);
-        self.solve_reduced(springs);
-    }
-
-    /// Solves for a matrix `r` in place of that of an element, with springs on lengths alone.
-    pub fn solve_matrix(&mut self, springs: &Springs, x: &[T], r: &[T]) {
-        self.reduced.set_matrix(self.weight, springs, x, r);
-        self.solve_reduced(springs);
-    }
-
-    fn solve_reduced(&mut self, springs: &Springs) {
+    /// Solves for the element or the matrix with nodes at `x`; `measured` as [`Reduced::set`] requires it.
+    pub fn solve(&mut self, springs: &Springs, x: &[T], source: Source<T>, measured: &[T]) {
+        self.reduced.set(self.weight, springs, x, source, measured);
         let any = self.reduced.size.clone();
         match &mut self.solver {
             ReducedSolver::LeastSquares { normal, products } => {

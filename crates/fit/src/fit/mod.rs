@@ -46,7 +46,6 @@ mod rows;
 mod sampled;
 mod settings;
 mod singular;
-mod sizes;
 mod solver;
 mod spectral;
 mod stiffness_difference;

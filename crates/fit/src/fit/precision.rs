@@ -7,6 +7,7 @@ use super::input::{check_finite, check_length, check_moduli, check_nodes};
 use super::least_squares::normal_equations;
 use super::method::Method;
 use super::normal::Normal;
+use super::reduction::Source;
 use super::rows::Rows;
 use super::settings::Fit;
 use super::weight::{ClosedWeight, Route, Weight};
@@ -269,7 +270,7 @@ pub(super) fn solved<T: Real>(
     fit: &Fit,
 ) -> Option<Method<T>> {
     let mut method = Method::like(&x[0], springs, fit)?;
-    method.solve(springs, x, geometry, &hooke.of_kind(&x[0]), measured);
+    method.solve(springs, x, Source::Element(geometry, &hooke.of_kind(&x[0])), measured);
     Some(method)
 }
 

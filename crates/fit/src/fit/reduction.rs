@@ -6,10 +6,10 @@ mod matrix;
 use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trace};
 use super::linear_motions::LinearMotions;
 use super::weight::MotionWeight;
-use crate::material::{Hooke, Moduli};
+use crate::material::Hooke;
 use crate::scalar::{Real, Scalar, difference, dot, of_dimension, plus_multiple, zeros};
 use crate::springs::Springs;
-use crate::stiffness::{Geometry, add_anisotropic, add_isotropic};
+use crate::stiffness::{Geometry, add_stiffness};
 
 /// `R − Σ_s k_s g_s g_sᵀ` as `size · (R̂ − Σ_I κ_I Σ_{s∈I} h_s h_sᵀ)`, one unknown κ_I per spring, or per group if
 /// tied.
@@ -40,6 +40,15 @@ pub struct Reduced<T> {
     norms: Vec<T>,
 }
 
+/// Where the stiffness comes from.
+#[derive(Clone, Copy)]
+pub enum Source<'a, T> {
+    /// An element.
+    Element(&'a Geometry<T>, &'a Hooke<T>),
+    /// A matrix, `[nodes·dimension × nodes·dimension]`, with springs on lengths alone.
+    Matrix(&'a [T]),
+}
+
 impl<T: Real> Reduced<T> {
     /// Memory for elements with these springs; `any` selects the kind of number.
     pub fn like(any: &T, springs: &Springs, tied: bool) -> Reduced<T> {
@@ -66,19 +75,11 @@ impl<T: Real> Reduced<T> {
         }
     }
 
-    /// Fills in the element with nodes at `x` and these gradients of springs on functions, `[functions × nodes·dimension]`.
-    pub fn set(
-        &mut self,
-        weight: MotionWeight,
-        springs: &Springs,
-        x: &[T],
-        geometry: &Geometry<T>,
-        hooke: &Hooke<T>,
-        measured: &[T],
-    ) {
+    /// Fills in the element or the matrix with nodes at `x`. `measured` has the gradients of springs on functions, `[functions × nodes·dimension]`.
+    pub fn set(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], source: Source<T>, measured: &[T]) {
         x[0].vectorize(
             #[inline(always)]
-            || of_dimension!(springs.dimension(), |D| self.set_in::<D>(weight, springs, x, geometry, hooke, measured)),
+            || of_dimension!(springs.dimension(), |D| self.set_in::<D>(weight, springs, x, source, measured)),
         );
     }
 
@@ -88,18 +89,27 @@ impl<T: Real> Reduced<T> {
         weight: MotionWeight,
         springs: &Springs,
         x: &[T],
-        geometry: &Geometry<T>,
-        hooke: &Hooke<T>,
+        source: Source<T>,
         measured: &[T],
     ) {
         let n = springs.nodes();
         let x = &x.as_chunks::<D>().0[..n];
         self.set_mix(weight, x);
-        match geometry.is_condensed() {
-            true => self.mix_matrix::<D>(n, &geometry.entries(hooke)),
-            false => self.set_stiffness::<D>(n, geometry, hooke),
-        }
-        self.set_gradients(springs, x, geometry, measured);
+        let content = match source {
+            Source::Matrix(r) => {
+                self.mix_matrix::<D>(n, r);
+                None
+            }
+            Source::Element(geometry, hooke) => {
+                match geometry.is_condensed() {
+                    true => self.mix_matrix::<D>(n, &geometry.entries(hooke)),
+                    false => self.set_stiffness::<D>(n, geometry, hooke),
+                }
+                springs.content().map(|_| geometry.content_gradient())
+            }
+        };
+        self.set_gradients(springs, x, measured, content.as_deref());
+        // The rows of `mix` add up to zero, which took out the translations; the rotations are left.
         self.take_out_rotations::<D>(n);
         if weight.divides_by_stiffness() {
             self.divide_by_stiffness();
@@ -154,12 +164,7 @@ impl<T: Real> Reduced<T> {
         let differences = self.work[..full].as_chunks_mut::<D>().0;
         for (grad, v, w) in geometry.each_point() {
             mixed(&self.mix, grad.as_chunks::<D>().0, differences);
-            match hooke {
-                Hooke::Isotropic(Moduli { lambda, mu }) => {
-                    add_isotropic(r, differences, &(w.clone() * lambda), &(v.clone() * mu));
-                }
-                Hooke::Anisotropic(stiffness) => add_anisotropic(r, differences, stiffness, v, w),
-            }
+            add_stiffness(r, differences, hooke, v, w);
         }
     }
 
@@ -168,8 +173,8 @@ impl<T: Real> Reduced<T> {
         &mut self,
         springs: &Springs,
         x: &[[T; D]],
-        geometry: &Geometry<T>,
         measured: &[T],
+        content: Option<&[T]>,
     ) {
         let n = x.len();
         let full = (n - 1) * D;
@@ -178,9 +183,8 @@ impl<T: Real> Reduced<T> {
             mixed(&self.mix, g.as_chunks::<D>().0, self.gradients[s * full..][..full].as_chunks_mut::<D>().0);
             self.norms[s] = self.size.one();
         }
-        if springs.content().is_some() {
+        if let Some(c) = content {
             let last = springs.len() - 1;
-            let c = geometry.content_gradient();
             mixed(&self.mix, c.as_chunks::<D>().0, self.gradients[last * full..][..full].as_chunks_mut::<D>().0);
             self.norms[last] = self.size.one();
         }

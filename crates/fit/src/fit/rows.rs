@@ -1,7 +1,7 @@
 //! The springs of an element as rows, whatever they measure and in any kind of number, and the normal equations of rows.
 //!
-//! The closed forms of [`least_squares`](super::least_squares) take springs on lengths and on the content of the cell. Rows are for what they leave: springs on functions,
-//! as formulas and in numbers of more digits. Theory: page *Least squares* of the book.
+//! The closed forms of [`least_squares`](super::least_squares) take springs on lengths and on the content of the cell. Rows are for formulas, and for springs on functions in
+//! numbers of more digits. Theory: page *Least squares* of the book.
 
 use super::dense::inner;
 use super::edge_cell::scales;

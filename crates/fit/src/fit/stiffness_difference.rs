@@ -9,10 +9,10 @@ use super::cells::CellFits;
 use super::packed_hooke::PackedHooke;
 use super::packing::{Packing, fill, packed};
 use crate::element::Element;
-use crate::material::{BlockValues, Hooke, Moduli};
+use crate::material::{BlockValues, Hooke};
 use crate::scalar::{Packed, difference, dot, of_dimension};
 use crate::springs::{Force, Measure};
-use crate::stiffness::{Fault, Geometry, add_anisotropic, add_isotropic};
+use crate::stiffness::{Fault, Geometry, add_stiffness};
 use std::sync::Arc;
 
 /// Memory for as many cells as there are lanes.
@@ -177,13 +177,7 @@ impl<'a, T: Packed> StiffnessDifferences<'a, T> {
             self.stiffness.clone_from_slice(&self.geometry.entries(&self.hooke.lanes));
         }
         for (grad, v, w) in self.geometry.each_point().filter(|_| !self.geometry.is_condensed()) {
-            let grad = grad.as_chunks::<D>().0;
-            match &self.hooke.lanes {
-                Hooke::Isotropic(Moduli { lambda, mu }) => {
-                    add_isotropic(&mut self.stiffness, grad, &(w.clone() * lambda), &(v.clone() * mu));
-                }
-                Hooke::Anisotropic(stiffness) => add_anisotropic(&mut self.stiffness, grad, stiffness, v, w),
-            }
+            add_stiffness(&mut self.stiffness, grad.as_chunks::<D>().0, &self.hooke.lanes, v, w);
         }
         self.left.clone_from_slice(&self.stiffness);
         let pulls = !self.measures.is_empty();

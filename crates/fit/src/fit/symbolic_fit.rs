@@ -3,7 +3,6 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use super::least_squares::normal_equations;
 use super::normal::Normal;
 use super::rows::Rows;
 use super::symbolic_modulus::{Modulus, sum};
@@ -155,8 +154,8 @@ impl ClosedForm {
             squares.push(square);
         }
         let rows = Rows::new(springs, &x, &geometry, (functions, squares));
-        let plain = equations(ClosedWeight::None, springs, &x, &geometry, &rows, &moduli[0]);
         let stiffness: Vec<_> = moduli.iter().map(|modulus| modulus.stiffness(&geometry)).collect();
+        let plain = rows.normal(ClosedWeight::None, &x, &stiffness[0]);
         let norm = quadratic(moduli.len(), |i, j| inner(&stiffness[i], &stiffness[j]));
         let mut exact = self::classes(element, &Springs::exact(element, false, false), &x, by_axis);
         exact.retain(|class| class.springs[0].len() == 2);
@@ -214,12 +213,12 @@ impl ClosedForm {
         };
         let solved = match closed {
             ClosedWeight::Modal(_) => {
-                let of_modulus = |modulus: &Modulus| solve(&self.equations(closed, modulus));
-                self.moduli.iter().map(of_modulus).collect::<Result<Vec<_>>>()?
+                let of_stiffness = |r: &Vec<Fraction>| solve(&self.rows.normal(closed, &self.positions, r));
+                self.stiffness.iter().map(of_stiffness).collect::<Result<Vec<_>>>()?
             }
             // M is that of the springs alone: it is worked out once, whatever modulus it is asked for, and only b changes.
             ClosedWeight::None | ClosedWeight::OffDiagonal => {
-                let normal = self.equations(closed, &self.moduli[0]);
+                let normal = self.rows.normal(closed, &self.positions, &self.stiffness[0]);
                 let of_stiffness = |r: &Vec<Fraction>| {
                     let mut normal = normal.clone();
                     normal.rhs = self.rows.works(r, closed == ClosedWeight::OffDiagonal);
@@ -246,27 +245,6 @@ impl ClosedForm {
         let class = |i: usize| solved.iter().map(|k| k[i].clone()).collect();
         Ok(ClosedFit { weight, constants: (0..self.classes.len()).map(class).collect(), residual })
     }
-
-    /// The equations of the springs if this modulus is one and the others are zero.
-    fn equations(&self, weight: ClosedWeight, modulus: &Modulus) -> Normal<Fraction> {
-        equations(weight, &self.springs, &self.positions, &self.geometry, &self.rows, modulus)
-    }
-}
-
-fn equations(
-    weight: ClosedWeight,
-    springs: &Springs,
-    x: &[Fraction],
-    geometry: &Geometry<Fraction>,
-    rows: &Rows<Fraction>,
-    modulus: &Modulus,
-) -> Normal<Fraction> {
-    if !springs.functions().is_empty() {
-        return rows.normal(weight, x, &modulus.stiffness(geometry));
-    }
-    let mut normal = Normal::default();
-    normal_equations(weight, springs, x, geometry, &modulus.hooke(springs.dimension(), &x[0]), &mut normal);
-    normal
 }
 
 fn to_f64(value: &BigRational) -> f64 {

@@ -2,7 +2,7 @@
 //!
 //! Theory: page *Least squares* of the book.
 
-use crate::material::{Hooke, Stiffness, strains, voigt};
+use crate::material::voigt;
 use crate::scalar::Scalar;
 use crate::stiffness::Geometry;
 use crate::symbolic::Fraction;
@@ -48,19 +48,6 @@ impl Modulus {
             Modulus { name: named("", ""), latex: named("_{", "}"), entries: entries.filter(is_entry).collect() }
         })
         .collect()
-    }
-
-    /// The law if this number is one and the others are zero, for rules that integrate changes of volume like all others.
-    pub(super) fn hooke(&self, dimension: usize, any: &Fraction) -> Hooke<Fraction> {
-        let s = strains(dimension);
-        let mut entries = vec![any.zero(); s * s];
-        // One of the orders of each strain.
-        // `C_kilj` and `C_iklj` are one entry in Voigt's notation, which must be set once.
-        for &[k, i, l, j] in self.entries.iter().filter(|[k, i, l, j]| k <= i && l <= j) {
-            let entry = &mut entries[voigt(dimension, k, i) * s + voigt(dimension, l, j)];
-            *entry = entry.clone() + &any.one();
-        }
-        Hooke::Anisotropic(Stiffness::of_parts(dimension, entries, any.zero()))
     }
 
     /// The stiffness if this number is one and the others are zero, `[size × size]`: `R_akbl = ∫ ∇_i N_a C_kilj ∇_j N_b dV`.

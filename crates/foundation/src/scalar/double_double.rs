@@ -325,6 +325,8 @@ impl<S: Simd> Group<DoubleDouble> for DoubleDoubles<S> {
 impl Scalar for f32 {
     type Constant = f64;
 
+    const ANISOTROPIC: bool = false;
+
     fn exact(value: f64) -> f64 {
         value
     }

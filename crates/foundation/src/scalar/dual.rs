@@ -91,6 +91,9 @@ impl<const N: usize, T: Scalar> Div<&Dual<N, T>> for Dual<N, T> {
 impl<const N: usize, T: Real> Scalar for Dual<N, T> {
     type Constant = f64;
 
+    /// Derivatives in the moduli are those in λ and μ.
+    const ANISOTROPIC: bool = false;
+
     /// In a function that is compiled for the instructions of the values.
     #[inline(always)]
     fn vectorize<R>(&self, work: impl FnOnce() -> R) -> R {

@@ -66,6 +66,16 @@ pub fn widest<W: PackedWork>(work: W) -> W::Output {
     match pulp::Arch::new() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         pulp::Arch::V4(simd) => work.run(Lanes::splat(simd, 0.0)),
+        _ => at_most_four(work),
+    }
+}
+
+/// Runs `work` with registers of at most four numbers. Gradients keep so many numbers at once that wider registers are no faster, and code for
+/// them would only cost time to compile.
+pub fn at_most_four<W: PackedWork>(work: W) -> W::Output {
+    match pulp::Arch::new() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        pulp::Arch::V4(simd) => work.run(Lanes::splat(*simd, 0.0)),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         pulp::Arch::V3(simd) => work.run(Lanes::splat(simd, 0.0)),
         #[cfg(target_arch = "aarch64")]

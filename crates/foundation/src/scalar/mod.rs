@@ -22,7 +22,7 @@ pub use coordinates::{Coordinate, Coordinates, CoordinatesWork, with_coordinates
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use groups::{Group, GroupWork};
-pub use lanes::{Lanes, Packed, PackedWork, dispatched, widest};
+pub use lanes::{Lanes, Packed, PackedWork, at_most_four, dispatched, widest};
 pub use norm::{distance, norm, scaled_norm};
 pub use sum::Sum;
 
@@ -41,9 +41,13 @@ pub trait Scalar:
     /// A number that is the same for all elements: an entry of a tabulation, a modulus.
     type Constant: Clone + Zero + One;
 
-    /// Whether a kernel is compiled once more for each of the common numbers of nodes and springs, so that its loops
+    /// Whether a kernel is compiled once more for each of the common orders of its equations, so that its loops
     /// unroll. This is worth its compile time for lanes only.
     const UNROLLED: bool = false;
+
+    /// Whether kernels are compiled for anisotropic materials as well. Numbers that only isotropic materials use are compiled without that code,
+    /// which saves time.
+    const ANISOTROPIC: bool = true;
 
     /// Runs `work` in a function of its own that is compiled for the machine's instructions. The function is never
     /// inlined into its caller, so that the compiler optimises each kernel once and separately.

@@ -216,11 +216,8 @@ impl Piece {
         let mut sound = true;
         for Table { cells, is_simplex, weights, inverses, states } in &mut self.tables {
             let (x, force, energies) = (&self.x, &mut self.force[..], &mut self.energies[..]);
-            let simplex = *is_simplex;
-            cells.visit(
-                d,
-                Pull { cells, simplex, weights, inverses, states, x, rules, force, energies, sound: &mut sound },
-            );
+            let (simplex, sound) = (*is_simplex, &mut sound);
+            cells.visit(d, Pull { cells, simplex, weights, inverses, states, x, rules, force, energies, sound });
         }
         sound
     }
@@ -269,6 +266,9 @@ fn store<T: Packed>(list: &mut [f64], at: usize, lanes: &T) {
 }
 
 impl Visit for Pull<'_> {
+    /// A body that relaxes has no cells of fewer dimensions than its space.
+    const EMBEDDED: bool = false;
+
     #[inline(always)]
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,

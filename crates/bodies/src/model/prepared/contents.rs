@@ -146,6 +146,9 @@ pub fn is_measured_by_quadrature(spring: &MeasureSpring) -> bool {
 
 /// What is done with a batch of cells.
 pub(super) trait Visit {
+    /// Whether cells may have fewer dimensions than their space.
+    const EMBEDDED: bool = true;
+
     /// `room` is memory for the positions of the nodes and the forces on them, `[nodes]` each.
     fn batch<T: Packed, const D: usize, const S: usize>(
         &mut self,
@@ -159,14 +162,7 @@ pub(super) trait Visit {
 impl Cells {
     /// Visits all cells, as many at a time as there are lanes.
     pub(super) fn visit<V: Visit>(&self, space: usize, visit: V) {
-        match (self.dimension, space) {
-            (1, 1) => widest(Batches::<V, 1, 1>(visit, self)),
-            (1, 2) => widest(Batches::<V, 1, 2>(visit, self)),
-            (1, _) => widest(Batches::<V, 1, 3>(visit, self)),
-            (2, 2) => widest(Batches::<V, 2, 2>(visit, self)),
-            (2, _) => widest(Batches::<V, 2, 3>(visit, self)),
-            _ => widest(Batches::<V, 3, 3>(visit, self)),
-        }
+        widest(Batches { visit, cells: self, space });
     }
 
     /// The nodes of cell number `first + lane`; lanes beyond the last cell repeat the first.
@@ -227,21 +223,40 @@ impl Cells {
     }
 }
 
-struct Batches<'a, V, const D: usize, const S: usize>(V, &'a Cells);
+struct Batches<'a, V> {
+    visit: V,
+    cells: &'a Cells,
+    space: usize,
+}
 
-impl<V: Visit, const D: usize, const S: usize> PackedWork for Batches<'_, V, D, S> {
+impl<V: Visit> PackedWork for Batches<'_, V> {
     type Output = ();
 
-    fn run<T: Packed>(self, zero: T) {
-        let Batches(mut visit, cells) = self;
-        let all = cells.rows.len() / cells.nodes;
-        let mut nodes: Vec<[T; 3]> = vec![zero.repeated(); cells.nodes];
+    fn run<T: Packed>(mut self, zero: T) {
+        let mut nodes: Vec<[T; 3]> = vec![zero.repeated(); self.cells.nodes];
         let mut forces = nodes.clone();
-        zero.vectorize(|| {
-            for first in (0..all).step_by(T::COUNT) {
-                visit.batch::<T, D, S>(zero.clone(), [&mut nodes, &mut forces], first, T::COUNT.min(all - first));
-            }
-        });
+        let (any, room) = (zero.clone(), [&mut nodes[..], &mut forces[..]]);
+        zero.vectorize(
+            #[inline(always)]
+            || match (self.cells.dimension, self.space) {
+                (1, 2) if V::EMBEDDED => self.each::<T, 1, 2>(any, room),
+                (1, 3) if V::EMBEDDED => self.each::<T, 1, 3>(any, room),
+                (2, 3) if V::EMBEDDED => self.each::<T, 2, 3>(any, room),
+                (1, _) => self.each::<T, 1, 1>(any, room),
+                (2, _) => self.each::<T, 2, 2>(any, room),
+                _ => self.each::<T, 3, 3>(any, room),
+            },
+        );
+    }
+}
+
+impl<V: Visit> Batches<'_, V> {
+    #[inline(always)]
+    fn each<T: Packed, const D: usize, const S: usize>(&mut self, zero: T, [nodes, forces]: [&mut [[T; 3]]; 2]) {
+        let all = self.cells.rows.len() / self.cells.nodes;
+        for first in (0..all).step_by(T::COUNT) {
+            self.visit.batch::<T, D, S>(zero.clone(), [nodes, forces], first, T::COUNT.min(all - first));
+        }
     }
 }
 

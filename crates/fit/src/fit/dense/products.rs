@@ -26,12 +26,13 @@ fn row_products_order<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mu
         row_block::<T, 4>(a, b, n, s, if lower { s + 4 } else { columns }, columns, out);
         s += 4;
     }
-    // The last rows reach to the last column, whether the upper triangle is wanted or not.
-    match rows - s {
-        1 => row_block::<T, 1>(a, b, n, s, columns, columns, out),
-        2 => row_block::<T, 2>(a, b, n, s, columns, columns, out),
-        3 => row_block::<T, 3>(a, b, n, s, columns, columns, out),
-        _ => {}
+    // The last rows reach to the last column, whether the upper triangle is wanted or not. Blocks of three would double the code of all.
+    if s + 2 <= rows {
+        row_block::<T, 2>(a, b, n, s, columns, columns, out);
+        s += 2;
+    }
+    if s < rows {
+        row_block::<T, 1>(a, b, n, s, columns, columns, out);
     }
 }
 
@@ -50,11 +51,12 @@ fn row_block<T: Scalar, const A: usize>(
         products::<T, A, 4>(a, b, n, s, t, columns, out);
         t += 4;
     }
-    match last - t {
-        1 => products::<T, A, 1>(a, b, n, s, t, columns, out),
-        2 => products::<T, A, 2>(a, b, n, s, t, columns, out),
-        3 => products::<T, A, 3>(a, b, n, s, t, columns, out),
-        _ => {}
+    if t + 2 <= last {
+        products::<T, A, 2>(a, b, n, s, t, columns, out);
+        t += 2;
+    }
+    if t < last {
+        products::<T, A, 1>(a, b, n, s, t, columns, out);
     }
 }
 

@@ -7,10 +7,9 @@ use super::volume::Shares;
 use crate::element::{Element, Tabulation};
 use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
-use crate::fit::sizes::of_size;
 use crate::material::BlockValues;
 use crate::number::first_not_finite;
-use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, widest};
+use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, of_dimension, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 use nalgebra::Matrix3;
@@ -163,10 +162,16 @@ impl ExactKernel<'_> {
         geometry: &mut Geometry<T>,
         [constants, parameters, own]: [&mut [T]; 3],
     ) -> bool {
-        of_size!(T, x[0], (table.dimension, table.nodes), |D, n| geometry.update_in::<D>(n, table, x) && {
-            self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
-            true
-        })
+        let n = table.nodes;
+        x[0].vectorize(
+            #[inline(always)]
+            || {
+                of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, x) && {
+                    self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
+                    true
+                })
+            },
+        )
     }
 
     /// The constants and parameters of a cell with this geometry, as [`ExactKernel::solve`] computes them.
@@ -178,9 +183,15 @@ impl ExactKernel<'_> {
         parameters: &mut [T],
         own: &mut [T],
     ) {
-        of_size!(T, geometry.volumes[0], (geometry.dimension, geometry.nodes), |D, n| {
-            self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
-        });
+        let n = geometry.nodes;
+        geometry.volumes[0].vectorize(
+            #[inline(always)]
+            || {
+                of_dimension!(geometry.dimension, |D| {
+                    self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
+                })
+            },
+        );
     }
 
     #[inline(always)]
@@ -295,9 +306,11 @@ const AREAS: usize = 6;
 pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
     let (zero, n) = (geometry.volumes[0].zero(), geometry.nodes);
     let (mut pairs, mut own) = (vec![zero.clone(); n * (n - 1) / 2], vec![zero; n]);
-    of_size!(T, geometry.volumes[0], (geometry.dimension, n), |D, n| {
-        stiffen_in::<T, D>(n, geometry, &geometry.volumes[0].constant(&mu), &mut pairs, &mut own)
-    });
+    let mu = geometry.volumes[0].constant(&mu);
+    geometry.volumes[0].vectorize(
+        #[inline(always)]
+        || of_dimension!(geometry.dimension, |D| stiffen_in::<T, D>(n, geometry, &mu, &mut pairs, &mut own)),
+    );
     pairs
 }
 

@@ -9,9 +9,8 @@ use super::slopes::Slopes;
 use crate::fit::exact::ExactKernel;
 use crate::fit::least_squares::Closed;
 use crate::fit::packing::packed;
-use crate::fit::sizes::of_size;
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{Dual, Packed, PackedWork, Real, widest};
+use crate::scalar::{Dual, Packed, PackedWork, Real, at_most_four, of_dimension};
 use crate::stiffness::Geometry;
 
 /// What is computed of each cell.
@@ -45,7 +44,7 @@ impl Batch<'_, '_> {
     /// # Errors
     /// A cell has no derivatives. The error is its number, counted from 0.
     pub fn run(self) -> Result<(), usize> {
-        widest(self)
+        at_most_four(self)
     }
 
     fn cells(&self) -> usize {
@@ -149,7 +148,7 @@ impl<'a> Batch<'a, '_> {
         let (n, d) = (element.nodes(), element.dimension());
         let changes = self.changes();
         let cell = |lane: usize| first + if lane < count { lane } else { 0 };
-        // The numbers of the cells are looked up once, without memory of their own: registers of 512 bits have 8 lanes.
+        // The numbers of the cells are looked up once, without memory of their own: no register has more lanes than this.
         let mut lanes = [const { 0usize }; 64];
         (0..T::COUNT).for_each(|lane| lanes[lane] = cell(lane));
         let lanes = &lanes[..T::COUNT];
@@ -235,6 +234,7 @@ impl<'a> Batch<'a, '_> {
         let Product::Gradient(given, _) = self.product else { return groups.to_vec() };
         let any = N::seeded(zero.clone(), [zero.clone(), zero.clone()]);
         let (table, [m, r]) = (&element.tabulation, self.function.counts());
+        let n = table.nodes;
         let mut seeds = self.seeds(&any);
         let mut geometry = Geometry::like(&any, table);
         let mut slopes = Slopes::like(&any, &geometry);
@@ -263,29 +263,37 @@ impl<'a> Batch<'a, '_> {
                         let (p, k) = (&weights[..], &k[..]);
                         let (x, moduli) = (&seeds.x[..], &seeds.moduli);
                         let cell = LeastSquaresCell { weight, springs, x, geometry: &geometry, moduli, k, p };
-                        of_size!(N, any, (table.dimension, table.nodes), |D, n| {
-                            slopes.clear(&any);
-                            // A spring on the content of the cell rests at the content.
-                            if let Some(rest) = rests.first() {
-                                slopes.add_content(rest);
-                            }
-                            cell.add_slopes::<D>(n, &mut room, &mut slopes);
-                            slopes.through_geometry::<D>(n, &geometry);
-                        });
+                        any.vectorize(
+                            #[inline(always)]
+                            || {
+                                slopes.clear(&any);
+                                // A spring on the content of the cell rests at the content.
+                                if let Some(rest) = rests.first() {
+                                    slopes.add_content(rest);
+                                }
+                                of_dimension!(table.dimension, |D| {
+                                    cell.add_slopes::<D>(n, &mut room, &mut slopes);
+                                    slopes.through_geometry::<D>(n, &geometry);
+                                });
+                            },
+                        );
                     }
                     is_found
                 }
                 (GradientFit::Closed(_), None) => false,
                 (GradientFit::Exact(fit), _) => {
                     let kernel = ExactKernel::of(fit, springs);
-                    of_size!(N, any, (table.dimension, table.nodes), |D, n| {
-                        geometry.update_in::<D>(n, table, &seeds.x) && {
-                            slopes.clear(&any);
-                            add_exact::<N, D>(n, &kernel, &seeds.moduli, &geometry, &weights, &rests, &mut slopes);
-                            slopes.through_geometry::<D>(n, &geometry);
-                            true
-                        }
-                    })
+                    any.vectorize(
+                        #[inline(always)]
+                        || {
+                            of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, &seeds.x) && {
+                                slopes.clear(&any);
+                                add_exact::<N, D>(n, &kernel, &seeds.moduli, &geometry, &weights, &rests, &mut slopes);
+                                slopes.through_geometry::<D>(n, &geometry);
+                                true
+                            })
+                        },
+                    )
                 }
             };
             let is_sound = is_found

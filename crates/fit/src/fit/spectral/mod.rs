@@ -119,15 +119,12 @@ impl<T: Real> Spectral<T> {
 
     /// Solves for the element in `reduced`, in every lane.
     pub fn solve(&mut self, reduced: &Reduced<T>) {
-        let any = self.value.clone();
-        any.vectorize(
-            #[inline(always)]
-            || self.follow_path(reduced, FAR),
-        );
         // Numbers of more digits are for what is difficult: steps of other lengths may reach the end.
-        if T::epsilon() < T::given() && !self.is_within(GAP) {
-            self.follow_path(reduced, 1.0);
-        }
+        let lengths: &[f64] = if T::epsilon() < T::given() { &[FAR, 1.0] } else { &[FAR] };
+        self.value.clone().vectorize(
+            #[inline(always)]
+            || _ = lengths.iter().any(|far| self.follow_path(reduced, *far)),
+        );
     }
 
     /// Whether every lane has reached the gap.
@@ -137,9 +134,9 @@ impl<T: Real> Spectral<T> {
         enough.exceeds(&(self.value.clone() - &self.bound))
     }
 
-    /// Beyond the share `far` of μ, the half of a step is tried first.
+    /// Beyond the share `far` of μ, the half of a step is tried first. Returns whether every lane has reached [`GAP`].
     #[inline(always)]
-    fn follow_path(&mut self, reduced: &Reduced<T>, far: f64) {
+    fn follow_path(&mut self, reduced: &Reduced<T>, far: f64) -> bool {
         let (p, c) = (reduced.order, self.kappa.len());
         let zero = self.value.zero();
         let one = zero.one();
@@ -247,6 +244,7 @@ impl<T: Real> Spectral<T> {
             mirror(&mut self.eigenvalues, reduced.order);
             eigenvectors(&mut self.eigenvalues, reduced.order, &mut self.eigenvectors);
         }
+        self.is_within(GAP)
     }
 
     /// Evaluates both matrices at the trial point, which is written to `kappa`; positive if the point is inside the domain.
