@@ -1,7 +1,6 @@
 //! Blender: meshes with the springs and hinges as edges and their numbers as attributes, and the motion as shape keys.
 
-use super::hinges::Hinges;
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job};
 use super::npz::arrays;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, content_dampers, script};
@@ -9,17 +8,7 @@ use springfit_foundation::error::Result;
 use springfit_report::report::NetworkRecord;
 
 /// The script moves the network itself, so that it holds what the arrays hold.
-const HOLDS: Holds = Holds {
-    volumes: true,
-    areas: false,
-    membranes: true,
-    hinges: Hinges::Any,
-    negative: true,
-    tension: Tension::Any,
-    partial: true,
-    plane: true,
-    off_edges: true,
-};
+const HOLDS: Holds = Holds { areas: false, ..Holds::ALL };
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {

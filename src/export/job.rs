@@ -33,6 +33,21 @@ pub struct Holds {
     pub off_edges: bool,
 }
 
+impl Holds {
+    /// All of it: a target names what it does not hold.
+    pub const ALL: Holds = Holds {
+        volumes: true,
+        areas: true,
+        membranes: true,
+        hinges: Hinges::Any,
+        negative: true,
+        tension: Tension::Any,
+        partial: true,
+        plane: true,
+        off_edges: true,
+    };
+}
+
 /// Springs that pull at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tension {

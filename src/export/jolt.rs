@@ -13,15 +13,13 @@ use springfit_report::report::NetworkRecord;
 /// A constraint has a compliance, the inverse of a constant above zero. Constraints that pull against each other at rest do not
 /// converge in a step: exact networks without negative springs were 27 times as soft.
 const HOLDS: Holds = Holds {
-    volumes: true,
     areas: false,
     membranes: false,
     hinges: Hinges::None("its bend constraints are not written"),
     negative: false,
     tension: Tension::None,
     partial: false,
-    plane: true,
-    off_edges: true,
+    ..Holds::ALL
 };
 
 /// What this program holds, and how a network is written for it.

@@ -1,7 +1,7 @@
 //! LAMMPS: a data file with one bond type per spring, and its input script.
 
-use super::hinges::{FLAT, Hinges};
-use super::job::{Holds, Job, Tension};
+use super::hinges::FLAT;
+use super::job::{Holds, Job};
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
 use springfit_foundation::error::Result;
@@ -9,17 +9,7 @@ use springfit_report::report::{HingePart, NetworkRecord};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-const HOLDS: Holds = Holds {
-    volumes: false,
-    areas: false,
-    membranes: false,
-    hinges: Hinges::Any,
-    negative: true,
-    tension: Tension::Any,
-    partial: true,
-    plane: true,
-    off_edges: true,
-};
+const HOLDS: Holds = Holds { volumes: false, areas: false, membranes: false, ..Holds::ALL };
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {

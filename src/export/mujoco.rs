@@ -10,15 +10,13 @@ use springfit_report::report::NetworkRecord;
 
 /// A flex has the quadratic energy of its squared edge lengths: no tension edge by edge, and no springs elsewhere.
 const HOLDS: Holds = Holds {
-    volumes: true,
     areas: false,
-    membranes: true,
     hinges: Hinges::Flat,
-    negative: true,
     tension: Tension::Balanced,
     partial: false,
     plane: false,
     off_edges: false,
+    ..Holds::ALL
 };
 
 /// What this program holds, and how a network is written for it.

@@ -1,7 +1,6 @@
 //! Newton, on Warp: particles, springs, tetrahedra without shear modulus as volume springs, and hinges as its bending edges.
 
-use super::hinges::Hinges;
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job};
 use super::names::named;
 use super::npz::arrays_with;
 use super::relaxes::Relaxes;
@@ -12,17 +11,7 @@ use springfit_foundation::error::{Error, ErrorKind, Result};
 use springfit_report::report::{ArrayFile, NetworkRecord};
 use std::io::{self, Seek, Write};
 
-const HOLDS: Holds = Holds {
-    volumes: true,
-    areas: false,
-    membranes: false,
-    hinges: Hinges::Any,
-    negative: true,
-    tension: Tension::Any,
-    partial: false,
-    plane: true,
-    off_edges: true,
-};
+const HOLDS: Holds = Holds { areas: false, membranes: false, partial: false, ..Holds::ALL };
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {

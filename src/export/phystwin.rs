@@ -1,7 +1,7 @@
 //! PhysTwin: the arrays of its simulator `SpringMassSystemWarp`.
 
 use super::hinges::Hinges;
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job};
 use super::names::named;
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, dampers};
@@ -16,10 +16,9 @@ const HOLDS: Holds = Holds {
     membranes: false,
     hinges: Hinges::None("it has springs between two points alone"),
     negative: false,
-    tension: Tension::Any,
     partial: false,
     plane: false,
-    off_edges: true,
+    ..Holds::ALL
 };
 
 /// What this program holds, and how a network is written for it.

@@ -1,7 +1,7 @@
 //! SOFA: a mass-spring file of the format Xsp 3.0.
 
 use super::hinges::Hinges;
-use super::job::{Holds, Job, Tension};
+use super::job::{Holds, Job};
 use super::relaxes::Relaxes;
 use super::target::{Content, NamedFile, Stands, Target, mass_damping};
 use springfit_foundation::error::Result;
@@ -14,11 +14,8 @@ const HOLDS: Holds = Holds {
     areas: false,
     membranes: false,
     hinges: Hinges::None("its bending springs have one constant of a whole component, and not one of each hinge"),
-    negative: true,
-    tension: Tension::Any,
     partial: false,
-    plane: true,
-    off_edges: true,
+    ..Holds::ALL
 };
 
 /// What this program holds, and how a network is written for it.

@@ -1,6 +1,5 @@
 //! XPBD: constraints in the order of a sweep, and the loop that moves them, for an engine of a user's own.
 
-use super::hinges::Hinges;
 use super::job::{Holds, Job, Tension, has_compliance};
 use super::loads::Load;
 use super::relaxes::Relaxes;
@@ -11,17 +10,7 @@ use springfit_foundation::error::Result;
 use springfit_report::report::NetworkRecord;
 
 /// What is held is that of Jolt: constraints have compliances above zero and do not pull against each other at rest.
-const HOLDS: Holds = Holds {
-    volumes: true,
-    areas: true,
-    membranes: true,
-    hinges: Hinges::Any,
-    negative: false,
-    tension: Tension::None,
-    partial: true,
-    plane: true,
-    off_edges: true,
-};
+const HOLDS: Holds = Holds { negative: false, tension: Tension::None, ..Holds::ALL };
 
 /// What this program holds, and how a network is written for it.
 pub const TARGET: Target = Target {

@@ -112,50 +112,33 @@ impl Entry for Lanes {
     }
 }
 
-impl Add for Lanes {
-    type Output = Lanes;
+/// Lane by lane, with those of another vector or with one number.
+macro_rules! operator {
+    ($trait:ident, $method:ident, $operator:tt) => {
+        impl $trait for Lanes {
+            type Output = Lanes;
 
-    #[inline(always)]
-    fn add(self, other: Lanes) -> Lanes {
-        Lanes(from_fn(|l| self.0[l] + other.0[l]))
-    }
+            #[inline(always)]
+            fn $method(self, other: Lanes) -> Lanes {
+                Lanes(from_fn(|l| self.0[l] $operator other.0[l]))
+            }
+        }
+
+        impl $trait<f64> for Lanes {
+            type Output = Lanes;
+
+            #[inline(always)]
+            fn $method(self, number: f64) -> Lanes {
+                Lanes(self.0.map(|x| x $operator number))
+            }
+        }
+    };
 }
 
-impl Sub for Lanes {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn sub(self, other: Lanes) -> Lanes {
-        Lanes(from_fn(|l| self.0[l] - other.0[l]))
-    }
-}
-
-impl Mul for Lanes {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn mul(self, other: Lanes) -> Lanes {
-        Lanes(from_fn(|l| self.0[l] * other.0[l]))
-    }
-}
-
-impl Mul<f64> for Lanes {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn mul(self, factor: f64) -> Lanes {
-        Lanes(self.0.map(|x| x * factor))
-    }
-}
-
-impl Div<f64> for Lanes {
-    type Output = Lanes;
-
-    #[inline(always)]
-    fn div(self, divisor: f64) -> Lanes {
-        Lanes(self.0.map(|x| x / divisor))
-    }
-}
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
+operator!(Div, div, /);
 
 impl AddAssign for Lanes {
     #[inline(always)]

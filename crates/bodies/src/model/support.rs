@@ -65,7 +65,8 @@ pub fn unheld_bodies(mesh: &Mesh, support: &Support) -> Vec<Unheld> {
 /// Finds the parts of a network, connected by springs, that can move without deforming, as [`unheld_bodies`] does.
 /// `points` are `[points × dimension]`, m.
 pub fn unheld_parts(network: &Network, points: &[f64], support: &Support) -> Vec<Unheld> {
-    let pieces = pieces_of(points.len() / network.dimension, network.springs().map(|(points, _)| points));
+    let pieces =
+        pieces_of(points.len() / network.dimension, network.springs().map(|(points, _)| points.iter().copied()));
     unheld_pieces((points, network.dimension), points.len() / network.dimension, pieces, support)
 }
 

@@ -1,7 +1,7 @@
 //! Values of expressions in any kind of number.
 
 use super::{Expr, Function};
-use crate::scalar::{DoubleDouble, Real};
+use crate::scalar::{DoubleDouble, Real, Scalar};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
@@ -13,13 +13,9 @@ const MOST_EXACT_BITS: u64 = 8000;
 const LARGEST_EXACT_EXPONENT: i32 = 1000;
 
 /// A number in which an expression can be evaluated. An operation returns `None` if its result is not such a number.
-pub trait Value: Clone {
+pub trait Value: Scalar {
     /// The number `c`.
     fn from_rational(c: &BigRational) -> Option<Self>;
-    /// `self + other`.
-    fn plus(self, other: Self) -> Self;
-    /// `self · other`.
-    fn times(self, other: Self) -> Self;
     /// `self` to the power of `exponent`.
     fn to_power(self, exponent: &BigRational) -> Option<Self>;
     /// The value of `function` at `self`.
@@ -52,12 +48,6 @@ impl Value for f64 {
             (Some(n), Some(d)) => Some(n as f64 / d as f64),
             _ => c.to_f64(),
         }
-    }
-    fn plus(self, other: f64) -> f64 {
-        self + other
-    }
-    fn times(self, other: f64) -> f64 {
-        self * other
     }
     fn to_power(self, exponent: &BigRational) -> Option<f64> {
         if let Some(n) = exponent.to_i32().filter(|_| exponent.is_integer()) {
@@ -101,12 +91,6 @@ impl Value for BigRational {
     fn from_rational(c: &BigRational) -> Option<BigRational> {
         Some(c.clone())
     }
-    fn plus(self, other: BigRational) -> BigRational {
-        self + other
-    }
-    fn times(self, other: BigRational) -> BigRational {
-        self * other
-    }
     fn to_power(self, exponent: &BigRational) -> Option<BigRational> {
         let n = exponent.to_i32().filter(|n| exponent.is_integer() && n.abs() <= LARGEST_EXACT_EXPONENT)?;
         // The digits of a power are at most this product, which is known before the power is.
@@ -122,10 +106,10 @@ impl Value for BigRational {
     fn apply(self, function: Function) -> Option<BigRational> {
         match function {
             Function::Abs => Some(num_traits::Signed::abs(&self)),
-            Function::Step if num_traits::Signed::is_negative(&self) => Some(BigRational::zero()),
-            Function::Step => Some(BigRational::one()),
-            Function::Exp if self.is_zero() => Some(BigRational::one()),
-            Function::Ln if self.is_one() => Some(BigRational::zero()),
+            Function::Step if num_traits::Signed::is_negative(&self) => Some(Zero::zero()),
+            Function::Step => Some(One::one()),
+            Function::Exp if self.is_zero() => Some(One::one()),
+            Function::Ln if self.is_one() => Some(Zero::zero()),
             _ => None,
         }
     }
@@ -150,11 +134,11 @@ impl Expr {
             Expr::Variable(v) => Some(at[*v].clone()),
             Expr::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
-                rest.iter().try_fold(first.value(at)?, |s, t| Some(s.plus(t.value(at)?)).filter(T::is_moderate))
+                rest.iter().try_fold(first.value(at)?, |s, t| Some(s + &t.value(at)?).filter(T::is_moderate))
             }
             Expr::Product(factors) => {
                 let (first, rest) = factors.split_first()?;
-                rest.iter().try_fold(first.value(at)?, |s, f| Some(s.times(f.value(at)?)).filter(T::is_moderate))
+                rest.iter().try_fold(first.value(at)?, |s, f| Some(s * &f.value(at)?).filter(T::is_moderate))
             }
             Expr::Power(base, exponent) => base.value(at)?.to_power(exponent),
             Expr::Call(function, argument) => argument.value(at)?.apply(*function),

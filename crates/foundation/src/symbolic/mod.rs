@@ -87,19 +87,12 @@ impl Expr {
 
     /// `Σ terms`. Sums in it are flattened and constants are added.
     pub fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
-        let mut constant = BigRational::zero();
-        let mut rest = Vec::new();
-        for term in terms {
-            match term {
-                Expr::Number(c) => constant += c,
-                Expr::Sum(inner) => {
-                    for t in inner {
-                        if let Expr::Number(c) = t { constant += c } else { rest.push(t) }
-                    }
-                }
-                other => rest.push(other),
-            }
-        }
+        let flat = terms.into_iter().flat_map(|term| match term {
+            Expr::Sum(inner) => inner,
+            other => vec![other],
+        });
+        let (constants, mut rest): (Vec<Expr>, Vec<Expr>) = flat.partition(|term| term.as_number().is_some());
+        let constant: BigRational = constants.iter().filter_map(Expr::as_number).sum();
         if !constant.is_zero() {
             rest.insert(0, Expr::Number(constant));
         }
@@ -112,19 +105,12 @@ impl Expr {
 
     /// `Π factors`. Products in it are flattened and constants are multiplied; zero if a factor is zero.
     pub fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
-        let mut constant = BigRational::one();
-        let mut rest = Vec::new();
-        for factor in factors {
-            match factor {
-                Expr::Number(c) => constant *= c,
-                Expr::Product(inner) => {
-                    for f in inner {
-                        if let Expr::Number(c) = f { constant *= c } else { rest.push(f) }
-                    }
-                }
-                other => rest.push(other),
-            }
-        }
+        let flat = factors.into_iter().flat_map(|factor| match factor {
+            Expr::Product(inner) => inner,
+            other => vec![other],
+        });
+        let (constants, mut rest): (Vec<Expr>, Vec<Expr>) = flat.partition(|factor| factor.as_number().is_some());
+        let constant: BigRational = constants.iter().filter_map(Expr::as_number).product();
         if constant.is_zero() {
             return Expr::integer(0);
         }

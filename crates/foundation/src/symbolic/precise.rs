@@ -27,14 +27,6 @@ impl Value for DoubleDouble {
         Some(DoubleDouble { hi, lo: rest.unwrap_or(0.0) })
     }
 
-    fn plus(self, other: DoubleDouble) -> DoubleDouble {
-        self + &other
-    }
-
-    fn times(self, other: DoubleDouble) -> DoubleDouble {
-        self * &other
-    }
-
     fn to_power(self, exponent: &BigRational) -> Option<DoubleDouble> {
         Some(match exponent.to_i32().filter(|_| exponent.is_integer()) {
             Some(n) => self.whole_power(n),

@@ -12,15 +12,19 @@ impl Mesh {
         let edges = self.directors.iter().flat_map(|directors| &directors.edges).enumerate();
         let of_directors: Vec<[usize; 2]> = edges.map(|(e, [a, _])| [first + e, *a]).collect();
         let cells = self.blocks.iter().flat_map(|block| block.cells());
-        pieces_of(self.point_count(), cells.chain(of_directors.iter().map(<[usize; 2]>::as_slice)))
+        pieces_of(
+            self.point_count(),
+            cells.chain(of_directors.iter().map(<[usize; 2]>::as_slice)).map(|nodes| nodes.iter().copied()),
+        )
     }
 }
 
 /// The points that groups of points, such as cells or springs, connect with each other, each piece ascending.
-pub fn pieces_of<'a>(points: usize, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+pub fn pieces_of(points: usize, groups: impl Iterator<Item = impl Iterator<Item = usize>>) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(points);
-    for nodes in groups {
-        nodes[1..].iter().for_each(|&node| sets.join(node, nodes[0]));
+    for mut nodes in groups {
+        let Some(first) = nodes.next() else { continue };
+        nodes.for_each(|node| sets.join(node, first));
     }
     sets.sets()
 }

@@ -36,17 +36,6 @@ impl Measuring {
         self.elements.entry(name.into()).or_insert_with(shipped).clone()
     }
 
-    /// The element of the whole cells whose content springs of this kind measure on so many points, if it is a simplex.
-    pub fn simplex(&mut self, kind: SpringKind, points: usize) -> Option<Arc<Element>> {
-        match (kind, self.dimension, points) {
-            (SpringKind::Area, 2, 3) | (SpringKind::Volume, 3, 4) => {
-                let element = Element::linear_simplex(self.dimension).ok()?;
-                self.element(&element.name)
-            }
-            _ => None,
-        }
-    }
-
     /// The law of this expression.
     ///
     /// # Errors

@@ -3,11 +3,11 @@
 use super::figure::{CONVERGENCE_TABLE, Columns, convergence_charts, stacked};
 use super::summary::size;
 use super::table::Priority::Always;
-use super::table::{Column, Table, csv};
+use super::table::{Column, Table, csv_of};
 use super::write_files;
 use crate::error::Result;
 use crate::file::Edition;
-use crate::study::{Convergence, Limit, LimitKind, LoadConvergence, ModelConvergence, QUADRATIC, rates};
+use crate::study::{Convergence, Level, Limit, LimitKind, LoadConvergence, ModelConvergence, QUADRATIC, Step, rates};
 use crate::text::printable;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -158,59 +158,56 @@ fn truth_word(kind: LimitKind) -> &'static str {
     }
 }
 
+/// One model at one level under one load.
+struct Row<'a> {
+    load: &'a LoadConvergence,
+    model: &'a str,
+    number: usize,
+    level: &'a Level,
+    step: &'a Step,
+    /// Over the finite elements and over the truth, the rate, and the mean displacement over the truth.
+    curves: [Option<f64>; 4],
+}
+
 /// One row for each load, model and level.
 pub fn convergence_csv(convergence: &Convergence) -> String {
-    let header = [
-        "load",
-        "model",
-        "level",
-        "h_m",
-        "cells",
-        "points",
-        "unknowns",
-        "compliance_J",
-        "of_finite_elements_percent",
-        "of_truth_percent",
-        "rate",
-        "e_rms_percent",
-        "mean_displacement_m",
-        "mean_displacement_of_truth_percent",
-        "status",
-        "truth_J",
-        "truth",
-        "truth_uncertainty_percent",
-    ];
-    let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
     let mut rows = Vec::new();
     for load in &convergence.loads {
         for model in &load.models {
             let (of_body, of_truth, mean) = (load.of_body(model), load.of_truth(model), load.mean_of_truth(model));
             let rates = rates(&of_truth);
-            for (i, (level, step)) in convergence.levels.iter().zip(&model.steps).enumerate() {
-                rows.push(vec![
-                    load.name.clone(),
-                    model.name.clone(),
-                    (i + 1).to_string(),
-                    format!("{:e}", level.size),
-                    level.cells.to_string(),
-                    level.points.to_string(),
-                    level.unknowns.to_string(),
-                    full(step.compliance),
-                    full(of_body[i]),
-                    full(of_truth[i]),
-                    full(rates[i]),
-                    full(step.rms),
-                    full(step.mean_displacement),
-                    full(mean[i]),
-                    step.status.into(),
-                    full(load.truth.map(|truth| truth.value)),
-                    load.truth.map_or("none", |truth| truth_word(truth.kind)).into(),
-                    full(load.truth.map(|truth| 100.0 * (truth.uncertainty / truth.value).abs())),
-                ]);
-            }
+            rows.extend(convergence.levels.iter().zip(&model.steps).enumerate().map(|(i, (level, step))| {
+                let curves = [of_body[i], of_truth[i], rates[i], mean[i]];
+                Row { load, model: &model.name, number: i + 1, level, step, curves }
+            }));
         }
     }
-    csv(&header, &rows)
+    let full = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+    csv_of(
+        &rows,
+        &[
+            ("load", &|row| row.load.name.clone()),
+            ("model", &|row| row.model.into()),
+            ("level", &|row| row.number.to_string()),
+            ("h_m", &|row| format!("{:e}", row.level.size)),
+            ("cells", &|row| row.level.cells.to_string()),
+            ("points", &|row| row.level.points.to_string()),
+            ("unknowns", &|row| row.level.unknowns.to_string()),
+            ("compliance_J", &|row| full(row.step.compliance)),
+            ("of_finite_elements_percent", &|row| full(row.curves[0])),
+            ("of_truth_percent", &|row| full(row.curves[1])),
+            ("rate", &|row| full(row.curves[2])),
+            ("e_rms_percent", &|row| full(row.step.rms)),
+            ("mean_displacement_m", &|row| full(row.step.mean_displacement)),
+            ("mean_displacement_of_truth_percent", &|row| full(row.curves[3])),
+            ("status", &|row| row.step.status.into()),
+            ("truth_J", &|row| full(row.load.truth.map(|truth| truth.value))),
+            ("truth", &|row| row.load.truth.map_or("none", |truth| truth_word(truth.kind)).into()),
+            ("truth_uncertainty_percent", &|row| {
+                full(row.load.truth.map(|truth| 100.0 * (truth.uncertainty / truth.value).abs()))
+            }),
+        ],
+    )
 }
 
 /// What [`write_convergence`] writes.

@@ -307,7 +307,7 @@ impl Section {
 fn array(section: Section, tag: &Tag, bytes: &[u8]) -> Result<ArrayTag> {
     let name = tag.attribute("Name").unwrap_or_default();
     let scalar = tag.attribute("type");
-    let scalar = ScalarType::of_xml(scalar.as_deref().unwrap_or_default()).ok_or_else(|| {
+    let scalar = ScalarType::named(scalar.as_deref().unwrap_or_default()).map_err(|_| {
         Error::expected("type", "one of Int8 to Int64, UInt8 to UInt64, Float32, Float64", shown_value(scalar))
     });
     let components = match tag.attribute("NumberOfComponents") {

@@ -16,28 +16,23 @@ pub(super) enum GridKind {
     Rectilinear,
 }
 
+// The names of their tags.
+crate::named!(GridKind {
+    "UnstructuredGrid" => Unstructured,
+    "PolyData" => Polygonal,
+    "ImageData" => Image,
+    "StructuredGrid" => Structured,
+    "RectilinearGrid" => Rectilinear,
+});
+
 impl GridKind {
-    const ALL: [GridKind; 5] =
-        [GridKind::Unstructured, GridKind::Polygonal, GridKind::Image, GridKind::Structured, GridKind::Rectilinear];
-
-    /// The name of its tag.
-    pub fn name(self) -> &'static str {
-        match self {
-            GridKind::Unstructured => "UnstructuredGrid",
-            GridKind::Polygonal => "PolyData",
-            GridKind::Image => "ImageData",
-            GridKind::Structured => "StructuredGrid",
-            GridKind::Rectilinear => "RectilinearGrid",
-        }
-    }
-
     /// The kind with this name.
     ///
     /// # Errors
     /// No kind that is read has it.
     pub fn called(name: Option<String>) -> Result<GridKind> {
-        let found = GridKind::ALL.into_iter().find(|kind| Some(kind.name()) == name.as_deref());
-        let names = GridKind::ALL.map(GridKind::name).join(", ");
+        let found = GridKind::all().find(|kind| Some(kind.name()) == name.as_deref());
+        let names = GridKind::NAMES.join(", ");
         found.ok_or_else(|| Error::expected("VTKFile.type", format!("one of {names}"), shown_value(name)))
     }
 

@@ -19,26 +19,23 @@ pub(in crate::mesh) enum ScalarType {
     Text,
 }
 
-impl ScalarType {
-    /// The type with this name in an XML file.
-    pub fn of_xml(name: &str) -> Option<ScalarType> {
-        Some(match name {
-            "Bit" => ScalarType::Bit,
-            "Int8" => ScalarType::Int8,
-            "UInt8" => ScalarType::UInt8,
-            "Int16" => ScalarType::Int16,
-            "UInt16" => ScalarType::UInt16,
-            "Int32" => ScalarType::Int32,
-            "UInt32" => ScalarType::UInt32,
-            "Int64" => ScalarType::Int64,
-            "UInt64" => ScalarType::UInt64,
-            "Float32" => ScalarType::Float32,
-            "Float64" => ScalarType::Float64,
-            "String" => ScalarType::Text,
-            _ => return None,
-        })
-    }
+// The names in XML files.
+crate::named!(ScalarType {
+    "Bit" => Bit,
+    "Int8" => Int8,
+    "UInt8" => UInt8,
+    "Int16" => Int16,
+    "UInt16" => UInt16,
+    "Int32" => Int32,
+    "UInt32" => UInt32,
+    "Int64" => Int64,
+    "UInt64" => UInt64,
+    "Float32" => Float32,
+    "Float64" => Float64,
+    "String" => Text,
+});
 
+impl ScalarType {
     /// Reads the name of a type in a legacy file.
     pub fn read(reader: &mut Reader) -> Result<ScalarType> {
         let word = reader.peek();

@@ -4,6 +4,7 @@ use super::outcome::NetworkStability;
 use crate::analysis::homogenise::folded_entries;
 use crate::dynamics::largest_square;
 use crate::error::Result;
+use crate::mesh::pieces_of;
 use crate::model::{Entries, Specimen, Support};
 use crate::solve::{eigenvalues, is_definite, lowest_modes};
 use nalgebra::DMatrix;
@@ -216,26 +217,6 @@ fn rigid_motions(specimen: &Specimen, support: &Support) -> usize {
 
 /// The own points of each part that springs join.
 pub fn parts(specimen: &Specimen) -> Vec<Vec<usize>> {
-    let count = specimen.count();
-    let mut parent: Vec<usize> = (0..count).collect();
-    fn root(parent: &mut [usize], mut p: usize) -> usize {
-        while parent[p] != p {
-            // Halving the way to the root keeps the trees flat (Tarjan, van Leeuwen, J. ACM 31, 1984).
-            parent[p] = parent[parent[p]];
-            p = parent[p];
-        }
-        p
-    }
-    for (points, _) in specimen.network.springs() {
-        let first = root(&mut parent, specimen.owner(points[0]));
-        for &p in &points[1..] {
-            let other = root(&mut parent, specimen.owner(p));
-            parent[other] = first;
-        }
-    }
-    let mut parts: std::collections::BTreeMap<usize, Vec<usize>> = std::collections::BTreeMap::new();
-    for p in 0..count {
-        parts.entry(root(&mut parent, p)).or_default().push(p);
-    }
-    parts.into_values().collect()
+    let springs = specimen.network.springs();
+    pieces_of(specimen.count(), springs.map(|(points, _)| points.iter().map(|&p| specimen.owner(p))))
 }
