@@ -87,15 +87,16 @@ fn follow(memory: &mut Memory, mesh: &Mesh, f: &dyn Fn(f64) -> Tensor, end: f64,
 /// Steps of the independent integration: of the fourth order, they leave nothing that the steps of the program could be mistaken by.
 const REFERENCE: usize = 20_000;
 
-/// The errors of a pulled and of a sheared branch that yields, over μ, against the independent integration at the end of a cycle, by the steps in τ.
-pub fn yield_errors<const N: usize>(steps: [usize; N]) -> [[f64; 2]; N] {
+/// The errors of a pulled and of a sheared branch that yields, over μ, against the independent integration from the start of a cycle to `end`, by the
+/// steps in τ.
+pub fn yield_errors<const N: usize>(end: f64, steps: [usize; N]) -> [[f64; 2]; N] {
     let pulse = |t: f64| if t < 1.0 { t } else { (2.0 - t).max(0.4) };
     let stretch = |t: f64| {
         let l = 1.0 + 0.5 * pulse(t);
         Tensor::from_diagonal(&[l, l.powf(-0.3), l.powf(-0.4)].into())
     };
     let shear = |t: f64| Tensor::new(1.0, 2.0 * pulse(t), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
-    let (share, time, limit, end) = (0.8, 0.25, 600.0, 2.5);
+    let (share, time, limit) = (0.8, 0.25, 600.0);
     let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let cases: [&dyn Fn(f64) -> Tensor; 2] = [&stretch, &shear];
     let expected =
@@ -104,7 +105,7 @@ pub fn yield_errors<const N: usize>(steps: [usize; N]) -> [[f64; 2]; N] {
         [0, 1].map(|case| {
             let f = cases[case];
             let mut memory = yields(&mesh, share, time, limit);
-            follow(&mut memory, &mesh, f, end, 10 * steps);
+            follow(&mut memory, &mesh, f, end, (end / time).round() as usize * steps);
             (stress(&mut memory, &mesh, &f(end), 1e-6) - expected[case]).norm() / MU
         })
     })
@@ -114,32 +115,13 @@ pub fn yield_errors<const N: usize>(steps: [usize; N]) -> [[f64; 2]; N] {
 /// integration, to 1e-6 of the modulus, and its error is of the second order.
 #[test]
 fn a_branch_that_yields_is_its_differential_equation() {
-    let pulse = |t: f64| if t < 1.0 { t } else { (2.0 - t).max(0.4) };
-    let stretch = |t: f64| {
-        let l = 1.0 + 0.5 * pulse(t);
-        Tensor::from_diagonal(&[l, l.powf(-0.3), l.powf(-0.4)].into())
-    };
-    let shear = |t: f64| {
-        let mut f = Tensor::identity();
-        f[(0, 1)] = 2.0 * pulse(t);
-        f
-    };
-    let (share, time, limit) = (0.8, 0.25, 600.0);
-    let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
-    let cases: [(&str, &dyn Fn(f64) -> Tensor); 2] = [("stretch", &stretch), ("shear", &shear)];
-    for (name, f) in cases {
-        for end in [1.0, 2.5] {
-            let g = integrated(f, end, REFERENCE, share * MU, time, limit);
-            let expected = kirchhoff(&f(end), &g, share * MU);
-            let error = |steps: usize| {
-                let mut memory = yields(&mesh, share, time, limit);
-                follow(&mut memory, &mesh, f, end, steps);
-                (stress(&mut memory, &mesh, &f(end), 1e-6) - expected).norm() / MU
-            };
-            let errors = [125, 500, 2000].map(error);
-            println!("{name} to {end}: {errors:?}");
-            assert!(errors[2] < 1e-6, "{name} to {end}: {errors:?}");
-            assert!(errors[1] < errors[0] / 8.0 && errors[2] < errors[1] / 8.0, "{name} to {end}: {errors:?}");
+    for (end, steps) in [(1.0, [31, 125, 500]), (2.5, [12, 50, 200])] {
+        let errors = yield_errors(end, steps);
+        println!("to {end}: {errors:?}");
+        for case in [0, 1] {
+            let [first, second, third] = errors.map(|of| of[case]);
+            assert!(third < 1e-6, "to {end}: {errors:?}");
+            assert!(second < first / 8.0 && third < second / 8.0, "to {end}: {errors:?}");
         }
     }
 }

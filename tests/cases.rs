@@ -4,7 +4,7 @@ use crate::kit::{outcome, shipped};
 use crate::shapes::loaded;
 use springfit_bodies::solve::Standing;
 use springfit_element::material::Material;
-use springfit_fit::fit::{Balance, Fit, Higher, MotionWeight, Objective, Weight};
+use springfit_fit::fit::{Balance, Fit, Higher, Objective, Weight};
 use springfit_studies::study::{Event, FitOutcome, NamedFit, compare_element, run};
 
 /// One fit of a scene in place of those it lists; `bulk` adds the optional groups.
@@ -27,42 +27,6 @@ fn check(scene: &str, objective: Objective, bulk: bool, figures: &[[f64; 2]]) {
 }
 
 const MODAL: Objective = Objective::Frobenius(Weight::Modal(Higher::DEFAULT));
-
-/// Derived with a linear model on both sides, a fixed face and consistent traction; `offdiag` 2.18 by an independent
-/// computation.
-#[test]
-fn bodies_under_tension_match_the_reference_figures() {
-    check("cube_hex", Objective::Frobenius(Weight::OffDiagonal), false, &[[1.37, 2.18]]);
-    for (scene, figures) in [
-        ("cube_hex", [14.98, 25.58]),
-        ("cylinder_tet", [12.84, 30.76]),
-        ("cube_tet", [11.96, 31.36]),
-        ("cylinder_hole_tet", [7.53, 25.05]),
-        ("tissue_tri", [1.86, 4.51]),
-        ("tissue_quad", [8.92, 19.75]),
-    ] {
-        check(scene, Objective::Frobenius(Weight::None), false, &[figures]);
-    }
-}
-
-/// The optimum is flat: within 2 %.
-#[test]
-fn spectral_fits_match_the_reference_figures() {
-    let figures = [
-        ("cylinder_tet", 27.49, 58.16),
-        ("cube_tet", 28.75, 53.76),
-        ("cylinder_hole_tet", 19.00, 39.31),
-        ("tissue_tri", 2.91, 5.15),
-        ("cylinder_hex", 3.46, 10.00),
-        ("cube_hex", 5.47, 9.08),
-    ];
-    for (scene, rms, max) in figures {
-        let outcome = fitted(scene, Fit::new(Objective::Spectral(MotionWeight::None)), false);
-        let found = outcome.loads[0].error.unwrap();
-        assert!((found.rms / rms - 1.0).abs() < 0.02 && (found.max / max - 1.0).abs() < 0.02, "{scene}: {found:?}");
-        assert!(outcome.kind.stiffness().unwrap().gap.unwrap() <= 1e-8 && outcome.unreached == 0);
-    }
-}
 
 #[test]
 fn divergence_fits_match_the_reference_figures() {
@@ -88,8 +52,6 @@ fn divergence_fits_match_the_reference_figures() {
 
 #[test]
 fn modal_fits_with_a_content_spring_match_the_reference_figures() {
-    check("cylinder_hex", MODAL, true, &[[0.59, 2.43], [0.19, 1.55]]);
-    check("tissue_quad", MODAL, true, &[[0.54, 1.48], [0.20, 0.68]]);
     let cube = fitted("cube_hex", Fit::new(Objective::Frobenius(Weight::Modal(Higher::new(0.1).unwrap()))), true);
     for (load, rms, max) in [(0, 0.15, 0.62), (1, 0.40, 0.92)] {
         let found = cube.loads[load].error.unwrap();

@@ -345,7 +345,7 @@ fn fits_to_the_whole_object_are_expected() {
     let scene = "[mesh]\nbox = { element = \"tet4\", size = [0.2, 0.05, 0.05], cells = [8, 2, 2] }\n[material]\nyoung = 1e4\n\
                  poisson = 0.3\n[reference]\nfrom = \"quadratic\"\n[[fix]]\ngroup = \"xmin\"\n[[load]]\nname = \"pull\"\n\
                  group = \"xmax\"\ntraction = [10, 0, 0]\n[[fit]]\nname = \"springs\"\nobjective = \"whole\"\nstart = \"divergence\"\n\
-                 springs = [\"all + volume\"]\n[[fit]]\nname = \"smoothed\"\nobjective = \"exact\"\nshear = \"edges\"\n";
+                 springs = \"all + volume\"\n[[fit]]\nname = \"smoothed\"\nobjective = \"exact\"\nshear = \"edges\"\n";
     let scene = Scene::parse(scene, Path::new("bar.toml")).unwrap();
     let forecast = Forecast::of(&scene).unwrap();
     assert_eq!(forecast.unknown().count(), 0, "{forecast:?}");

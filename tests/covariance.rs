@@ -16,24 +16,27 @@ use springfit_fit::fit::{
 use springfit_foundation::scalar::DoubleDouble;
 use std::sync::{Arc, OnceLock};
 
-/// Elements of so many nodes at most: those of more are no other case, and take long.
+/// Elements of more nodes are fitted by closed forms alone, because searches take long on them.
 const NODES: usize = 10;
 
 /// The elements, each with its springs alone and with those on the content as well.
 fn subjects() -> &'static [(Arc<Element>, Springs)] {
     static SUBJECTS: OnceLock<Vec<(Arc<Element>, Springs)>> = OnceLock::new();
     SUBJECTS.get_or_init(|| {
-        let small = elements().into_iter().filter(|element| element.nodes() <= NODES).map(Arc::new);
         let each = |element: Arc<Element>| {
             let every: Vec<String> = element.springs.iter().map(|group| group.name.clone()).collect();
             let of = |names: Option<&[String]>| (element.clone(), Springs::select(&element, names).unwrap());
             [of(None), of(Some(&every))]
         };
-        small.flat_map(each).collect()
+        elements().into_iter().map(Arc::new).flat_map(each).collect()
     })
 }
 
 fn fits(element: &Element) -> Vec<Fit> {
+    if element.nodes() > NODES {
+        let closed = [Weight::None, Weight::OffDiagonal, Weight::Modal(Higher::DEFAULT)];
+        return closed.map(|weight| Fit::new(Objective::Frobenius(weight))).to_vec();
+    }
     let all = Objective::all(element.has_higher_modes()).into_iter().map(Fit::new);
     let more = [Objective::Frobenius(Weight::None), Objective::Divergence(Balance::DEFAULT)];
     all.chain(more.map(|objective| Fit { nonnegative: true, tied: true, ..Fit::new(objective) })).collect()

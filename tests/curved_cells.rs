@@ -4,6 +4,7 @@ use crate::shapes::elements;
 use nalgebra::DMatrix;
 use springfit_element::element::{Cell, Element, JacobianBounds, Quadrature, Tabulation};
 use springfit_mesh::mesh::{Below, Gate, MeshArrays};
+use springfit_numerics::dense::product;
 use springfit_report::report;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,7 +64,7 @@ fn determinants(gradients: &DMatrix<f64>, d: usize, x: &[f64]) -> [f64; 2] {
 
 /// det J at each point of some gradients.
 fn every_determinant(gradients: &DMatrix<f64>, d: usize, x: &[f64]) -> Vec<f64> {
-    let j = DMatrix::from_column_slice(d, gradients.nrows(), x) * gradients;
+    let j = product(&DMatrix::from_column_slice(d, gradients.nrows(), x), gradients);
     let at = |j: &[f64]| match *j {
         [a, b, c, e] => a * e - b * c,
         [a, b, c, e, f, g, h, k, l] => a * (f * l - g * k) - b * (e * l - g * h) + c * (e * k - f * h),

@@ -14,7 +14,6 @@ use springfit_element::material::{Energy, Material, Moduli, Plane, State};
 use springfit_element::springs::Measure;
 use springfit_fit::fit::{CellFits, ExactEnergy, ExactFit, ShearSprings, VolumeSprings, element_errors, fit_exact};
 use springfit_mesh::mesh::Mesh;
-use springfit_report::report::{NetworkFile, network_json};
 use springfit_studies::study::{Scene, run};
 use std::path::Path;
 use std::sync::Arc;
@@ -344,65 +343,6 @@ fn frequencies_and_motion_are_those_of_the_body() {
             println!("{element} {integrator:?}: largest displacement {size:e}, apart {:e}", apart / size);
             assert!(size > 1e-3 && apart < 1e-9 * size, "{element} {integrator:?}: {:e}", apart / size);
         }
-    }
-}
-
-/// What a program needs of an exact network is in its JSON: the energy at any positions, from the file alone.
-#[test]
-fn the_json_of_a_network_has_all_that_its_energy_needs() {
-    let material = Material::new(1e4, 0.4, State::Solid).unwrap();
-    for (element, energy, volume) in [
-        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Points),
-        ("tet4", ExactEnergy::StableNeoHookean, VolumeSprings::Patches),
-        ("hex8", ExactEnergy::StableMooneyRivlin { share: 0.4 }, VolumeSprings::Points),
-    ] {
-        let mesh = grid(element, &[0.02; 3], &[2, 1, 1]);
-        let fit = ExactFit { energy, volume, ..ExactFit::default() };
-        let mut network = network(&mesh, material, fit);
-        if volume == VolumeSprings::Patches {
-            network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
-        }
-        let mut text = Vec::new();
-        network_json(&NetworkFile::bare(&mesh, &network), &mut text).unwrap();
-        let file: serde_json::Value = serde_json::from_slice(&text).unwrap();
-        let mut random = Random(38);
-        let x: Vec<[f64; 3]> =
-            mesh.points.chunks_exact(3).map(|x| [0, 1, 2].map(|k| x[k] * 1.2 + 0.001 * random.next())).collect();
-        let number = |value: &serde_json::Value| value.as_f64().unwrap();
-        let list = |value: &serde_json::Value| -> Vec<usize> {
-            value.as_array().unwrap().iter().map(|v| v.as_u64().unwrap() as usize).collect()
-        };
-        let determinant = |columns: [[f64; 3]; 3]| DMatrix::from_fn(3, 3, |k, l| columns[l][k]).determinant();
-        let mut found = 0.0;
-        for spring in file["springs"].as_array().unwrap() {
-            let points = list(&spring["points"]);
-            let measure = &file["measures"][spring["measure"].as_u64().unwrap() as usize];
-            let mut c = 0.0;
-            if measure["kind"] == "length" {
-                c = (0..3).map(|k| (x[points[1]][k] - x[points[0]][k]).powi(2)).sum::<f64>().sqrt();
-            }
-            for cell in measure["cells"].as_array().unwrap() {
-                let nodes: Vec<usize> = list(&cell["nodes"]).iter().map(|&a| points[a]).collect();
-                for term in measure["terms"].as_array().unwrap() {
-                    let gradients = term["gradients"].as_array().unwrap();
-                    let column = |l: usize| {
-                        let entry =
-                            |k: usize| nodes.iter().zip(gradients).map(|(p, g)| x[*p][k] * number(&g[l])).sum::<f64>();
-                        [0, 1, 2].map(entry)
-                    };
-                    let content = if gradients[0].as_array().unwrap().len() == 3 {
-                        determinant([column(0), column(1), column(2)])
-                    } else {
-                        let [a, b] = [column(0), column(1)].map(nalgebra::Vector3::from);
-                        a.cross(&b).norm()
-                    };
-                    c += number(&cell["share"]) * number(&term["weight"]) * content;
-                }
-            }
-            found += number(&spring["constant"]) * (c - number(&spring["rest"])).powi(2) / 2.0;
-        }
-        let expected = Elastic::energy(&network, &x.concat()).unwrap();
-        assert!((found - expected).abs() < 1e-10 * expected, "{element} {energy:?} {volume:?}: {found} {expected}");
     }
 }
 

@@ -42,7 +42,6 @@ fn ten_conditions_for_one_support_have_the_same_errors() {
     for element in ["tet4", "hex8"] {
         for (poisson, more) in [
             (0.3, "[reference]\nrefine = 1\n"),
-            (0.3, "[reference]\nrefine = 2\n"),
             (0.3, "[reference]\nfrom = \"quadratic\"\n"),
             (
                 0.3,

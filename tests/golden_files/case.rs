@@ -25,9 +25,6 @@ pub struct Case {
     pub name: String,
     /// Files that are there before the commands, by name.
     files: BTreeMap<String, String>,
-    /// A file, and changes of it: the commands are run once for each change.
-    edited: Option<String>,
-    edits: Vec<(String, String)>,
     /// Lines of bash, in which `springfit` is the program.
     pub commands: Vec<String>,
     /// Why the case is only for comparisons to the bit, on one machine.
@@ -78,11 +75,6 @@ impl Case {
                 "name" => case.name = text(value),
                 "page" => case.files.extend(files_of_page(&text(value))),
                 "files" => case.files.extend(texts(value)),
-                "edited" => case.edited = Some(text(value)),
-                "edits" => {
-                    let pairs = value.as_array().expect("edits are a list").iter().map(list);
-                    case.edits = pairs.map(|pair| (pair[0].clone(), pair[1].clone())).collect();
-                }
                 "commands" => case.commands = list(value),
                 "exact_only" => case.exact_only = Some(text(value)),
                 "left_out" => case.left_out = list(value),
@@ -101,18 +93,7 @@ impl Case {
         }
         self.files.iter().for_each(|(name, text)| fs::write(work.path().join(name), text).unwrap());
         let mut printed = String::new();
-        match &self.edited {
-            None => self.run_commands(work.path(), programs.path(), &mut printed),
-            Some(name) => {
-                let original = &self.files[name];
-                for (from, to) in &self.edits {
-                    assert_eq!(original.matches(from).count(), 1, "{}: {from:?} is not once in {name}", self.name);
-                    fs::write(work.path().join(name), original.replace(from, to)).unwrap();
-                    printed += &format!("# {} -> {}\n", from.escape_debug(), to.escape_debug());
-                    self.run_commands(work.path(), programs.path(), &mut printed);
-                }
-            }
-        }
+        self.run_commands(work.path(), programs.path(), &mut printed);
         let mut outputs = Outputs::from([(PRINTED.to_string(), printed.into_bytes())]);
         self.gather(work.path(), "", &mut outputs);
         outputs

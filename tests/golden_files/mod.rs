@@ -131,19 +131,8 @@ fn report(place: &str, comparison: &Comparison) -> Option<String> {
     Some(lines.join("\n"))
 }
 
-const AREAS: [&str; 11] = [
-    "solids",
-    "planes",
-    "whole",
-    "paper",
-    "studies",
-    "fits",
-    "tutorials",
-    "exports",
-    "texts",
-    "refused_scenes",
-    "refused_options",
-];
+const AREAS: [&str; 10] =
+    ["solids", "planes", "whole", "paper", "studies", "fits", "tutorials", "exports", "texts", "refused_options"];
 
 /// Files of the scenes that are no scenes.
 const NO_SCENES: [&str; 1] = ["scenes/paper/index.toml"];
@@ -215,11 +204,6 @@ fn exports_and_figures() {
 #[test]
 fn lists_schemas_code_and_help() {
     check("texts");
-}
-
-#[test]
-fn refusals_of_scenes() {
-    check("refused_scenes");
 }
 
 #[test]

@@ -146,13 +146,14 @@ fn the_largest_residual_equals_its_dual_bound() {
             let problem = Problem::random(m, n, 0.3, outlier);
             let x = problem.solve(Norm::Max, nonnegative);
             let r = problem.residual(&x);
-            let active: Vec<usize> = (0..m).filter(|&i| r[i].abs() > r.amax() * (1.0 - 1e-8)).collect();
+            let most = r.amax();
+            let active: Vec<usize> = (0..m).filter(|&i| r[i].abs() > most * (1.0 - 1e-8)).collect();
             let signs: Vec<f64> = active.iter().map(|&i| r[i].signum()).collect();
             let free = problem.free(&x, nonnegative);
             let y = problem.dual(&active, &free, Some(&signs), DVector::zeros(m));
             assert!(active.iter().zip(&signs).all(|(&i, sign)| sign * y[i] > -1e-12));
             problem.assert_dual_feasible(&y, &free, 1e-12);
-            assert!(close(problem.b.dot(&y), r.amax(), 1e-9), "{} {}", problem.b.dot(&y), r.amax());
+            assert!(close(problem.b.dot(&y), most, 1e-9), "{} {most}", problem.b.dot(&y));
             assert!(!nonnegative || free.len() < n, "the bound was not active");
         }
     }

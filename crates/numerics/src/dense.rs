@@ -5,6 +5,54 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
+/// The product `A B` of matrices, m × n and n × p.
+///
+/// ```
+/// use nalgebra::dmatrix;
+/// assert_eq!(springfit_numerics::dense::product(&dmatrix![1.0, 2.0], &dmatrix![3.0; 4.0]), dmatrix![11.0]);
+/// ```
+pub fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    a * b
+}
+
+/// The matrix `k g gᵀ`, n × n, of n numbers g.
+///
+/// ```
+/// use nalgebra::{dmatrix, dvector};
+/// assert_eq!(springfit_numerics::dense::outer(2.0, &dvector![1.0, 3.0]), dmatrix![2.0, 6.0; 6.0, 18.0]);
+/// ```
+pub fn outer(k: f64, g: &DVector<f64>) -> DMatrix<f64> {
+    (g * k) * g.transpose()
+}
+
+/// The inverse of a square matrix; `None` if it has none.
+///
+/// ```
+/// use nalgebra::dmatrix;
+/// assert_eq!(springfit_numerics::dense::inverse(dmatrix![2.0, 0.0; 0.0, 4.0]), Some(dmatrix![0.5, 0.0; 0.0, 0.25]));
+/// assert_eq!(springfit_numerics::dense::inverse(dmatrix![1.0, 1.0; 1.0, 1.0]), None);
+/// ```
+pub fn inverse(a: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    a.try_inverse()
+}
+
+/// All ρ with `K x = ρ R x`, ascending, of symmetric matrices, n × n, R positive definite: the eigenvalues of `L⁻¹ K L⁻ᵀ` with `R = L Lᵀ`.
+/// `None` if R is not positive definite.
+///
+/// ```
+/// use nalgebra::dmatrix;
+/// let ratios = springfit_numerics::dense::ratios(&dmatrix![2.0, 1.0; 1.0, 2.0], dmatrix![4.0, 0.0; 0.0, 4.0]).unwrap();
+/// assert!((ratios[0] - 0.25).abs() < 1e-15 && (ratios[1] - 0.75).abs() < 1e-15);
+/// ```
+pub fn ratios(k: &DMatrix<f64>, r: DMatrix<f64>) -> Option<Vec<f64>> {
+    let l = r.cholesky()?.l();
+    let half = l.solve_lower_triangular(k)?;
+    let whole = l.solve_lower_triangular(&half.transpose())?;
+    let mut values = eigenvalues((&whole + whole.transpose()) * 0.5).as_slice().to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    Some(values)
+}
+
 /// All λ with `A v = λ v`, of a symmetric matrix A, n × n, in no order. It is done in n³ operations.
 ///
 /// ```

@@ -30,7 +30,7 @@ pub fn yielding() -> String {
         let errors = errors.map(|error| format!("{error:.1e}"));
         [vec![steps.to_string()], errors.to_vec()].concat()
     };
-    let rows: Vec<Vec<String>> = steps.into_iter().zip(yield_errors(steps)).map(row).collect();
+    let rows: Vec<Vec<String>> = steps.into_iter().zip(yield_errors(2.5, steps)).map(row).collect();
     markdown(&["steps in τ", "stretch", "shear"], &rows)
 }
 
