@@ -1,6 +1,6 @@
 //! What a change of units, place, direction or numbering does to constants: exactly what it must, or rounding.
 
-use crate::shapes::{Random, distorted, elements, loaded, materials};
+use crate::shapes::{Random, distorted, elements, loaded, materials, valid};
 use nalgebra::{DMatrix, Rotation3};
 use num_rational::BigRational;
 use num_traits::Signed;
@@ -8,7 +8,6 @@ use proptest::prelude::*;
 use springfit_element::element::{Element, SpringKind, permutations};
 use springfit_element::material::Moduli;
 use springfit_element::springs::Springs;
-use springfit_element::stiffness::Geometry;
 use springfit_fit::fit::{
     Balance, Fit, Higher, MotionWeight, Objective, Weight, condition, constants_in, constants_of_kind,
     distance_from_optimum, fit_cells, fit_element,
@@ -71,18 +70,6 @@ fn measured(springs: &Springs, s: usize) -> i32 {
     }
 }
 
-/// A random shape with a positive Jacobian.
-fn sound(element: &Element, seed: u64) -> Vec<f64> {
-    let mut random = Random(seed);
-    let mut geometry = Geometry::new(&element.tabulation);
-    loop {
-        let x = distorted(element, &mut random);
-        if geometry.set(&element.tabulation, &x).is_ok() {
-            return x;
-        }
-    }
-}
-
 /// Reference positions under a random map that leaves straight what is straight.
 fn affine(element: &Element, random: &mut Random) -> Vec<f64> {
     let d = element.dimension();
@@ -99,7 +86,7 @@ proptest! {
     #[test]
     fn constants_know_no_unit(subject in 0usize..1000, seed in 0u64..1000, stiffer in -60i32..60, longer in -40i32..40) {
         let (element, springs) = &subjects()[subject % subjects().len()];
-        let x = sound(element, seed);
+        let x = valid(element, &mut Random(seed));
         let plain = moduli(element, seed as usize);
         let d = element.dimension() as i32;
         for fit in fits(element) {
@@ -125,7 +112,7 @@ proptest! {
     fn constants_know_no_place(subject in 0usize..1000, seed in 0u64..1000, away in 0i32..28) {
         let (element, springs) = &subjects()[subject % subjects().len()];
         let grid = 2f64.powi(20);
-        let x: Vec<f64> = sound(element, seed).iter().map(|x| (x * grid).round() / grid).collect();
+        let x: Vec<f64> = valid(element, &mut Random(seed)).iter().map(|x| (x * grid).round() / grid).collect();
         let moved: Vec<f64> = x.iter().map(|x| x + 2f64.powi(away)).collect();
         for fit in fits(element) {
             let of = |x: &[f64]| fit_element(element, springs, x, moduli(element, seed as usize), &fit).unwrap();
@@ -139,7 +126,7 @@ proptest! {
     fn constants_know_no_direction_nor_numbering(subject in 0usize..1000, seed in 0u64..1000, angle in 0.1f64..3.0) {
         let (element, springs) = &subjects()[subject % subjects().len()];
         let (d, n) = (element.dimension(), element.nodes());
-        let plain = sound(element, seed);
+        let plain = valid(element, &mut Random(seed));
         let moduli = moduli(element, seed as usize);
         let turn = Rotation3::from_euler_angles(if d == 3 { 0.4 * angle } else { 0.0 }, if d == 3 { angle } else { 0.0 }, 2.0 * angle);
         let turn = DMatrix::from_fn(d, d, |i, j| if d == 1 { 1.0 } else { turn[(i, j)] });
@@ -206,7 +193,7 @@ fn expect_finite(
 ) {
     let (element, springs) = &subjects()[subject % subjects().len()];
     let d = element.dimension();
-    let mut x = sound(element, seed);
+    let mut x = valid(element, &mut Random(seed));
     x.iter_mut().enumerate().for_each(|(i, x)| *x *= 10f64.powf(if i % d == d - 1 { size + flat } else { size }));
     let plain = moduli(element, seed as usize);
     let moduli = Moduli { lambda: 10f64.powf(young) * plain.lambda, mu: 10f64.powf(young) * plain.mu };

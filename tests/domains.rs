@@ -7,7 +7,7 @@ use crate::shapes::statics::{
     assert_derivatives_along, compliance, end_load, frequencies, held_where, membrane, on_cells,
 };
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Elastic, Entries, Network, Support, edge_springs, finite_elements, patch_springs};
+use springfit_bodies::model::{Elastic, Entries, Network, Support, edge_springs, exact_network, finite_elements};
 use springfit_element::material::{CellMap, LinearMaterial, Material, MaterialMap, Moduli, Plane, State};
 use springfit_fit::fit::{ExactEnergy, ExactFit, ShearSprings, VolumeSprings, fit_exact};
 use springfit_foundation::error::ErrorKind;
@@ -43,12 +43,7 @@ fn solid(dimension: usize, poisson: f64) -> Material {
 }
 
 fn network(mesh: &Mesh, material: impl Into<MaterialMap>, fit: ExactFit, held: &[bool]) -> Network {
-    let material = material.into();
-    let mut network = edge_springs(mesh, material.clone(), &fit).unwrap();
-    if fit.volume == VolumeSprings::Patches {
-        network.others.extend(patch_springs(mesh, material, &fit, held).unwrap());
-    }
-    network
+    exact_network(mesh, &material.into(), &fit, held).unwrap()
 }
 
 /// The deformation gradient of a cell.

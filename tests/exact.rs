@@ -7,7 +7,8 @@ use crate::shapes::{Random, elements, geometry, loaded, materials, single, valid
 use nalgebra::{DMatrix, DVector};
 use springfit_bodies::dynamics::{Drive, Integrator, Motion, Options, Simulation, StepOutcome};
 use springfit_bodies::model::{
-    Body, Elastic, Lumping, Network, Support, fibre_springs, finite_elements, lumped_masses, patch_springs,
+    Body, Elastic, Lumping, Network, Support, exact_network, fibre_springs, finite_elements, lumped_masses,
+    patch_springs,
 };
 use springfit_bodies::solve::{System, lowest_modes};
 use springfit_element::material::{Energy, Material, Moduli, Plane, State};
@@ -260,8 +261,7 @@ fn patches_have_their_energy() {
     for held in [&held[..], &[]] {
         for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
             let fit = ExactFit { energy, volume: VolumeSprings::Patches, large: true, ..ExactFit::default() };
-            let mut network = network(&mesh, material, fit);
-            network.others.extend(patch_springs(&mesh, material, &fit, held).unwrap());
+            let network = exact_network(&mesh, &material.into(), &fit, held).unwrap();
             let found = Elastic::energy(&network, &x).unwrap() - Elastic::energy(&network, &mesh.points).unwrap();
             let (mut now, mut rest) = (vec![0.0; mesh.point_count()], vec![0.0; mesh.point_count()]);
             let mut expected = 0.0;

@@ -3,7 +3,7 @@
 use crate::shapes::bodies::grid;
 use crate::shapes::{Random, elements, loaded, materials, single, valid};
 use rayon::prelude::*;
-use springfit_bodies::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, edge_springs, patch_springs};
+use springfit_bodies::model::{Elastic, LengthSpring, MeasureSpring, Network, SpringLaw, exact_network, patch_springs};
 use springfit_element::element::{Element, SpringKind};
 use springfit_element::material::{Material, State};
 use springfit_element::springs::{Law, Measure, Patch, Springs, Squares, Turns};
@@ -232,8 +232,7 @@ fn numbers_of_points_do_not_matter() {
     mesh.points = points;
     let material = Material::new(1.0, 0.4, State::Solid).unwrap();
     let fit = ExactFit { volume: VolumeSprings::Patches, ..ExactFit::default() };
-    let mut network = Network::assemble(&mesh, &[exact(&mesh, material, fit).unwrap()]);
-    network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
+    let mut network = exact_network(&mesh, &material.into(), &fit, &[]).unwrap();
     network.lengths.extend(classical(&mesh, material).lengths);
     check(&network, &mesh.points, &mut random, "renumbered");
     let mut force = vec![1.0; mesh.points.len()];
@@ -259,10 +258,7 @@ fn what_has_no_force_is_said() {
     for energy in [ExactEnergy::StableNeoHookean, ExactEnergy::NeoHookean] {
         for volume in [VolumeSprings::Points, VolumeSprings::Patches] {
             let fit = ExactFit { energy, volume, ..ExactFit::default() };
-            let mut network = Network::assemble(&mesh, &[exact(&mesh, material, fit).unwrap()]);
-            if volume == VolumeSprings::Patches {
-                network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
-            }
+            let network = exact_network(&mesh, &material.into(), &fit, &[]).unwrap();
             for fault in [f64::NAN, f64::INFINITY, 1e200] {
                 let mut x = mesh.points.clone();
                 x[4] = fault;
@@ -356,8 +352,7 @@ fn evaluations_do_not_depend_on_those_before() {
     let mesh = cube();
     let material = Material::new(1.0, 0.4, State::Solid).unwrap();
     let fit = ExactFit { volume: VolumeSprings::Patches, energy: ExactEnergy::NeoHookean, ..ExactFit::default() };
-    let mut network = Network::assemble(&mesh, &[exact(&mesh, material, fit).unwrap()]);
-    network.others.extend(patch_springs(&mesh, material, &fit, &[]).unwrap());
+    let network = exact_network(&mesh, &material.into(), &fit, &[]).unwrap();
     let prepared = network.prepared();
     let forces = |scale: f64| {
         let x: Vec<f64> = mesh.points.iter().map(|x| x * scale).collect();
@@ -390,12 +385,7 @@ fn parts_of_large_networks_give_the_same_bits_on_any_number_of_threads() {
     let (tetrahedra, hexahedra) = (boxed("tet4", 14, &mut random), boxed("hex8", 12, &mut random));
     let with_patches = |shear: ShearSprings| {
         let fit = ExactFit { volume: VolumeSprings::Patches, shear, large: true, ..ExactFit::default() };
-        let mut network = match shear {
-            ShearSprings::Cells => Network::assemble(&tetrahedra, &[exact(&tetrahedra, material, fit).unwrap()]),
-            ShearSprings::Edges => edge_springs(&tetrahedra, material, &fit).unwrap(),
-        };
-        network.others.extend(patch_springs(&tetrahedra, material, &fit, &[]).unwrap());
-        network
+        exact_network(&tetrahedra, &material.into(), &fit, &[]).unwrap()
     };
     for (name, mesh, network) in [
         ("classical", &tetrahedra, classical(&tetrahedra, material)),

@@ -5,8 +5,8 @@ use crate::shapes::bodies::grid;
 use crate::shapes::statics::{dense, support_at};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
-use springfit_bodies::model::{Network, Support, exact_network, finite_elements, masses};
-use springfit_bodies::solve::{Equations, Newton, System, lowest_modes};
+use springfit_bodies::model::{Entries, Network, Support, exact_network, finite_elements, masses};
+use springfit_bodies::solve::{Newton, System, lowest_modes};
 use springfit_element::material::{CellMap, Hooke, LinearMaterial, Material, MaterialMap};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{CellFits, ExactFit, Fit, Objective, ShearSprings, VolumeSprings, Weight, fit_cells};
@@ -55,19 +55,38 @@ impl Body {
         fits
     }
 
-    fn target(&self, load: NodalLoad) -> Target {
-        let system = System::new(&finite_elements(&self.mesh, self.material.moduli()), &self.support).unwrap();
-        let displacement = system.solve(&system.factorize().unwrap().unwrap(), &load.forces).0;
-        Target::new(load.name, self.support.clone(), load.forces, displacement)
+    /// The displacements of a body or network with this stiffness.
+    fn moved_by(&self, entries: &Entries, loads: Vec<NodalLoad>) -> Vec<Target> {
+        let system = System::new(entries, &self.support).unwrap();
+        let factor = system.factorize().unwrap().unwrap();
+        let moved = |load: NodalLoad| {
+            let u = system.solve(&factor, &load.forces).0;
+            Target::new(load.name, self.support.clone(), load.forces, u)
+        };
+        loads.into_iter().map(moved).collect()
+    }
+
+    fn targets(&self, loads: Vec<NodalLoad>) -> Vec<Target> {
+        self.moved_by(&finite_elements(&self.mesh, self.material.moduli()), loads)
     }
 
     fn made(&self) -> Vec<Target> {
-        made_loads(&self.mesh, &self.support, self.material.thickness()).into_iter().map(|l| self.target(l)).collect()
+        self.targets(made_loads(&self.mesh, &self.support, self.material.thickness()))
     }
 
     fn random(&self, count: usize, seed: u64) -> Vec<Target> {
-        let loads = random_loads(&self.mesh, &self.support, self.material.thickness(), count, seed);
-        loads.into_iter().map(|l| self.target(l)).collect()
+        self.targets(random_loads(&self.mesh, &self.support, self.material.thickness(), count, seed))
+    }
+
+    /// Names the cells above half the height of the cube `upper`, and returns of each cell whether it is one.
+    fn name_upper(&mut self) -> Vec<bool> {
+        let height = |cell: &[usize]| cell.iter().map(|&p| self.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
+        let is_upper: Vec<bool> = self.mesh.blocks[0].cells().map(|cell| height(cell) > 0.01).collect();
+        let cells =
+            (0..is_upper.len()).filter(|&cell| is_upper[cell]).map(|cell| CellIndex { block: 0, cell }).collect();
+        self.mesh.groups.insert("upper".into(), Group { cells, ..Group::default() });
+        self.mesh.groups.remove("body");
+        is_upper
     }
 
     fn frequencies(&self, count: usize) -> Frequencies {
@@ -184,11 +203,7 @@ fn derivatives_in_moduli_are_those_of_differences() {
 #[test]
 fn domains_of_edges_share_the_moduli_of_groups() {
     let mut body = Body::new(&shipped("cube_tet"), "fixed");
-    let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
-    let is_upper: Vec<bool> = body.mesh.blocks[0].cells().map(|cell| height(cell) > 0.01).collect();
-    let upper = (0..is_upper.len()).filter(|&cell| is_upper[cell]).map(|cell| CellIndex { block: 0, cell }).collect();
-    body.mesh.groups.insert("upper".into(), Group { cells: upper, ..Group::default() });
-    body.mesh.groups.remove("body");
+    let is_upper = body.name_upper();
     let (young, poisson, state) = (body.material.young(), body.material.poisson(), body.material.state());
     // μ and λ four times as large, at the same ratio.
     let of_cell = |upper: &bool| Material::new(if *upper { 4.0 * young } else { young }, poisson, state).unwrap();
@@ -235,14 +250,8 @@ fn moduli_of_two_halves_come_back() {
         .collect();
     assert_eq!(truth.len(), unknowns.count());
     let network = object.network(&truth);
-    let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
-    let factor = system.factorize().unwrap().unwrap();
-    let moved = |load: NodalLoad| {
-        let u = system.solve(&factor, &load.forces).0;
-        Target::new(load.name, body.support.clone(), load.forces, u)
-    };
     let loads = varied_loads(&body.mesh, &body.support, &1.0.into(), Pressure::Uniform, (24, 5));
-    let trained: Vec<Target> = loads.into_iter().map(moved).collect();
+    let trained = body.moved_by(&network.stiffness(&body.mesh.points), loads);
     let wanted = Wanted { trained, ..Wanted::default() };
     let settings = WholeSettings {
         regularizations: vec![1e-2, 1e-4, 1e-6, 1e-8],
@@ -328,15 +337,7 @@ fn varied_loads_of_two_seeds_have_none_in_common() {
 #[test]
 fn intervals_of_moduli_hold_the_truth() {
     let mut body = Body::new(&shipped("cube_tet"), "fixed");
-    let height = |cell: &[usize]| cell.iter().map(|&p| body.mesh.point(p)[2]).sum::<f64>() / cell.len() as f64;
-    let upper: Vec<CellIndex> = body.mesh.blocks[0]
-        .cells()
-        .enumerate()
-        .filter(|(_, cell)| height(cell) > 0.01)
-        .map(|(cell, _)| CellIndex { block: 0, cell })
-        .collect();
-    body.mesh.groups.insert("upper".into(), Group { cells: upper, ..Group::default() });
-    body.mesh.groups.remove("body");
+    body.name_upper();
     let parts = ModuliParts::new(&body.mesh, body.material, &ExactFit::default(), &[]).unwrap();
     let unknowns = parts.unknowns(ModuliSharing::Region);
     let names = parts.names(ModuliSharing::Region);
@@ -344,16 +345,8 @@ fn intervals_of_moduli_hold_the_truth() {
     let object = Object::of_moduli(parts, unknowns.clone(), None).unwrap();
     let truth: Vec<f64> = names.iter().map(|name| if name.contains("upper") { 4.0f64.ln() } else { 0.0 }).collect();
     let network = object.network(&truth);
-    let system = System::new(&network.stiffness(&body.mesh.points), &body.support).unwrap();
-    let factor = system.factorize().unwrap().unwrap();
     let loads = varied_loads(&body.mesh, &body.support, &1.0.into(), Pressure::Uniform, (6, 5));
-    let exact: Vec<Target> = loads
-        .into_iter()
-        .map(|load| {
-            let u = system.solve(&factor, &load.forces).0;
-            Target::new(load.name, body.support.clone(), load.forces, u)
-        })
-        .collect();
+    let exact = body.moved_by(&network.stiffness(&body.mesh.points), loads);
     let inside = |p: usize| body.mesh.point(p).iter().all(|x| *x > 1e-6 && *x < 0.02 - 1e-6);
     let mut random = StdRng::seed_from_u64(7);
     for (noise, surface) in [(0.01, false), (0.05, false), (0.01, true)] {
@@ -687,13 +680,7 @@ fn the_path_is_as_good_as_a_scan() {
     };
     let moduli = CellMap::of_blocks(vec![body.mesh.blocks[0].cells().map(own).collect()]);
     let entries = finite_elements(&body.mesh, moduli);
-    let equations =
-        Equations::factored(&entries, &body.support, &body.mesh.points, body.mesh.dimension).unwrap().unwrap();
-    let moved = |load: NodalLoad| {
-        let u = equations.solve(&load.forces).unwrap().0;
-        Target::new(load.name, body.support.clone(), load.forces, u)
-    };
-    let made = |loads: Vec<NodalLoad>| loads.into_iter().map(moved).collect::<Vec<Target>>();
+    let made = |loads: Vec<NodalLoad>| body.moved_by(&entries, loads);
     let trained = made(made_loads(&body.mesh, &body.support, 1.0));
     let validation = Validation::Loads(made(random_loads(&body.mesh, &body.support, 1.0, 4, 5)));
     let network = Network::assemble(&body.mesh, &body.fits(Objective::Frobenius(Weight::OffDiagonal), false));

@@ -496,132 +496,72 @@ group = "zmax"
 force = [0, 0, 1.0]
 "#;
 
+/// A cube of a material that was measured so; and one whose motion is damped as it was measured so, with what else the scene has.
+macro_rules! measured {
+    ($measured:literal) => {
+        measured!(@ "", $measured, "")
+    };
+    ($measured:literal, $damping:literal, $more:literal) => {
+        measured!(
+            @ "density = 1000.0\n",
+            $measured,
+            concat!(
+                "[[fix]]\ngroup = \"zmin\"\n[motion]\nduration = 0.2\nstep = 0.1\nlinear = true\ndamping = { measured = ",
+                $damping,
+                " }\n",
+                $more
+            )
+        )
+    };
+    (@ $density:literal, $measured:literal, $rest:expr) => {
+        concat!(
+            "\n[mesh]\nbox = { element = \"hex8\", size = [1, 1, 1], cells = [1, 1, 1] }\n[material]\nyoung = 10e3\npoisson = 0.3\n",
+            $density,
+            "[material.relaxation]\nmeasured = ",
+            $measured,
+            "\n[[fit]]\nobjective = \"exact\"\n",
+            $rest
+        )
+    };
+}
+
 /// Cubes whose relaxation was measured, over time.
-pub const RELAXED: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-[material.relaxation]
-measured = { time = [0.1, 1.0, 10.0], modulus = [3.0, 2.0, 1.0], of = "all" }
-[[fit]]
-objective = "exact"
-"#;
+pub const RELAXED: &str = measured!(r#"{ time = [0.1, 1.0, 10.0], modulus = [3.0, 2.0, 1.0], of = "all" }"#);
 
-/// In creep.
-pub const CREPT: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-[material.relaxation]
-measured = { time = [0.1, 1.0, 10.0], compliance = [1.0, 1.5, 2.0] }
-[[fit]]
-objective = "exact"
-"#;
+/// Cubes whose creep was measured.
+pub const CREPT: &str = measured!("{ time = [0.1, 1.0, 10.0], compliance = [1.0, 1.5, 2.0] }");
 
-/// And over frequency.
-pub const DYNAMIC: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-[material.relaxation]
-measured = { frequency = [0.1, 1.0, 10.0], storage = [1.0, 2.0, 3.0], loss = [0.1, 0.5, 0.1] }
-[[fit]]
-objective = "exact"
-"#;
+/// Cubes whose moduli were measured over frequency.
+pub const DYNAMIC: &str =
+    measured!("{ frequency = [0.1, 1.0, 10.0], storage = [1.0, 2.0, 3.0], loss = [0.1, 0.5, 0.1] }");
 
 /// Cubes whose damping was measured, of the material by loss factors, with moduli over frequency; and of the motion by decays.
-pub const DECAYED: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-density = 1000.0
-[material.relaxation]
-measured = { frequency = [0.1, 1.0, 10.0], loss_factor = [0.1, 0.2, 0.1], band = [0.2, 5.0] }
-[[fit]]
-objective = "exact"
-[[fix]]
-group = "zmin"
-[motion]
-duration = 0.2
-step = 0.1
-linear = true
-damping = { measured = { time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] } }
-[output]
-dynamic_moduli = { band = [0.5, 2.0], count = 2 }
-"#;
+pub const DECAYED: &str = measured!(
+    "{ frequency = [0.1, 1.0, 10.0], loss_factor = [0.1, 0.2, 0.1], band = [0.2, 5.0] }",
+    "{ time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] }",
+    "[output]\ndynamic_moduli = { band = [0.5, 2.0], count = 2 }\n"
+);
 
-/// And by ratios; of the material by decrements.
-pub const DWINDLED: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-density = 1000.0
-[material.relaxation]
-measured = { decrement = 0.3, band = [1.0, 10.0] }
-[[fit]]
-objective = "exact"
-[[fix]]
-group = "zmin"
-[motion]
-duration = 0.2
-step = 0.1
-linear = true
-damping = { measured = { ratio = [0.05, 0.04], frequency = [1.0, 10.0] } }
-[output]
-dynamic_moduli = { frequency = [0.5, 2.0] }
-"#;
+/// Cubes whose damping was measured, of the material by decrements, and of the motion by ratios.
+pub const DWINDLED: &str = measured!(
+    "{ decrement = 0.3, band = [1.0, 10.0] }",
+    "{ ratio = [0.05, 0.04], frequency = [1.0, 10.0] }",
+    "[output]\ndynamic_moduli = { frequency = [0.5, 2.0] }\n"
+);
 
-/// Cubes that rang, with amplitudes.
-pub const RUNG: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-density = 1000.0
-[material.relaxation]
-measured = { time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] }
-[[fit]]
-objective = "exact"
-[[fix]]
-group = "zmin"
-[motion]
-duration = 0.2
-step = 0.1
-linear = true
-damping = { measured = { loss_factor = [0.05, 0.04], frequency = [1.0, 10.0], band = [2.0, 5.0] } }
-"#;
+/// Cubes whose damping was measured, of the material by amplitudes, and of the motion by loss factors.
+pub const RUNG: &str = measured!(
+    "{ time = [0.0, 0.1, 0.2], amplitude = [1.0, 0.6, 0.4], frequency = 10.0, band = [5.0, 20.0] }",
+    "{ loss_factor = [0.05, 0.04], frequency = [1.0, 10.0], band = [2.0, 5.0] }",
+    ""
+);
 
-/// And a motion with decrements; of the material by ratios.
-pub const DAMPENED: &str = r#"
-[mesh]
-box = { element = "hex8", size = [1, 1, 1], cells = [1, 1, 1] }
-[material]
-young = 10e3
-poisson = 0.3
-density = 1000.0
-[material.relaxation]
-measured = { ratio = [0.1, 0.2], frequency = [1.0, 5.0] }
-[[fit]]
-objective = "exact"
-[[fix]]
-group = "zmin"
-[motion]
-duration = 0.2
-step = 0.1
-linear = true
-damping = { measured = { decrement = 0.2, frequency = 2.0, band = [1.0, 4.0] } }
-"#;
+/// Cubes whose damping was measured, of the material by ratios, and of the motion by decrements.
+pub const DAMPENED: &str = measured!(
+    "{ ratio = [0.1, 0.2], frequency = [1.0, 5.0] }",
+    "{ decrement = 0.2, frequency = 2.0, band = [1.0, 4.0] }",
+    ""
+);
 
 /// Cubes that flow beyond a yield stress.
 pub const YIELDING: &str = r#"

@@ -3,10 +3,10 @@
 use super::Random;
 use super::bodies::grid;
 use nalgebra::{DMatrix, DVector};
-use springfit_bodies::model::{Elastic, Entries, Lumping, Network, Support, lumped_masses, patch_springs};
+use springfit_bodies::model::{Elastic, Entries, Lumping, Network, Support, exact_network, lumped_masses};
 use springfit_bodies::solve::{System, lowest_modes};
 use springfit_element::material::Material;
-use springfit_fit::fit::{ExactFit, VolumeSprings, fit_exact};
+use springfit_fit::fit::{ExactFit, VolumeSprings};
 use springfit_mesh::mesh::Mesh;
 
 /// The work of the load on the displacements that it causes.
@@ -136,14 +136,7 @@ pub fn end_load(mesh: &Mesh, test: impl Fn(&[f64]) -> bool) -> Vec<f64> {
 
 /// The exact network whose shear springs are on cells.
 pub fn on_cells(mesh: &Mesh, material: Material, volume: VolumeSprings, held: &[bool]) -> Network {
-    let fit = ExactFit { volume, ..ExactFit::default() };
-    let block = &mesh.blocks[0];
-    let cells = fit_exact(&block.element, &mesh.points, &block.connectivity, material, &fit, &mut |_| {}).unwrap();
-    let mut network = Network::assemble(mesh, &[cells]);
-    if volume == VolumeSprings::Patches {
-        network.others.extend(patch_springs(mesh, material, &fit, held).unwrap());
-    }
-    network
+    exact_network(mesh, &material.into(), &ExactFit { volume, ..ExactFit::default() }, held).unwrap()
 }
 
 /// The lowest 30 frequencies of a body of unit density.
