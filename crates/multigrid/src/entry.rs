@@ -112,33 +112,26 @@ impl Entry for Lanes {
     }
 }
 
-/// Lane by lane, with those of another vector or with one number.
+/// Defines an operator lane by lane, with the lanes of other numbers or with one number for all.
 macro_rules! operator {
-    ($trait:ident, $method:ident, $operator:tt) => {
-        impl $trait for Lanes {
+    ($trait:ident<$other:ty>, $method:ident, |$lanes:ident, $by:ident| $work:expr) => {
+        impl $trait<$other> for Lanes {
             type Output = Lanes;
 
             #[inline(always)]
-            fn $method(self, other: Lanes) -> Lanes {
-                Lanes(from_fn(|l| self.0[l] $operator other.0[l]))
-            }
-        }
-
-        impl $trait<f64> for Lanes {
-            type Output = Lanes;
-
-            #[inline(always)]
-            fn $method(self, number: f64) -> Lanes {
-                Lanes(self.0.map(|x| x $operator number))
+            fn $method(self, $by: $other) -> Lanes {
+                let $lanes = self.0;
+                Lanes($work)
             }
         }
     };
 }
 
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
-operator!(Div, div, /);
+operator!(Add<Lanes>, add, |x, y| from_fn(|l| x[l] + y.0[l]));
+operator!(Sub<Lanes>, sub, |x, y| from_fn(|l| x[l] - y.0[l]));
+operator!(Mul<Lanes>, mul, |x, y| from_fn(|l| x[l] * y.0[l]));
+operator!(Mul<f64>, mul, |x, factor| x.map(|x| x * factor));
+operator!(Div<f64>, div, |x, divisor| x.map(|x| x / divisor));
 
 impl AddAssign for Lanes {
     #[inline(always)]

@@ -5,18 +5,18 @@ const INTERVALS: usize = 48;
 /// The share of numbers at each end that may lie outside, where they lie far out: a single far number would leave the others one interval.
 const OUTSIDE: f64 = 0.01;
 
-/// How many of some numbers are in each of intervals of one width.
+/// A histogram counts how many numbers are in each of intervals of one width.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Histogram {
-    /// The least and the largest number.
+    /// The numbers lie between these two, the least and the largest.
     pub range: [f64; 2],
-    /// Where the first interval begins.
+    /// The first interval begins here.
     pub first: f64,
-    /// The width of each interval.
+    /// Each interval has this width.
     pub width: f64,
-    /// The numbers in each interval.
+    /// Each interval has so many numbers.
     pub counts: Vec<usize>,
-    /// Those below the first interval and above the last.
+    /// So many numbers are below the first interval, and above the last.
     pub outside: [usize; 2],
 }
 
