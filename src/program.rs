@@ -2,6 +2,7 @@
 
 use crate::commands::{self, Command};
 use crate::terminal::{self, Level, Terminal, tell};
+use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -54,15 +55,23 @@ Exit codes:
   2    an input is wrong, or something cannot be read, written or solved; a line says what
   130  interrupted";
 
+/// The arguments of the program with all of their help.
+fn grammar() -> clap::Command {
+    commands::explained(CommandLine::command())
+}
+
 /// Runs a command line, whose arguments are those after the name of the program. Help, and arguments that are wrong, end the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     say_why_no_thread_starts();
     commands::answer_interrupts();
-    let line = CommandLine::try_parse_from(std::iter::once("springfit".into()).chain(arguments.iter().cloned()));
-    let line = line.unwrap_or_else(|error| terminal::printable_error(error).exit());
+    let words = || std::iter::once("springfit".into()).chain(arguments.iter().cloned());
+    let line = CommandLine::try_parse_from(words()).unwrap_or_else(|error| {
+        let of_all = (error.kind() == ErrorKind::DisplayHelp).then(|| grammar().try_get_matches_from(words()).err());
+        terminal::printable_error(of_all.flatten().unwrap_or(error)).exit()
+    });
     commands::typed_as(arguments);
-    let mut terminal = Terminal::new(CommandLine::command, line.verbosity.level());
+    let mut terminal = Terminal::new(grammar, line.verbosity.level());
     line.command.run(&mut terminal).unwrap_or_else(|error| {
         terminal.clear();
         tell(&format!("error: {error}"));

@@ -1,6 +1,6 @@
 //! The flags of `springfit fit` that are keys of a `[[fit]]`.
 
-use clap::Args;
+use clap::{Args, Command};
 use serde_json::Value;
 use springfit_report::report::default_words;
 use springfit_studies::study::{FitEntry, fit_schema};
@@ -26,21 +26,21 @@ impl Given for bool {
     }
 }
 
-/// Defines the flags, each with its key in fits of one kind, from which it has its help.
+/// Defines the flags, each with its key in fits of one kind.
 macro_rules! flags {
     ($($heading:literal of $kind:literal { $($(#[$more:meta])* $flag:ident: $type:ty = $key:literal,)+ })+) => {
         #[derive(Args)]
         pub struct FitFlags {
             $($(
-                #[arg(long, help = help($kind, $key), help_heading = $heading)]
+                #[arg(long, help_heading = $heading)]
                 $(#[$more])*
                 pub $flag: $type,
             )+)+
         }
 
         impl FitFlags {
-            /// The flags and their keys.
-            const KEYS: &[(&str, &str)] = &[$($((stringify!($flag), $key)),+),+];
+            /// The flags, the kind of fit that explains each, and their keys.
+            const KEYS: &[(&str, &str, &str)] = &[$($((stringify!($flag), $kind, $key)),+),+];
 
             /// The values that are given, by key.
             fn given(&self) -> impl Iterator<Item = (&'static str, toml::Value)> {
@@ -114,6 +114,17 @@ fn help(kind: &str, key: &str) -> String {
 }
 
 impl FitFlags {
+    /// Adds to the flags of a command the help that their keys have.
+    ///
+    /// It is apart from their definition because most starts of the program print no help, and the schema takes longer than all other
+    /// arguments.
+    pub fn explained(command: Command) -> Command {
+        command.mut_args(|arg| match Self::KEYS.iter().find(|(flag, ..)| arg.get_id() == flag) {
+            Some((_, kind, key)) => arg.help(help(kind, key)),
+            None => arg,
+        })
+    }
+
     /// The entry of a fit with this objective and the values that are given.
     pub fn entry(&self, objective: String) -> FitEntry {
         // The groups are a field of the entry; the other values are keys of its kind.
@@ -137,6 +148,6 @@ impl FitFlags {
             "shapes" => "stretch",
             key => key,
         };
-        Self::KEYS.iter().find(|(_, path)| last(path) == named).map(|(flag, _)| *flag)
+        Self::KEYS.iter().find(|(_, _, path)| last(path) == named).map(|(flag, ..)| *flag)
     }
 }

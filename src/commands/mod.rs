@@ -64,6 +64,11 @@ macro_rules! commands {
     };
 }
 
+/// The arguments of the program with all of their help, which [`Command`] leaves to the schema of fits in part.
+pub fn explained(program: clap::Command) -> clap::Command {
+    program.mut_subcommands(|one| if one.get_name() == "fit" { fit_flags::FitFlags::explained(one) } else { one })
+}
+
 commands! {
     New: new::New,
     Run: run::Run,
