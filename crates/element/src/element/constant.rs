@@ -1,16 +1,17 @@
 //! A number in an element file: `1`, `0.5`, or a text such as `"1/3"` or `"sqrt(3)/3"`.
 
-use crate::symbolic::{Expr, Scope};
+use crate::file::PlainForms;
+use crate::symbolic::Scope;
 use num_rational::BigRational;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{self, Deserialize, Deserializer, Visitor};
+use serde::de::{Deserialize, Deserializer};
 use std::borrow::Cow;
-use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
-    expr: Expr,
     value: f64,
+    /// The expression, where the file has no number.
+    text: Option<String>,
 }
 
 impl Constant {
@@ -18,19 +19,24 @@ impl Constant {
         self.value
     }
 
-    /// The exact value, if it is rational.
+    /// The exact value, if it is rational. A double stands for the shortest decimal that is read as it: 0.1 is the rational number 1/10, and
+    /// proofs with it are exact.
     pub fn exact(&self) -> Option<BigRational> {
-        self.expr.value(&[])
+        let (value, exact) = (self.value, |text: &str| Scope::default().expression(text).ok()?.value(&[]));
+        match &self.text {
+            Some(text) => exact(text),
+            None if value.fract() == 0.0 && value.abs() < 1e15 => {
+                Some(BigRational::from_integer((value as i64).into()))
+            }
+            None if value < 0.0 => exact(&format!("-({})", -value)),
+            None => exact(&value.to_string()),
+        }
     }
 
     fn parse(text: &str) -> Result<Constant, String> {
-        let expr = Scope::default().expression(text).map_err(|e| e.problem().to_string())?;
-        let value = expr.evaluate(&[]);
-        if value.is_finite() {
-            Ok(Constant { expr, value })
-        } else {
-            Err(format!("expected a finite number, found \"{text}\""))
-        }
+        let value = Scope::default().expression(text).map_err(|e| e.problem().to_string())?.evaluate(&[]);
+        let constant = Constant { value, text: Some(text.into()) };
+        value.is_finite().then_some(constant).ok_or_else(|| format!("expected a finite number, found \"{text}\""))
     }
 }
 
@@ -47,27 +53,10 @@ impl JsonSchema for Constant {
 
 impl<'de> Deserialize<'de> for Constant {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Constant, D::Error> {
-        struct ConstantVisitor;
-        impl Visitor<'_> for ConstantVisitor {
-            type Value = Constant;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number or a text such as \"1/3\"")
-            }
-            fn visit_i64<E: de::Error>(self, v: i64) -> Result<Constant, E> {
-                Ok(Constant { expr: Expr::integer(v), value: v as f64 })
-            }
-            fn visit_f64<E: de::Error>(self, v: f64) -> Result<Constant, E> {
-                if !v.is_finite() {
-                    return Err(E::custom(format!("expected a finite number, found {}", v.to_string().to_lowercase())));
-                }
-                // The text of a double is the shortest decimal that is read as the same double. Parsed as an expression
-                // it is that decimal: 0.1 is the rational number 1/10 then, and proofs with it are exact.
-                if v < 0.0 { self.visit_str(&format!("-({})", -v)) } else { self.visit_str(&v.to_string()) }
-            }
-            fn visit_str<E: de::Error>(self, v: &str) -> Result<Constant, E> {
-                Constant::parse(v).map_err(E::custom)
-            }
-        }
-        deserializer.deserialize_any(ConstantVisitor)
+        deserializer.deserialize_any(PlainForms {
+            number: Some(|value| value.is_finite().then_some(Constant { value, text: None })),
+            text: Some(&|text| Constant::parse(text).map_err(Some)),
+            ..PlainForms::expecting("a finite number or a text such as \"1/3\"")
+        })
     }
 }

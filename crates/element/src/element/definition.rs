@@ -3,8 +3,10 @@
 use super::cell::Cell;
 use super::constant::Constant;
 use super::kind::SpringKind;
+use crate::file::Forms;
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -118,11 +120,21 @@ pub enum SpringClass {
 }
 
 /// Lists of nodes, or `"complete"`: all pairs of nodes, or all angles between edges at a corner, that have no spring yet.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "lists of nodes, or \"complete\"")]
+#[derive(Debug, JsonSchema)]
+#[schemars(untagged)]
 pub enum NodeLists {
     Named(String),
     Given(Vec<Vec<usize>>),
+}
+
+impl<'de> Deserialize<'de> for NodeLists {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<NodeLists, D::Error> {
+        deserializer.deserialize_any(Forms::<_, _, IgnoredAny> {
+            text: Some(&|name| Ok(NodeLists::Named(name.into()))),
+            list: Some(|lists| Ok(NodeLists::Given(lists))),
+            ..Forms::expecting("lists of nodes, or \"complete\"")
+        })
+    }
 }
 
 /// The JSON Schema of element files.

@@ -5,7 +5,7 @@
 
 use super::cell::Cell;
 use super::constant::Constant;
-use super::definition::{Definition, FormatEntry, Rule};
+use super::definition::{Definition, FormatEntry, NodeEntry, Rule};
 use super::quadrature::{MOST_POINTS, Quadrature};
 use super::{ShapeFunctions, Tabulation};
 use crate::error::{Error, ErrorKind, Result};
@@ -92,10 +92,14 @@ pub fn tabulable(functions: &ShapeFunctions, points: usize) -> Result<()> {
 
 /// Checks the Kronecker property, the partition of unity and linear completeness.
 pub fn nodal(definition: &Definition, shapes: &[Expr]) -> Result<()> {
+    let place = |node: &NodeEntry| -> (Option<Vec<BigRational>>, Vec<f64>) {
+        (node.at.iter().map(Constant::exact).collect(), node.at.iter().map(Constant::value).collect())
+    };
+    let places: Vec<_> = definition.nodes.iter().map(place).collect();
     for (a, shape) in shapes.iter().enumerate() {
-        for (b, node) in definition.nodes.iter().enumerate() {
+        for (b, (exact, at)) in places.iter().enumerate() {
             let expected = i64::from(a == b);
-            let (holds, found) = compare(definition.cell, shape, &node.at, expected);
+            let (holds, found) = compare(definition.cell, shape, exact.as_deref(), at, expected);
             if !holds {
                 let problem = format!("is {found} at nodes[{b}], expected {expected}");
                 return Err(Error::at(format!("nodes[{a}].shape"), problem));
@@ -121,14 +125,12 @@ fn number(c: &Constant) -> Expr {
     Expr::Number(exact.unwrap_or_else(BigRational::zero))
 }
 
-fn compare(cell: Cell, shape: &Expr, at: &[Constant], expected: i64) -> (bool, String) {
-    let exact: Option<Vec<BigRational>> = at.iter().map(Constant::exact).collect();
+fn compare(cell: Cell, shape: &Expr, exact: Option<&[BigRational]>, at: &[f64], expected: i64) -> (bool, String) {
     // Exact numbers decide exactly, where both the place and the function have them.
-    if let Some(value) = exact.and_then(|at| shape.value(&at)) {
+    if let Some(value) = exact.and_then(|at| shape.value(at)) {
         return (value == BigRational::from_integer(expected.into()), value.to_string());
     }
-    let at: Vec<f64> = at.iter().map(Constant::value).collect();
-    let value = shape.evaluate(&at);
+    let value = shape.evaluate(at);
     if value.is_finite() {
         return ((value - expected as f64).abs() <= ROUNDING, value.to_string());
     }

@@ -6,7 +6,7 @@
 use super::{Geometry, add_stiffness, jacobian};
 use crate::element::Tabulation;
 use crate::material::Hooke;
-use crate::scalar::{Scalar, adjugate, multiple, of_dimension};
+use crate::scalar::{Scalar, adjugate, multiple, of_dimension, vectorized};
 
 impl<T: Scalar> Geometry<T> {
     /// Whether the element has functions that are condensed.
@@ -16,10 +16,7 @@ impl<T: Scalar> Geometry<T> {
 
     /// `R = ∫ Bᵀ D B dV`, `[nodes·dimension × nodes·dimension]`, in any kind of number; functions beside those of the nodes are condensed.
     pub fn entries(&self, hooke: &Hooke<T>) -> Vec<T> {
-        self.volumes[0].vectorize(
-            #[inline(always)]
-            || of_dimension!(self.dimension, |D| self.entries_in::<D>(hooke)),
-        )
+        vectorized!(self.volumes[0], of_dimension!(self.dimension, |D| self.entries_in::<D>(hooke)))
     }
 
     #[inline(always)]

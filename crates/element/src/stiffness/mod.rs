@@ -17,7 +17,7 @@ pub use placement::{Placement, gather, gathered};
 
 use crate::element::Tabulation;
 use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};
-use crate::scalar::{Scalar, adjugate, dot, multiple, of_dimension, plus_multiple, zeros};
+use crate::scalar::{Scalar, adjugate, dot, multiple, of_dimension, plus_multiple, vectorized, zeros};
 use nalgebra::DMatrix;
 
 /// Gradients of the shape functions and volumes at the quadrature points, of one element or of one per SIMD lane.
@@ -59,10 +59,7 @@ impl<T: Scalar> Geometry<T> {
     pub fn update(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let positive = self.update_nodes(table, x);
         if self.is_condensed() {
-            x[0].vectorize(
-                #[inline(always)]
-                || of_dimension!(table.dimension, |D| self.update_modes::<D>(table, x)),
-            );
+            vectorized!(x[0], of_dimension!(table.dimension, |D| self.update_modes::<D>(table, x)));
         }
         positive
     }
@@ -70,10 +67,7 @@ impl<T: Scalar> Geometry<T> {
     /// [`Geometry::update`] of an element without condensed functions.
     pub fn update_nodes(&mut self, table: &Tabulation<T::Constant>, x: &[T]) -> bool {
         let n = self.nodes;
-        x[0].vectorize(
-            #[inline(always)]
-            || of_dimension!(table.dimension, |D| self.update_in::<D>(n, table, x)),
-        )
+        vectorized!(x[0], of_dimension!(table.dimension, |D| self.update_in::<D>(n, table, x)))
     }
 
     /// [`Geometry::update_nodes`] in D dimensions, as part of a kernel.

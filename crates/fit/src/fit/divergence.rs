@@ -14,7 +14,7 @@ use super::dense::{
 };
 use super::objective::Balance;
 use super::reduction::Reduced;
-use crate::scalar::Real;
+use crate::scalar::{Real, vectorized};
 
 /// The largest number of Newton steps. For nearly incompressible materials the stiffness of the content damps the first
 /// steps, of which there can be hundreds.
@@ -82,10 +82,7 @@ impl<T: Real> Divergence<T> {
     /// Solves for the element in `reduced`, which must be reduced with the weight `relative`, in every lane.
     pub fn solve(&mut self, reduced: &Reduced<T>) {
         let any = self.reached.clone();
-        any.vectorize(
-            #[inline(always)]
-            || self.minimise(reduced),
-        );
+        vectorized!(any, self.minimise(reduced));
     }
 
     #[inline(always)]

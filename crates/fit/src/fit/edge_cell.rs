@@ -5,7 +5,7 @@
 use super::linear_motions::{LinearMotions, from_mean};
 use super::weight::{ClosedWeight, Higher};
 use crate::material::{Hooke, Moduli, Stiffness, strains, voigt};
-use crate::scalar::{Scalar, difference, dot, zeros};
+use crate::scalar::{Scalar, difference, dot, vectorized, zeros};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -123,10 +123,7 @@ impl<'a, T: Scalar, const D: usize> EdgeCell<'a, T, D> {
     /// The last row of `M` and entry of `b`, of the spring on the cell's content, whose `g` is `c = ∫ ∇N dV`. With V
     /// the content, `P c = V S⁻¹ r_a`, because `Σ_a r_a ∇N_aᵀ = I`.
     pub fn content(&self, weight: ClosedWeight, row: &mut [T], rhs: &mut [T]) {
-        self.x[0][0].vectorize(
-            #[inline(always)]
-            || self.add_content(weight, row, rhs),
-        );
+        vectorized!(self.x[0][0], self.add_content(weight, row, rhs));
     }
 
     #[inline(always)]

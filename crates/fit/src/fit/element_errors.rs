@@ -9,7 +9,7 @@ use crate::element::Element;
 use crate::error::Result;
 use crate::material::{BlockValues, Hooke};
 use crate::number::or_nan;
-use crate::scalar::{Packed, PackedWork, widest};
+use crate::scalar::{Packed, PackedWork, vectorized, widest};
 use crate::stiffness::Fault;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -179,18 +179,15 @@ impl PackedWork for ErrorBatch<'_> {
 
 /// The squared Frobenius norm of a symmetric matrix from its lower triangle.
 fn frobenius_square<T: Packed>(a: &[T], size: usize) -> T {
-    a[0].vectorize(
-        #[inline(always)]
-        || {
-            let (mut diagonal, mut below) = (a[0].zero(), a[0].zero());
-            for (i, row) in a.chunks_exact(size).enumerate() {
-                diagonal = diagonal.plus_product(&row[i], &row[i]);
-                for entry in &row[..i] {
-                    below = below.plus_product(entry, entry);
-                }
+    vectorized!(a[0], {
+        let (mut diagonal, mut below) = (a[0].zero(), a[0].zero());
+        for (i, row) in a.chunks_exact(size).enumerate() {
+            diagonal = diagonal.plus_product(&row[i], &row[i]);
+            for entry in &row[..i] {
+                below = below.plus_product(entry, entry);
             }
-            // Each entry below the diagonal has its mirror image above it.
-            diagonal + &below.scaled(&2.0)
-        },
-    )
+        }
+        // Each entry below the diagonal has its mirror image above it.
+        diagonal + &below.scaled(&2.0)
+    })
 }

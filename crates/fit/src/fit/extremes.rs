@@ -5,7 +5,7 @@
 //! eigenvalue λ never passes it (Wilkinson, *The Algebraic Eigenvalue Problem*, 1965, 7.§14). As `G = Σ 1/(x − λ_i) ≤ n/(x − λ)`, what is left is at most
 //! `n/G`: this bound ends the iteration.
 
-use crate::scalar::Real;
+use crate::scalar::{Real, vectorized};
 
 /// What is left, at most, relative to the largest row sum of the matrix. Rounding of the recurrence leaves about as
 /// much.
@@ -32,23 +32,20 @@ impl<T: Real> Extremes<T> {
     /// The induced 2-norm of the symmetric matrix whose lower triangle is in `a`, `[order × order]`, which is overwritten.
     pub fn norm(&mut self, a: &mut [T]) -> T {
         let any = a[0].clone();
-        any.vectorize(
-            #[inline(always)]
-            || {
-                let (size, sum) = row_sums(a, self.order);
-                // A matrix of zeros is left as it is.
-                // The largest row sum bounds all eigenvalues (Gershgorin): after
-                // division they are from −1 to 1, and no square of an entry overflows.
-                let inverse = any.one() / &size.choose(&size, &any.one());
-                for entry in a.iter_mut() {
-                    *entry = entry.clone() * &inverse;
-                }
-                self.reduce(a);
-                let (high, low) = (self.end(1.0), self.end(-1.0));
-                // Numbers that are not finite stay so.
-                (high.greatest(&low).greatest(&any.zero()) * &size).plus_product(&sum, &any.zero())
-            },
-        )
+        vectorized!(any, {
+            let (size, sum) = row_sums(a, self.order);
+            // A matrix of zeros is left as it is.
+            // The largest row sum bounds all eigenvalues (Gershgorin): after
+            // division they are from −1 to 1, and no square of an entry overflows.
+            let inverse = any.one() / &size.choose(&size, &any.one());
+            for entry in a.iter_mut() {
+                *entry = entry.clone() * &inverse;
+            }
+            self.reduce(a);
+            let (high, low) = (self.end(1.0), self.end(-1.0));
+            // Numbers that are not finite stay so.
+            (high.greatest(&low).greatest(&any.zero()) * &size).plus_product(&sum, &any.zero())
+        })
     }
 
     /// Householder's reflections from the last row up; the tridiagonal form into `diagonal` and `beside`.

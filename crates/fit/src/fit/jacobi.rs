@@ -1,6 +1,6 @@
 //! Eigenvalues and eigenvectors of small symmetric matrices, one per lane, by Jacobi rotations.
 
-use crate::scalar::Real;
+use crate::scalar::{Real, vectorized};
 
 /// The largest number of sweeps over all pairs; six to eight are usually enough.
 const SWEEPS: usize = 16;
@@ -15,32 +15,29 @@ pub fn eigenvectors<T: Real>(a: &mut [T], n: usize, v: &mut [T]) {
             v[i * n + j] = if i == j { one.clone() } else { zero.clone() };
         }
     }
-    one.vectorize(
-        #[inline(always)]
-        || {
-            for _ in 0..SWEEPS {
-                let (mut rest, mut size) = (zero.clone(), zero.clone());
-                for i in 0..n {
-                    size = size.plus_product(&a[i * n + i], &a[i * n + i]);
-                    for j in 0..i {
-                        rest = rest.plus_product(&a[i * n + j], &a[i * n + j]);
-                    }
-                }
-                // Entries beside the diagonal that are a rounding error of it together move no eigenvalue by more than that.
-                let floor = size.scaled(&T::epsilon().powi(2));
-                let moves = rest.clone() - &floor;
-                // The sweeps end with the slowest lane; one that has converged has zero angles from there on.
-                if floor.exceeds(&rest) {
-                    break;
-                }
-                for i in 1..n {
-                    for j in 0..i {
-                        rotate(a, n, v, (i, j), &moves);
-                    }
+    vectorized!(one, {
+        for _ in 0..SWEEPS {
+            let (mut rest, mut size) = (zero.clone(), zero.clone());
+            for i in 0..n {
+                size = size.plus_product(&a[i * n + i], &a[i * n + i]);
+                for j in 0..i {
+                    rest = rest.plus_product(&a[i * n + j], &a[i * n + j]);
                 }
             }
-        },
-    );
+            // Entries beside the diagonal that are a rounding error of it together move no eigenvalue by more than that.
+            let floor = size.scaled(&T::epsilon().powi(2));
+            let moves = rest.clone() - &floor;
+            // The sweeps end with the slowest lane; one that has converged has zero angles from there on.
+            if floor.exceeds(&rest) {
+                break;
+            }
+            for i in 1..n {
+                for j in 0..i {
+                    rotate(a, n, v, (i, j), &moves);
+                }
+            }
+        }
+    });
 }
 
 /// Eliminates `A_ij` if `moves` is above zero.

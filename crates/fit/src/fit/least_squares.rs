@@ -23,7 +23,7 @@ use super::settings::Fit;
 use super::weight::{ClosedWeight, Route};
 use crate::element::Tabulation;
 use crate::material::Hooke;
-use crate::scalar::{Packed, Real, Scalar, difference, dot, of_dimension, plus_multiple};
+use crate::scalar::{Packed, Real, Scalar, difference, dot, of_dimension, plus_multiple, vectorized};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -105,9 +105,9 @@ impl<T: Real> Closed<T> {
                 && self.node_equations.solve(springs, x, geometry, hooke, &mut self.normal);
         }
         let n = springs.nodes();
-        let regular = x[0].vectorize(
-            #[inline(always)]
-            || of_dimension!(springs.dimension(), |D| self.solve_in::<D>(n, table, springs, x, geometry, hooke)),
+        let regular = vectorized!(
+            x[0],
+            of_dimension!(springs.dimension(), |D| self.solve_in::<D>(n, table, springs, x, geometry, hooke))
         );
         regular && self.finish(springs)
     }
@@ -164,9 +164,9 @@ impl<T: Real> Closed<T> {
     /// that of its group.
     pub fn solve_again(&mut self, springs: &Springs, w: &mut [T]) {
         let Some(any) = w.first().cloned() else { return };
-        any.vectorize(
-            #[inline(always)]
-            || match self.equations {
+        vectorized!(
+            any,
+            match self.equations {
                 Equations::Decoupled => {
                     for w in &mut *w {
                         *w = w.clone().scaled(&0.5);
@@ -185,7 +185,7 @@ impl<T: Real> Closed<T> {
                         *w = sums[group].clone();
                     }
                 }
-            },
+            }
         );
     }
 
@@ -259,9 +259,9 @@ pub fn normal_equations<T: Scalar>(
     normal: &mut Normal<T>,
 ) {
     let n = springs.nodes();
-    x[0].vectorize(
-        #[inline(always)]
-        || of_dimension!(springs.dimension(), |D| equations::<T, D>(n, weight, springs, x, geometry, hooke, normal)),
+    vectorized!(
+        x[0],
+        of_dimension!(springs.dimension(), |D| equations::<T, D>(n, weight, springs, x, geometry, hooke, normal))
     );
 }
 

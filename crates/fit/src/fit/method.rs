@@ -12,7 +12,7 @@ use super::reduction::{Reduced, Source};
 use super::settings::Fit;
 use super::spectral::{AMBIGUOUS, EXACT, GAP, Optimum, Problem, Spectral, least_frobenius, refine};
 use super::weight::{MotionWeight, Route};
-use crate::scalar::Real;
+use crate::scalar::{Real, vectorized};
 use crate::springs::Springs;
 
 /// If a motion is softer than this, relative to the stiffest motion, the squares in the normal equations have lost half
@@ -144,15 +144,12 @@ impl<T: Real> Method<T> {
                 normal.rhs.resize(c, zero);
                 let (p, h) = (self.reduced.order, self.reduced.rows());
                 row_products(h, &self.reduced.stiffness[..p * p], p, false, &mut products[..m * p]);
-                any.vectorize(
-                    #[inline(always)]
-                    || {
-                        for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
-                            let row = s * p..(s + 1) * p;
-                            normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);
-                        }
-                    },
-                );
+                vectorized!(any, {
+                    for (s, &unknown) in self.reduced.unknowns.iter().enumerate() {
+                        let row = s * p..(s + 1) * p;
+                        normal.rhs[unknown] = normal.rhs[unknown].clone() + &inner(&h[row.clone()], &products[row]);
+                    }
+                });
             }
             ReducedSolver::Spectral(solver) => solver.solve(&self.reduced),
             ReducedSolver::Divergence(solver) => solver.solve(&self.reduced),

@@ -13,7 +13,7 @@ use super::edge_cell::EdgeCell;
 use super::normal::Normal;
 use super::weight::ClosedWeight;
 use crate::material::Hooke;
-use crate::scalar::{Packed, Scalar};
+use crate::scalar::{Packed, Scalar, vectorized};
 use crate::springs::Springs;
 use crate::stiffness::Geometry;
 
@@ -58,12 +58,12 @@ impl<T: Scalar> NodeEquations<T> {
         hooke: &Hooke<T>,
         normal: &mut Normal<T>,
     ) -> bool {
-        x[0].vectorize(
-            #[inline(always)]
-            || match springs.dimension() {
+        vectorized!(
+            x[0],
+            match springs.dimension() {
                 2 => self.solve_in::<2>(springs, x, geometry, hooke, normal),
                 _ => self.solve_in::<3>(springs, x, geometry, hooke, normal),
-            },
+            }
         )
     }
 

@@ -3,7 +3,7 @@
 //! Theory: page *Least squares* of the book.
 
 use super::dense::{at_rounding, eliminate_row, solve as substitute, tie};
-use crate::scalar::{Real, Scalar};
+use crate::scalar::{Real, Scalar, vectorized};
 use crate::springs::Springs;
 use nalgebra::{DMatrix, DVector};
 
@@ -76,24 +76,21 @@ impl<T: Scalar> Normal<T> {
         tied.gram.resize(count * count, zero.clone());
         tied.rhs.clear();
         tied.rhs.resize(count, zero.clone());
-        zero.vectorize(
-            #[inline(always)]
-            || {
-                tie(
-                    &self.gram,
-                    &self.gram,
-                    groups,
-                    count,
-                    count,
-                    &mut tied.gram,
-                    #[inline(always)]
-                    |entry, _| entry.clone(),
-                );
-                for (s, &i) in groups.iter().enumerate() {
-                    tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
-                }
-            },
-        );
+        vectorized!(zero, {
+            tie(
+                &self.gram,
+                &self.gram,
+                groups,
+                count,
+                count,
+                &mut tied.gram,
+                #[inline(always)]
+                |entry, _| entry.clone(),
+            );
+            for (s, &i) in groups.iter().enumerate() {
+                tied.rhs[i] = tied.rhs[i].clone() + &self.rhs[s];
+            }
+        });
     }
 
     /// The equations of these springs, or of one constant per group if they are `tied`.
@@ -119,15 +116,15 @@ impl<T: Scalar> Normal<T> {
         // No unknowns: the empty solution is right.
         let Some(any) = self.rhs.first().cloned() else { return true };
         // A size that the compiler knows unrolls the loops of the small systems, where they are most of the work.
-        any.vectorize(
-            #[inline(always)]
-            || match self.size() {
+        vectorized!(
+            any,
+            match self.size() {
                 // Pairs of nodes of the triangle, of the quadrilateral and tetrahedron, and of the hexahedron.
                 3 if T::UNROLLED => self.factorize(3, rounding),
                 6 if T::UNROLLED => self.factorize(6, rounding),
                 28 if T::UNROLLED => self.factorize(28, rounding),
                 m => self.factorize(m, rounding),
-            },
+            }
         )
     }
 

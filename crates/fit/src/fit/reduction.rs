@@ -7,7 +7,7 @@ use super::dense::{add_outers, factorize, inner, mirror, row_products, tie, trac
 use super::linear_motions::LinearMotions;
 use super::weight::MotionWeight;
 use crate::material::Hooke;
-use crate::scalar::{Real, Scalar, difference, dot, of_dimension, plus_multiple, zeros};
+use crate::scalar::{Real, Scalar, difference, dot, of_dimension, plus_multiple, vectorized, zeros};
 use crate::springs::Springs;
 use crate::stiffness::{Geometry, add_stiffness};
 
@@ -77,9 +77,9 @@ impl<T: Real> Reduced<T> {
 
     /// Fills in the element or the matrix with nodes at `x`. `measured` has the gradients of springs on functions, `[functions × nodes·dimension]`.
     pub fn set(&mut self, weight: MotionWeight, springs: &Springs, x: &[T], source: Source<T>, measured: &[T]) {
-        x[0].vectorize(
-            #[inline(always)]
-            || of_dimension!(springs.dimension(), |D| self.set_in::<D>(weight, springs, x, source, measured)),
+        vectorized!(
+            x[0],
+            of_dimension!(springs.dimension(), |D| self.set_in::<D>(weight, springs, x, source, measured))
         );
     }
 
@@ -346,21 +346,18 @@ impl<T: Real> Reduced<T> {
     pub fn gram(&self, products: &mut [T], out: &mut [T]) {
         let (h, count) = (self.rows(), self.scales.len());
         row_products(h, h, self.order, true, products);
-        self.size.vectorize(
-            #[inline(always)]
-            || {
-                tie(
-                    products,
-                    products,
-                    &self.unknowns,
-                    count,
-                    count,
-                    out,
-                    #[inline(always)]
-                    |a, b| a.clone() * b,
-                )
-            },
-        );
+        vectorized!(self.size, {
+            tie(
+                products,
+                products,
+                &self.unknowns,
+                count,
+                count,
+                out,
+                #[inline(always)]
+                |a, b| a.clone() * b,
+            )
+        });
     }
 
     /// The common value of all κ at which the springs are on average as stiff as the element.

@@ -10,7 +10,7 @@ use super::packed_hooke::PackedHooke;
 use super::packing::{Packing, fill, packed};
 use crate::element::Element;
 use crate::material::{BlockValues, Hooke};
-use crate::scalar::{Packed, difference, dot, of_dimension};
+use crate::scalar::{Packed, difference, dot, of_dimension, vectorized};
 use crate::springs::{Force, Measure};
 use crate::stiffness::{Fault, Geometry, add_stiffness};
 use std::sync::Arc;
@@ -81,10 +81,7 @@ impl<'a, T: Packed> StiffnessDifferences<'a, T> {
         let count = nodes.len() / self.element.nodes();
         self.measure_singly(count);
         let zero = self.stiffness[0].zero();
-        zero.vectorize(
-            #[inline(always)]
-            || of_dimension!(self.element.dimension(), |D| self.subtract::<D>(first, count)),
-        );
+        vectorized!(zero, of_dimension!(self.element.dimension(), |D| self.subtract::<D>(first, count)));
         // Springs without tension at rest have no measures, and those of lengths have been taken off in all lanes.
         if self.measures.len() > self.fits.springs.pairs().len() {
             (0..count).for_each(|lane| self.bend_singly(first + lane, lane));

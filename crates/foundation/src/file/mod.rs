@@ -3,12 +3,14 @@
 //! TOML is read into structures with errors that name the key and the line.
 
 mod edition;
+mod forms;
 mod identity;
 mod node;
 mod partial;
 mod sum;
 
 pub use edition::{Edition, finish_edition};
+pub use forms::{Forms, PlainForms};
 pub use identity::check_apart;
 pub use partial::abandon;
 pub use sum::Sum;

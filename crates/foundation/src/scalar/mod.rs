@@ -15,9 +15,10 @@ mod lanes;
 mod norm;
 mod registers;
 mod sum;
+mod vectorized;
 
 #[doc(hidden)]
-pub use crate::of_dimension;
+pub use crate::{of_dimension, vectorized};
 pub use coordinates::{Coordinate, Coordinates, CoordinatesWork, with_coordinates};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;

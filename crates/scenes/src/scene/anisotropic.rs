@@ -1,8 +1,9 @@
 //! The anisotropic materials of a scene, and the axes of the material in each cell.
 
 use super::distribution::{self, DataEntry, Distribution};
-use super::value::{Forms, Varying};
+use super::value::Varying;
 use crate::error::{Error, Result};
+use crate::file::Forms;
 use crate::material::Anisotropy;
 use crate::symbolic::{Expr, Scope};
 use nalgebra::Matrix6;

@@ -10,7 +10,7 @@ use super::laws::{Lawful, Laws, LawsRoom};
 use super::tables::{Cells, Tables, merged};
 use super::tangents::{content, slopes};
 use crate::model::network::{MeasureSpring, Network};
-use crate::scalar::{Coordinate, Packed, PackedWork, widest};
+use crate::scalar::{Coordinate, Packed, PackedWork, vectorized, widest};
 use crate::springs::Measure;
 
 /// A spring on the whole content of a cell, `Σ_q w_q c_q`.
@@ -236,16 +236,16 @@ impl<V: Visit> PackedWork for Batches<'_, V> {
         let mut nodes: Vec<[T; 3]> = vec![zero.repeated(); self.cells.nodes];
         let mut forces = nodes.clone();
         let (any, room) = (zero.clone(), [&mut nodes[..], &mut forces[..]]);
-        zero.vectorize(
-            #[inline(always)]
-            || match (self.cells.dimension, self.space) {
+        vectorized!(
+            zero,
+            match (self.cells.dimension, self.space) {
                 (1, 2) if V::EMBEDDED => self.each::<T, 1, 2>(any, room),
                 (1, 3) if V::EMBEDDED => self.each::<T, 1, 3>(any, room),
                 (2, 3) if V::EMBEDDED => self.each::<T, 2, 3>(any, room),
                 (1, _) => self.each::<T, 1, 1>(any, room),
                 (2, _) => self.each::<T, 2, 2>(any, room),
                 _ => self.each::<T, 3, 3>(any, room),
-            },
+            }
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Equations, State};
 use crate::fit::normal::Normal;
-use crate::scalar::Packed;
+use crate::scalar::{Packed, vectorized};
 
 /// The equations, with the working memory.
 #[derive(Debug, Clone)]
@@ -29,19 +29,16 @@ impl<T: Packed> Factors<T> {
         gram.clone_from(&equations.gram);
         scale.clone_from(&equations.rhs);
         let one = gram[0].one();
-        one.vectorize(
-            #[inline(always)]
-            || {
-                for s in 0..m {
-                    let row = &mut gram[s * m..=s * m + s];
-                    // With a unit diagonal one tolerance serves the slopes of short and of long springs.
-                    scale[s] = one.clone() / &row[s].clone().sqrt();
-                    for (entry, other) in row.iter_mut().zip(&*scale) {
-                        *entry = entry.clone() * &(scale[s].clone() * other);
-                    }
+        vectorized!(one, {
+            for s in 0..m {
+                let row = &mut gram[s * m..=s * m + s];
+                // With a unit diagonal one tolerance serves the slopes of short and of long springs.
+                scale[s] = one.clone() / &row[s].clone().sqrt();
+                for (entry, other) in row.iter_mut().zip(&*scale) {
+                    *entry = entry.clone() * &(scale[s].clone() * other);
                 }
-            },
-        );
+            }
+        });
     }
 
     /// Solves the equations of the free constants of these lanes.

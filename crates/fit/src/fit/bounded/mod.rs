@@ -13,7 +13,7 @@ pub use gradients::{Gradients, Product};
 
 use super::constrained::Exchanges;
 use super::normal::slope_tolerance;
-use crate::scalar::Packed;
+use crate::scalar::{Packed, vectorized};
 
 /// The residual at which the signs of constants are judged, relative to b. Four digits show the sign of nearly every
 /// constant, and a sign that is wrong all the same sends the lane back to judging.
@@ -49,26 +49,23 @@ pub struct State<T> {
 /// equations are not solved or the exchanges do not end.
 pub fn bound<T: Packed>(equations: &mut impl Equations<T>, rhs: &[T], k: &mut [T], lanes: &[usize]) -> bool {
     let any = k[0].zero();
-    any.vectorize(
-        #[inline(always)]
-        || {
-            let room = || vec![any.clone(); rhs.len()];
-            let mut scaled = room();
-            for ((scaled, b), scale) in scaled.iter_mut().zip(rhs).zip(equations.scale()) {
-                *scaled = b.clone() * scale;
-            }
-            let state = State { rhs: scaled, free: room(), constants: room(), rest: room() };
-            let mut search = Search { equations, state };
-            if !search.run(k, lanes) {
-                return false;
-            }
-            for ((k, found), scale) in k.iter_mut().zip(&search.state.constants).zip(search.equations.scale()) {
-                let found = found.clone() * scale;
-                lanes.iter().for_each(|&lane| k.as_mut_slice()[lane] = found.as_slice()[lane]);
-            }
-            true
-        },
-    )
+    vectorized!(any, {
+        let room = || vec![any.clone(); rhs.len()];
+        let mut scaled = room();
+        for ((scaled, b), scale) in scaled.iter_mut().zip(rhs).zip(equations.scale()) {
+            *scaled = b.clone() * scale;
+        }
+        let state = State { rhs: scaled, free: room(), constants: room(), rest: room() };
+        let mut search = Search { equations, state };
+        if !search.run(k, lanes) {
+            return false;
+        }
+        for ((k, found), scale) in k.iter_mut().zip(&search.state.constants).zip(search.equations.scale()) {
+            let found = found.clone() * scale;
+            lanes.iter().for_each(|&lane| k.as_mut_slice()[lane] = found.as_slice()[lane]);
+        }
+        true
+    })
 }
 
 struct Search<'a, T, E> {

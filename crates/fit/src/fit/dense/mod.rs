@@ -27,7 +27,7 @@ mod products;
 
 pub use products::{add_outers, inner, row_products, tie, trace};
 
-use crate::scalar::{Real, Scalar};
+use crate::scalar::{Real, Scalar, vectorized};
 use grouped::{Factorize, LEAST};
 use pivot::accepted;
 
@@ -94,10 +94,7 @@ pub fn factorize<T: Real>(a: &mut [T], n: usize, floor: f64, inverse: &mut [T]) 
     {
         return least;
     }
-    any.vectorize(
-        #[inline(always)]
-        || known_order!(n => factorize_order(a, n, floor, inverse)),
-    )
+    vectorized!(any, known_order!(n => factorize_order(a, n, floor, inverse)))
 }
 
 #[inline(always)]
@@ -126,10 +123,7 @@ pub fn solve<T: Scalar>(a: &[T], n: usize, inverse: &[T], b: &mut [T]) {
 
 /// [`solve`] for two right-hand sides.
 pub fn solve_both<T: Real>(a: &[T], n: usize, inverse: &[T], b: [&mut [T]; 2]) {
-    a[0].vectorize(
-        #[inline(always)]
-        || known_order!(n => substitute(a, n, inverse, b)),
-    );
+    vectorized!(a[0], known_order!(n => substitute(a, n, inverse, b)));
 }
 
 #[inline(always)]
@@ -158,10 +152,7 @@ fn substitute<T: Scalar, const R: usize>(a: &[T], n: usize, inverse: &[T], b: [&
 
 /// `A⁻¹`, both triangles, from the factors; `rows` is working memory of the same size.
 pub fn invert<T: Real>(a: &[T], n: usize, inverse: &[T], rows: &mut [T], out: &mut [T]) {
-    a[0].vectorize(
-        #[inline(always)]
-        || known_order!(n => invert_order(a, n, inverse, rows, out)),
-    );
+    vectorized!(a[0], known_order!(n => invert_order(a, n, inverse, rows, out)));
 }
 
 #[inline(always)]

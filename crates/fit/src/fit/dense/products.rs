@@ -1,7 +1,7 @@
 //! Products of rows, and sums of them.
 
 use super::grouped::{AddOuters, LEAST, RowProducts};
-use crate::scalar::{Real, Scalar};
+use crate::scalar::{Real, Scalar, vectorized};
 
 /// `out_st = a_s · b_t` for rows of length n; with `lower` only the lower triangle of a square result.
 ///
@@ -10,10 +10,7 @@ pub fn row_products<T: Real>(a: &[T], b: &[T], n: usize, lower: bool, out: &mut 
     if b.len() >= LEAST * n && a[0].grouped(RowProducts { a, b, n, lower, out: &mut *out }).is_ok() {
         return;
     }
-    a[0].vectorize(
-        #[inline(always)]
-        || known_order!(n => row_products_order(a, b, n, lower, out)),
-    );
+    vectorized!(a[0], known_order!(n => row_products_order(a, b, n, lower, out)));
 }
 
 #[inline(always)]
@@ -108,10 +105,7 @@ pub fn add_outers<T: Real>(a: &mut [T], g: &[T], n: usize, c: &[T], unknowns: &[
     if n >= LEAST && c[0].grouped(AddOuters { a: &mut *a, g, n, c, unknowns, sign }).is_ok() {
         return;
     }
-    c[0].vectorize(
-        #[inline(always)]
-        || known_order!(n => add_outers_order(a, g, n, c, unknowns, sign)),
-    );
+    vectorized!(c[0], known_order!(n => add_outers_order(a, g, n, c, unknowns, sign)));
 }
 
 #[inline(always)]

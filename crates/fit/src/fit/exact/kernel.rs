@@ -9,7 +9,7 @@ use crate::fit::packing::Packing;
 use crate::fit::precision::differences;
 use crate::material::BlockValues;
 use crate::number::first_not_finite;
-use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, of_dimension, widest};
+use crate::scalar::{DoubleDouble, Packed, PackedWork, Real, dot, of_dimension, vectorized, widest};
 use crate::springs::Springs;
 use crate::stiffness::{Fault, Geometry, gather};
 use nalgebra::Matrix3;
@@ -163,15 +163,12 @@ impl ExactKernel<'_> {
         [constants, parameters, own]: [&mut [T]; 3],
     ) -> bool {
         let n = table.nodes;
-        x[0].vectorize(
-            #[inline(always)]
-            || {
-                of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, x) && {
-                    self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
-                    true
-                })
-            },
-        )
+        vectorized!(x[0], {
+            of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, x) && {
+                self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
+                true
+            })
+        })
     }
 
     /// The constants and parameters of a cell with this geometry, as [`ExactKernel::solve`] computes them.
@@ -184,14 +181,11 @@ impl ExactKernel<'_> {
         own: &mut [T],
     ) {
         let n = geometry.nodes;
-        geometry.volumes[0].vectorize(
-            #[inline(always)]
-            || {
-                of_dimension!(geometry.dimension, |D| {
-                    self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
-                })
-            },
-        );
+        vectorized!(geometry.volumes[0], {
+            of_dimension!(geometry.dimension, |D| {
+                self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
+            })
+        });
     }
 
     #[inline(always)]
@@ -307,9 +301,9 @@ pub fn edges<T: Real>(geometry: &Geometry<T>, mu: f64) -> Vec<T> {
     let (zero, n) = (geometry.volumes[0].zero(), geometry.nodes);
     let (mut pairs, mut own) = (vec![zero.clone(); n * (n - 1) / 2], vec![zero; n]);
     let mu = geometry.volumes[0].constant(&mu);
-    geometry.volumes[0].vectorize(
-        #[inline(always)]
-        || of_dimension!(geometry.dimension, |D| stiffen_in::<T, D>(n, geometry, &mu, &mut pairs, &mut own)),
+    vectorized!(
+        geometry.volumes[0],
+        of_dimension!(geometry.dimension, |D| stiffen_in::<T, D>(n, geometry, &mu, &mut pairs, &mut own))
     );
     pairs
 }

@@ -10,7 +10,7 @@ use crate::fit::exact::ExactKernel;
 use crate::fit::least_squares::Closed;
 use crate::fit::packing::packed;
 use crate::material::{Hooke, Moduli};
-use crate::scalar::{Dual, Packed, PackedWork, Real, at_most_four, of_dimension};
+use crate::scalar::{Dual, Packed, PackedWork, Real, at_most_four, of_dimension, vectorized};
 use crate::stiffness::Geometry;
 
 /// What is computed of each cell.
@@ -263,37 +263,31 @@ impl<'a> Batch<'a, '_> {
                         let (p, k) = (&weights[..], &k[..]);
                         let (x, moduli) = (&seeds.x[..], &seeds.moduli);
                         let cell = LeastSquaresCell { weight, springs, x, geometry: &geometry, moduli, k, p };
-                        any.vectorize(
-                            #[inline(always)]
-                            || {
-                                slopes.clear(&any);
-                                // A spring on the content of the cell rests at the content.
-                                if let Some(rest) = rests.first() {
-                                    slopes.add_content(rest);
-                                }
-                                of_dimension!(table.dimension, |D| {
-                                    cell.add_slopes::<D>(n, &mut room, &mut slopes);
-                                    slopes.through_geometry::<D>(n, &geometry);
-                                });
-                            },
-                        );
+                        vectorized!(any, {
+                            slopes.clear(&any);
+                            // A spring on the content of the cell rests at the content.
+                            if let Some(rest) = rests.first() {
+                                slopes.add_content(rest);
+                            }
+                            of_dimension!(table.dimension, |D| {
+                                cell.add_slopes::<D>(n, &mut room, &mut slopes);
+                                slopes.through_geometry::<D>(n, &geometry);
+                            });
+                        });
                     }
                     is_found
                 }
                 (GradientFit::Closed(_), None) => false,
                 (GradientFit::Exact(fit), _) => {
                     let kernel = ExactKernel::of(fit, springs);
-                    any.vectorize(
-                        #[inline(always)]
-                        || {
-                            of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, &seeds.x) && {
-                                slopes.clear(&any);
-                                add_exact::<N, D>(n, &kernel, &seeds.moduli, &geometry, &weights, &rests, &mut slopes);
-                                slopes.through_geometry::<D>(n, &geometry);
-                                true
-                            })
-                        },
-                    )
+                    vectorized!(any, {
+                        of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, &seeds.x) && {
+                            slopes.clear(&any);
+                            add_exact::<N, D>(n, &kernel, &seeds.moduli, &geometry, &weights, &rests, &mut slopes);
+                            slopes.through_geometry::<D>(n, &geometry);
+                            true
+                        })
+                    })
                 }
             };
             let is_sound = is_found

@@ -6,7 +6,7 @@
 use super::cell::{Sample, SampledCell, Sums};
 use super::sampling::Part;
 use crate::error::Result;
-use crate::scalar::{Packed, PackedWork, widest};
+use crate::scalar::{Packed, PackedWork, vectorized, widest};
 use crate::springs::{AskedResponse, Law};
 
 /// The number of shapes is filled up to a multiple of this, which every width of registers divides.
@@ -209,10 +209,7 @@ impl PackedWork for Add<'_, '_> {
     type Output = ();
 
     fn run<T: Packed>(self, zero: T) {
-        zero.vectorize(
-            #[inline(always)]
-            || self.add(&zero),
-        );
+        vectorized!(zero, self.add(&zero));
     }
 }
 

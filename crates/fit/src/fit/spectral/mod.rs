@@ -26,7 +26,7 @@ use super::dense::{
 };
 use super::jacobi::eigenvectors;
 use super::reduction::Reduced;
-use crate::scalar::Real;
+use crate::scalar::{Real, vectorized};
 use side::ShiftedMatrix;
 
 /// The requested duality gap, relative to t, or relative to `EXACT ‖R‖` if t is smaller. It is half of the digits of
@@ -140,10 +140,7 @@ impl<T: Real> Spectral<T> {
         let (p, c) = (reduced.order, self.kappa.len());
         let zero = self.value.zero();
         let one = zero.one();
-        zero.vectorize(
-            #[inline(always)]
-            || self.start(reduced),
-        );
+        vectorized!(zero, self.start(reduced));
         let floor = one.constant(&at_half::<T>(EXACT));
         let complexity = (2 * p + if self.nonnegative { c } else { 0 }) as f64;
         let mut mu = zero.clone();
@@ -177,10 +174,7 @@ impl<T: Real> Spectral<T> {
                 self.kappa[i] = inside.choose(&kappa[i], &self.kappa[i]);
             }
             self.value = inside.choose(&t, &self.value);
-            zero.vectorize(
-                #[inline(always)]
-                || self.derivatives(reduced, &kappa),
-            );
+            vectorized!(zero, self.derivatives(reduced, &kappa));
             if first {
                 mu = one.clone() / &self.gradient[c].negated();
                 first = false;
@@ -234,10 +228,7 @@ impl<T: Real> Spectral<T> {
             alpha = inside.choose(&whole, &alpha.clone().scaled(&0.5));
         }
         self.measure_curvature();
-        self.bound = zero.vectorize(
-            #[inline(always)]
-            || self.bound(reduced, &mu),
-        );
+        self.bound = vectorized!(zero, self.bound(reduced, &mu));
         let is_unique = self.nonnegative || self.curvature.exceeds(&one.constant(&AMBIGUOUS));
         if T::epsilon() >= T::given() && !(self.is_within(self.gap) && is_unique) {
             reduced.residual(&self.kappa, &mut self.eigenvalues);

@@ -3,7 +3,8 @@
 use crate::choice::choice;
 use crate::engine::{Engine, Order, Precision, Setting, Sweep};
 use crate::error::{Error, Result};
-use crate::scene::value::{self, Forms};
+use crate::file::Forms;
+use crate::scene::value;
 use schemars::JsonSchema;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, Serialize};

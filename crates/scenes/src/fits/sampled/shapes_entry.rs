@@ -1,14 +1,13 @@
 //! The shapes of a sampled fit as a scene has them: one set, or a list of sets.
 
+use crate::file::Forms;
 use crate::fit::{DeformationFamily, Design};
 use crate::fits::sampled::recipe::SampledRecipe;
-use crate::scene::value::{self, Forms};
+use crate::scene::value;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
+use serde::de::{Deserializer, IgnoredAny};
 use serde_json::json;
-use std::fmt;
 use std::path::PathBuf;
 
 /// The keys of a set of shapes.
@@ -100,29 +99,12 @@ pub enum HeldOutEntry {
 
 impl<'de> Deserialize<'de> for HeldOutEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<HeldOutEntry, D::Error> {
-        struct CountOrShapes;
-        impl<'de> Visitor<'de> for CountOrShapes {
-            type Value = HeldOutEntry;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("a number of shapes, or a table of shapes")
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, count: i64) -> Result<HeldOutEntry, E> {
-                let wrong = || E::custom(format!("expected a number of shapes from 0, found {count}"));
-                usize::try_from(count).map(HeldOutEntry::Count).map_err(|_| wrong())
-            }
-
-            fn visit_u64<E: serde::de::Error>(self, count: u64) -> Result<HeldOutEntry, E> {
-                usize::try_from(count).map(HeldOutEntry::Count).map_err(E::custom)
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<HeldOutEntry, A::Error> {
-                let shapes = ShapesEntry::deserialize(MapAccessDeserializer::new(map))?;
-                Ok(HeldOutEntry::Shapes(Box::new(shapes)))
-            }
-        }
-        deserializer.deserialize_any(CountOrShapes)
+        let count = |v: f64| (v >= 0.0 && v.fract() == 0.0).then_some(HeldOutEntry::Count(v as usize));
+        deserializer.deserialize_any(Forms::<_, IgnoredAny, _> {
+            number: Some(count),
+            table: Some(|shapes| HeldOutEntry::Shapes(Box::new(shapes))),
+            ..Forms::expecting("a whole number of shapes, or a table of shapes")
+        })
     }
 }
 

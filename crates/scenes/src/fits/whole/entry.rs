@@ -4,10 +4,10 @@ use super::recipe::{DISCREPANCY, LEAVE_ONE_OUT, LoadSelection, MADE, Sharing, St
 use crate::bound::{self, check_count};
 use crate::choice::choice;
 use crate::error::{Error, Result, expect_none};
+use crate::file::Forms;
 use crate::fit::{Choices, Fit, Objective, ShearSprings, VolumeSprings};
 use crate::fits::sampled::SampledRecipe;
 use crate::named::unknown;
-use crate::scene::value::Forms;
 use crate::whole::{DescentMethod, GaussNewton, ModuliSharing, WholeSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;

@@ -1,0 +1,71 @@
+//! Values that can be written in more than one form.
+
+use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{self, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
+use std::fmt;
+
+/// What a text stands for. The error contains an explanation, if there is a more specific one than what was expected.
+type OfText<'a, T> = &'a dyn Fn(&str) -> Result<T, Option<String>>;
+/// What a list stands for, or why it stands for nothing.
+type OfList<T, L> = fn(L) -> Result<T, &'static str>;
+
+/// A visitor of values that can be written in several forms: those for which there is a function. A list is read as an `L`, and a table
+/// as an `M`.
+pub struct Forms<'a, T, L, M> {
+    /// What the error says was expected, for a value in none of the forms.
+    pub expected: &'static str,
+    /// What a number stands for, whole or not; none if that is nothing.
+    pub number: Option<fn(f64) -> Option<T>>,
+    /// What a text stands for.
+    pub text: Option<OfText<'a, T>>,
+    /// What a list stands for.
+    pub list: Option<OfList<T, L>>,
+    /// What a table stands for.
+    pub table: Option<fn(M) -> T>,
+}
+
+/// The forms of a value that is neither a list nor a table.
+pub type PlainForms<'a, T> = Forms<'a, T, IgnoredAny, IgnoredAny>;
+
+impl<T, L, M> Forms<'_, T, L, M> {
+    /// A visitor that accepts no value yet.
+    pub fn expecting(expected: &'static str) -> Self {
+        Forms { expected, number: None, text: None, list: None, table: None }
+    }
+}
+
+impl<'de, T, L: Deserialize<'de>, M: Deserialize<'de>> Visitor<'de> for Forms<'_, T, L, M> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+
+    fn visit_i64<E: de::Error>(self, v: i64) -> Result<T, E> {
+        let number = self.number.ok_or_else(|| E::invalid_type(Unexpected::Signed(v), &self))?;
+        number(v as f64).ok_or_else(|| E::custom(format!("expected {}, found {v}", self.expected)))
+    }
+
+    fn visit_f64<E: de::Error>(self, v: f64) -> Result<T, E> {
+        let number = self.number.ok_or_else(|| E::invalid_type(Unexpected::Float(v), &self))?;
+        number(v)
+            .ok_or_else(|| E::custom(format!("expected {}, found {}", self.expected, v.to_string().to_lowercase())))
+    }
+
+    fn visit_str<E: de::Error>(self, v: &str) -> Result<T, E> {
+        let text = self.text.ok_or_else(|| E::invalid_type(Unexpected::Str(v), &self))?;
+        let plain = || E::invalid_value(Unexpected::Str(v), &self);
+        text(v).map_err(|problem| problem.map_or_else(plain, E::custom))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<T, A::Error> {
+        let Some(of_list) = self.list else { return Err(de::Error::invalid_type(Unexpected::Seq, &self)) };
+        of_list(L::deserialize(SeqAccessDeserializer::new(list))?).map_err(de::Error::custom)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+        let Some(of_table) = self.table else { return Err(de::Error::invalid_type(Unexpected::Map, &self)) };
+        M::deserialize(MapAccessDeserializer::new(map)).map(of_table)
+    }
+}
