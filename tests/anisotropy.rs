@@ -1,15 +1,13 @@
-//! Anisotropic linear materials: blocks against their compliance in turned axes, fits against least squares on whole matrices, and the
-//! isotropic law as one of them.
+//! Anisotropic linear materials: blocks against their compliance in turned axes, and the isotropic law as one of them.
 
 use crate::kit::{outcome, outcome_in, refusal};
 use crate::messages::reads;
 use crate::shapes::{elements, geometry, loaded};
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, Vector3};
+use nalgebra::{DVector, Matrix3, Matrix6, Vector3};
 use springfit_element::element::Element;
 use springfit_element::material::{Anisotropy, Hooke, Material, Plane, State, Stiffness};
 use springfit_element::springs::Springs;
-use springfit_fit::fit::{Fit, MotionWeight, Objective, Weight, element_errors, fit_cells, fit_element};
-use springfit_numerics::dense::eigenvalues;
+use springfit_fit::fit::{Fit, Objective, Weight, element_errors, fit_cells, fit_element};
 use springfit_studies::study::{Scene, run};
 use tempfile::TempDir;
 
@@ -136,130 +134,9 @@ fn a_plane_answers_with_its_compliance() {
     }
 }
 
-/// A symmetric positive definite matrix of this order.
-fn definite(order: usize, seed: &mut u64) -> DMatrix<f64> {
-    let a = DMatrix::from_fn(order, order, |_, _| random(seed) - 0.5);
-    &a * a.transpose() * 1e3 + DMatrix::identity(order, order) * 50.0
-}
-
 /// The nodes of the reference cell, moved a little.
 fn distorted(element: &Element, seed: &mut u64) -> Vec<f64> {
     element.positions.iter().map(|x| x + 0.04 * (random(seed) - 0.5)).collect()
-}
-
-/// `Σ_q v Bᵀ D B` with B written out, in the order xx, yy, zz, yz, xz, xy.
-fn stiffness(element: &Element, x: &[f64], d: &DMatrix<f64>) -> DMatrix<f64> {
-    let (n, dim) = (element.nodes(), element.dimension());
-    let geometry = geometry(element, x);
-    let rows: &[(usize, usize)] = match dim {
-        1 => &[(0, 0)],
-        2 => &[(0, 0), (1, 1), (0, 1)],
-        _ => &[(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)],
-    };
-    let mut r = DMatrix::zeros(n * dim, n * dim);
-    for (gradients, v) in geometry.gradients.chunks(n * dim).zip(&geometry.volumes) {
-        let mut b = DMatrix::zeros(rows.len(), n * dim);
-        for (row, &(k, l)) in rows.iter().enumerate() {
-            for a in 0..n {
-                b[(row, a * dim + k)] += gradients[a * dim + l];
-                if k != l {
-                    b[(row, a * dim + l)] += gradients[a * dim + k];
-                }
-            }
-        }
-        r += b.transpose() * d * b * *v;
-    }
-    r
-}
-
-/// Under any stiffness the constants are the least squares of `R − Σ k g gᵀ` over all entries, or over the blocks of different nodes.
-#[test]
-fn fits_are_least_squares_of_the_whole_matrix() {
-    let (mut seed, mut compared) = (11, 0);
-    for element in elements() {
-        let (d, n) = (element.dimension(), element.nodes());
-        let springs = Springs::select(&element, None).unwrap();
-        // Those with a rule of their own for changes of volume are compared with the isotropic law below.
-        if springs.is_empty() || !element.tabulation.volumetric.is_empty() || element.space() != d {
-            continue;
-        }
-        let x = distorted(&element, &mut seed);
-        let given = definite(d * (d + 1) / 2, &mut seed);
-        let hooke = Hooke::Anisotropic(Stiffness::new(d, given.as_slice()).unwrap());
-        let r = stiffness(&element, &x, &given);
-        let geometry = geometry(&element, &x);
-        assert!((geometry.stiffness(&hooke) - &r).norm() < 1e-11 * r.norm(), "{}", element.name);
-        let mut g = Vec::new();
-        springs.gradients(&x, &geometry, &mut g);
-        let rows: Vec<DVector<f64>> = g.chunks(n * d).map(DVector::from_column_slice).collect();
-        for (weight, all) in [(Weight::None, true), (Weight::OffDiagonal, false)] {
-            let entries: Vec<(usize, usize)> = (0..n * d)
-                .flat_map(|i| (0..n * d).map(move |j| (i, j)))
-                .filter(|(i, j)| all || i / d != j / d)
-                .collect();
-            let a = DMatrix::from_fn(entries.len(), rows.len(), |e, s| rows[s][entries[e].0] * rows[s][entries[e].1]);
-            let b = DVector::from_fn(entries.len(), |e, _| r[entries[e]]);
-            let transposed = a.transpose();
-            let Some(factor) = (&transposed * &a).cholesky() else { continue };
-            let pivots = factor.l().diagonal();
-            if pivots.min() < 1e-5 * pivots.max() {
-                continue;
-            }
-            // The equations square the condition of A; corrections by the residual take that back.
-            let mut expected = factor.solve(&(&transposed * &b));
-            for _ in 0..3 {
-                expected += factor.solve(&(&transposed * (&b - &a * &expected)));
-            }
-            compared += 1;
-            let found = fit_element(&element, &springs, &x, &hooke, &Fit::new(Objective::Frobenius(weight))).unwrap();
-            let difference = DVector::from_vec(found) - &expected;
-            assert!(difference.norm() < 1e-8 * expected.norm(), "{} {weight:?}: {}", element.name, difference.norm());
-            // Bounded: no constant below zero, and no change that lowers the norm keeps to that.
-            let bounded = Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(weight)) };
-            let k = DVector::from_vec(fit_element(&element, &springs, &x, &hooke, &bounded).unwrap());
-            let slope = &transposed * (&a * &k - &b);
-            let size = (&transposed * &b).amax();
-            for (k, slope) in k.iter().zip(slope.iter()) {
-                let is_optimal = *k >= 0.0 && *slope > -1e-7 * size && (*k == 0.0 || *slope < 1e-7 * size);
-                assert!(is_optimal, "{} {weight:?} {k} {slope}", element.name);
-            }
-        }
-    }
-    assert!(compared > 20, "{compared}");
-}
-
-/// No small change of the constants lowers the 2-norm: it is convex, so that the least value nearby is the least of all.
-#[test]
-fn the_spectral_fit_is_the_least_two_norm() {
-    let mut seed = 17;
-    for name in ["tri3", "quad4", "tet4", "hex8"] {
-        let element = loaded(name);
-        let (d, n) = (element.dimension(), element.nodes());
-        let springs = Springs::select(&element, None).unwrap();
-        let x = distorted(&element, &mut seed);
-        let given = definite(d * (d + 1) / 2, &mut seed);
-        let hooke = Hooke::Anisotropic(Stiffness::new(d, given.as_slice()).unwrap());
-        let r = stiffness(&element, &x, &given);
-        let geometry = geometry(&element, &x);
-        let mut g = Vec::new();
-        springs.gradients(&x, &geometry, &mut g);
-        let value = |k: &[f64]| {
-            let mut left = r.clone();
-            for (k, g) in k.iter().zip(g.chunks(n * d)) {
-                let g = DVector::from_column_slice(g);
-                left.ger(-k, &g, &g, 1.0);
-            }
-            eigenvalues(left).amax()
-        };
-        let fit = Fit::new(Objective::Spectral(MotionWeight::None));
-        let k = fit_element(&element, &springs, &x, &hooke, &fit).unwrap();
-        let (least, size) = (value(&k), k.iter().fold(0.0f64, |a, k| a.max(k.abs())));
-        for _ in 0..400 {
-            let step = size * 10f64.powf(-1.0 - 4.0 * random(&mut seed));
-            let other: Vec<f64> = k.iter().map(|k| k + step * (random(&mut seed) - 0.5)).collect();
-            assert!(value(&other) > least * (1.0 - 1e-5), "{name}: {} {least}", value(&other));
-        }
-    }
 }
 
 /// The isotropic law as a stiffness takes another path and has the same constants, of every element by every objective.

@@ -4,7 +4,7 @@ use crate::shapes::{Random, distorted, elements, geometry, materials, rigid_moti
 use nalgebra::{DMatrix, DVector};
 use num_rational::BigRational;
 use springfit_element::element::Element;
-use springfit_element::material::{Hooke, Material, Moduli};
+use springfit_element::material::{Hooke, Material, Moduli, Stiffness};
 use springfit_element::springs::Springs;
 use springfit_fit::fit::{
     Balance, CellFits, Fit, Higher, MotionWeight, Objective, Weight, constants_in, fit_cells, fit_element,
@@ -30,7 +30,9 @@ pub struct Case {
     pub element: Arc<Element>,
     pub springs: Springs,
     pub x: Vec<f64>,
+    /// Those of an isotropic material.
     pub moduli: Moduli,
+    hooke: Hooke,
     pub r: DMatrix<f64>,
     pub g: Vec<DVector<f64>>,
     /// W of the relative weight, and the projection on the linear motions, once they are asked for.
@@ -51,6 +53,7 @@ pub fn case(element: &Arc<Element>, springs: &Springs, x: &[f64], moduli: Moduli
         springs: springs.clone(),
         x: x.to_vec(),
         moduli,
+        hooke: moduli.into(),
         r,
         g,
         relative: OnceLock::new(),
@@ -79,9 +82,52 @@ pub fn cases(shapes: usize) -> Vec<Case> {
     all
 }
 
+/// `Σ_q v Bᵀ D B` with B written out, in the order xx, yy, zz, yz, xz, xy.
+fn stiffness(element: &Element, x: &[f64], d: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, dim) = (element.nodes(), element.dimension());
+    let geometry = geometry(element, x);
+    let rows: &[(usize, usize)] = match dim {
+        1 => &[(0, 0)],
+        2 => &[(0, 0), (1, 1), (0, 1)],
+        _ => &[(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)],
+    };
+    let mut r = DMatrix::zeros(n * dim, n * dim);
+    for (gradients, v) in geometry.gradients.chunks(n * dim).zip(&geometry.volumes) {
+        let mut b = DMatrix::zeros(rows.len(), n * dim);
+        for (row, &(k, l)) in rows.iter().enumerate() {
+            for a in 0..n {
+                b[(row, a * dim + k)] += gradients[a * dim + l];
+                if k != l {
+                    b[(row, a * dim + l)] += gradients[a * dim + k];
+                }
+            }
+        }
+        r += b.transpose() * d * b * *v;
+    }
+    r
+}
+
+/// Every element that one rule integrates, at a random shape, with a random anisotropic stiffness.
+fn anisotropic() -> Vec<Case> {
+    let mut random = Random(23);
+    let mut of = |element: Element| {
+        let (d, x) = (element.dimension(), distorted(&element, &mut random));
+        let a = DMatrix::from_fn(d * (d + 1) / 2, d * (d + 1) / 2, |_, _| random.next());
+        let given = &a * a.transpose() * 1e3 + DMatrix::identity(a.nrows(), a.nrows()) * 50.0;
+        let (springs, element) = (Springs::select(&element, None).unwrap(), Arc::new(element));
+        let r = stiffness(&element, &x, &given);
+        let hooke = Hooke::Anisotropic(Stiffness::new(d, given.as_slice()).unwrap());
+        let own = geometry(&element, &x).stiffness(&hooke);
+        assert!((own - &r).norm() < 1e-11 * r.norm(), "{}", element.name);
+        Case { hooke, r, ..case(&element, &springs, &x, Moduli { lambda: 0.0, mu: 1.0 }) }
+    };
+    let is_one_rule = |element: &Element| element.tabulation.volumetric.is_empty();
+    elements().into_iter().filter(is_one_rule).map(&mut of).collect()
+}
+
 impl Case {
     fn fit(&self, fit: Fit) -> Vec<f64> {
-        fit_element(&self.element, &self.springs, &self.x, self.moduli, &fit).unwrap()
+        fit_element(&self.element, &self.springs, &self.x, self.hooke.clone(), &fit).unwrap()
     }
 
     /// `K = Σ k_s g_s g_sᵀ`, by one product of matrices.
@@ -170,7 +216,7 @@ const ROUNDING: f64 = 1e-10;
 
 #[test]
 fn the_residual_is_orthogonal_to_every_spring() {
-    for case in cases(5) {
+    for case in cases(5).into_iter().chain(anisotropic()) {
         for weight in weights() {
             let k = case.fit(Fit::new(Objective::Frobenius(weight)));
             let (slopes, scale) = case.slopes(weight, &k);
@@ -182,7 +228,7 @@ fn the_residual_is_orthogonal_to_every_spring() {
 #[test]
 fn nonnegative_constants_satisfy_the_optimality_conditions() {
     let mut bound = 0;
-    for case in cases(5) {
+    for case in cases(5).into_iter().chain(anisotropic()) {
         for weight in weights() {
             let k = case.fit(Fit { nonnegative: true, ..Fit::new(Objective::Frobenius(weight)) });
             let (slopes, scale) = case.slopes(weight, &k);
@@ -319,7 +365,7 @@ fn single_precision_agrees_to_its_rounding() {
 impl Case {
     fn certified(&self, fit: Fit) -> CellFits {
         let cell: Vec<usize> = (0..self.element.nodes()).collect();
-        fit_cells(&self.element, &self.springs, &self.x, &cell, self.moduli, &fit, &mut |_| {}).unwrap()
+        fit_cells(&self.element, &self.springs, &self.x, &cell, self.hooke.clone(), &fit, &mut |_| {}).unwrap()
     }
 
     /// `‖W (R − K(k)) W‖₂`, weight none or modal.
@@ -335,7 +381,7 @@ const SPECTRAL: [MotionWeight; 2] = [MotionWeight::None, MotionWeight::Modal(Hig
 fn spectral_optima_are_certified() {
     let mut random = Random(17);
     let mut gaps = Vec::new();
-    for case in cases(4) {
+    for case in cases(4).into_iter().chain(anisotropic()) {
         for (weight, nonnegative, tied) in
             SPECTRAL.into_iter().flat_map(|w| [(w, false, false), (w, true, false), (w, false, true), (w, true, true)])
         {

@@ -28,6 +28,15 @@ pub fn place(path: impl AsRef<Path>) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
+/// All files in a folder and those below it, in the order of their paths; none if there is no such folder, as in a published package.
+pub fn files(folder: &Path) -> Vec<PathBuf> {
+    let paths = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let mut found: Vec<PathBuf> =
+        paths.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect();
+    found.sort();
+    found
+}
+
 /// Runs `springfit ARGUMENTS…` in a folder.
 pub fn springfit(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_springfit")).args(arguments).current_dir(folder).output().unwrap()

@@ -1,7 +1,7 @@
 //! Reads one bar of hexahedra and tetrahedra from every kind of mesh file, whole, cut short and damaged.
 
 use crate::damage::{assert_sound, damaged};
-use crate::kit::{place, source};
+use crate::kit::{files, place, source};
 use crate::messages::reads;
 use crate::shapes::Random;
 use proptest::prelude::*;
@@ -154,8 +154,8 @@ fn parametric_coordinates_are_passed_over() {
 fn every_mesh_of_the_scenes_reads() {
     let folder = place("scenes/meshes");
     let mut count = 0;
-    for entry in fs::read_dir(folder).unwrap() {
-        let mesh = MeshSource::read(&entry.unwrap().path()).unwrap();
+    for path in files(&folder) {
+        let mesh = MeshSource::read(&path).unwrap();
         assert_sound(&mesh);
         let groups: Vec<_> = mesh.blocks.iter().flat_map(|b| &b.groups).collect();
         for name in ["fixed", "load", "body"] {

@@ -1,6 +1,6 @@
 //! Meshes that random changes have spoilt: each fault is an error, or is counted by its name. No sound mesh has one.
 
-use crate::kit::place;
+use crate::kit::{files, place};
 use crate::shapes::statics::support_at;
 use crate::shapes::{Random, elements, loaded};
 use springfit_bodies::model::{LengthSpring, Network, Support, unheld_bodies, unheld_parts};
@@ -10,7 +10,6 @@ use springfit_mesh::mesh::{
     Annotations, Below, BoxMesh, CellBlock, Format, Gate, Mesh, MeshSource, NumberOrigin, SourceBlock,
 };
 use std::collections::{BTreeMap, HashMap};
-use std::fs;
 use std::sync::Arc;
 
 /// Of each kind.
@@ -72,8 +71,7 @@ fn sound() -> Vec<(String, MeshSource)> {
     }
     assert!(all.len() > 10, "{}", all.len());
     let folder = place("scenes/meshes");
-    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
+    let mut files = files(&folder);
     // A sheet has no side that is outside.
     files.retain(|path| !path.ends_with("roof_tri.msh"));
     assert_eq!(files.len(), 12);

@@ -55,8 +55,7 @@ fn sides_of_one_cell_are_the_boundary() {
 fn sides_of_groups_are_the_first_of_their_points() {
     let folder = crate::kit::place("scenes/meshes");
     let mut tested = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for path in crate::kit::files(&folder) {
         let mesh = Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap();
         let sets = sets(&mesh);
         // A group that lists no sides has the outer ones between its points.

@@ -1,6 +1,7 @@
 //! Links lead somewhere, and the pages are those of the table of contents.
 
 use super::markdown::{page, pages, root};
+use crate::kit::files;
 use std::collections::BTreeSet;
 
 #[test]
@@ -57,21 +58,12 @@ fn pages_that_the_sources_name_are_in_the_book() {
         .map(|page| page.text.lines().next().unwrap_or("").trim_start_matches("# ").to_string())
         .collect();
     let mut named = 0;
-    let mut folders = vec![root().join("crates"), root().join("src")];
-    while let Some(folder) = folders.pop() {
-        // A published package holds its own sources alone.
-        for entry in std::fs::read_dir(&folder).into_iter().flatten() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let Ok(text) = std::fs::read_to_string(&path) else { continue };
-            for line in text.lines().filter(|line| line.starts_with("//! Theory: page")) {
-                for title in line.split('*').skip(1).step_by(2) {
-                    assert!(titles.iter().any(|known| known == title), "{}: no page *{title}*", path.display());
-                    named += 1;
-                }
+    for path in ["crates", "src"].iter().flat_map(|folder| files(&root().join(folder))) {
+        let Ok(text) = std::fs::read_to_string(&path) else { continue };
+        for line in text.lines().filter(|line| line.starts_with("//! Theory: page")) {
+            for title in line.split('*').skip(1).step_by(2) {
+                assert!(titles.iter().any(|known| known == title), "{}: no page *{title}*", path.display());
+                named += 1;
             }
         }
     }

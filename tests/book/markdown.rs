@@ -1,5 +1,6 @@
 //! The pages of the book: fenced blocks with the marks before them, tables between marks, and links.
 
+use crate::kit::files;
 use std::path::{Path, PathBuf};
 
 /// A fenced block of a page.
@@ -33,23 +34,10 @@ pub fn page(path: &str) -> Page {
 
 /// The pages of the book, and those beside it.
 pub fn pages() -> Vec<Page> {
-    let mut paths: Vec<PathBuf> = markdown(&root().join("docs/src"));
+    let mut paths = files(&root().join("docs/src"));
+    paths.retain(|path| path.extension().is_some_and(|e| e == "md"));
     paths.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name)));
     paths.iter().map(|path| page(path.to_str().unwrap())).collect()
-}
-
-fn markdown(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(markdown(&path));
-        } else if path.extension().is_some_and(|e| e == "md") {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
 }
 
 impl Page {

@@ -7,10 +7,11 @@ mod samples;
 mod verdict;
 mod walk;
 
+use crate::kit::files;
 use samples::{ALL, FILES};
 use springfit_studies::study::Scene;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::TempDir;
 use toml::Value;
 use verdict::{Verdict, of_scene};
@@ -160,7 +161,10 @@ fn every_numeric_key_of_a_scene_is_swept() {
         known.extend(numeric_keys(&problem, &document));
     }
     // The shipped scenes have no other keys.
-    for path in scenes(Path::new("scenes")) {
+    let mut scenes = files(Path::new("scenes"));
+    // An index of experiments is no scene.
+    scenes.retain(|path| path.extension().is_some_and(|e| e == "toml") && !path.ends_with("index.toml"));
+    for path in scenes {
         let document = parse(&std::fs::read_to_string(&path).unwrap());
         known.extend(numeric_places(&document).iter().map(|place| key(place)));
     }
@@ -179,13 +183,4 @@ fn every_numeric_key_of_a_scene_is_swept() {
         known.iter().filter(|name| !lists(name).iter().any(|name| visited.contains(name))).collect();
     assert!(known.len() > 60, "{} keys: {known:?}", known.len());
     assert!(missing.is_empty(), "no sample has {missing:?}");
-}
-
-/// The scenes in a folder and those below it; an index of experiments is none.
-fn scenes(folder: &Path) -> Vec<PathBuf> {
-    let paths: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    let below = paths.iter().filter(|path| path.is_dir()).flat_map(|path| scenes(path));
-    let own =
-        paths.iter().filter(|path| path.extension().is_some_and(|e| e == "toml") && !path.ends_with("index.toml"));
-    own.cloned().chain(below).collect()
 }

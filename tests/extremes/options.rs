@@ -1,8 +1,9 @@
 //! The numbers of the command line.
 
 use super::verdict::not_finite;
+use crate::kit::files;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
@@ -215,15 +216,7 @@ fn verdict(output: &Output, folder: &Path, option: &str) -> Result<(), String> {
 
 /// The texts of the files that were written.
 fn written(folder: &Path) -> Vec<String> {
-    let mut texts = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let known = FILES.iter().any(|(name, _)| path.ends_with(name));
-        if path.is_dir() {
-            texts.extend(written(&path));
-        } else if !known {
-            texts.extend(std::fs::read_to_string(&path).ok().filter(|_| path.extension().is_none_or(|e| e != "svg")));
-        }
-    }
-    texts
+    let is_given = |path: &PathBuf| FILES.iter().any(|(name, _)| path.ends_with(name));
+    let of_text = |path: &PathBuf| !is_given(path) && path.extension().is_none_or(|e| e != "svg");
+    files(folder).iter().filter(|path| of_text(path)).filter_map(|path| std::fs::read_to_string(path).ok()).collect()
 }

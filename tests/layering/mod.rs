@@ -4,6 +4,7 @@ mod graph;
 mod module;
 mod tokens;
 
+use crate::kit::files;
 use graph::{Graph, PROGRAM, Source};
 use springfit_element::element::SHIPPED;
 use std::collections::{BTreeMap, BTreeSet};
@@ -56,20 +57,6 @@ const LAYERS: [&str; 43] = [
     "program",
 ];
 
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(files(&path));
-        } else {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
 /// Every source of the packages that are here: a published package holds its own alone.
 fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -79,7 +66,7 @@ fn sources() -> Vec<Source> {
             let within: Vec<_> = path.strip_prefix(&folder).unwrap().iter().map(|p| p.to_str().unwrap()).collect();
             Source::new(package, &within.join("/"), &std::fs::read_to_string(&path).unwrap())
         };
-        if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
+        files(&folder).into_iter().map(read).collect()
     };
     [
         "shipped",
