@@ -1,11 +1,10 @@
 //! Meshes from arrays are those that they were taken from, and wrong arrays are errors.
 
-use crate::kit::place;
+use crate::kit::{files, place};
 use crate::shapes::{Random, elements};
 use springfit_element::element::Element;
 use springfit_mesh::mesh::{BoxMesh, Gate, Group, Mesh, MeshArrays, MeshSource};
 use std::collections::BTreeMap;
-use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -61,8 +60,7 @@ fn arrays_give_the_mesh_again() {
         }
     }
     let folder = place("scenes/meshes");
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for path in files(&folder) {
         let mesh = Mesh::resolve(&MeshSource::read(&path).unwrap(), &[], 1.0).unwrap();
         let again = arrays_of(&mesh).build(Gate::default()).unwrap();
         assert_eq!((&again.points, &again.quality), (&mesh.points, &mesh.quality), "{}", path.display());

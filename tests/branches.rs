@@ -4,45 +4,18 @@ use crate::kit::{outcome, place, refusal};
 use crate::messages::reads;
 use crate::shapes::Random;
 use crate::shapes::bodies::grid;
+use crate::shapes::relaxing::{BULK, MU, Tensor, affine, points, shear, stress};
 use springfit_bodies::dynamics::{BranchForm, BranchTerm, FlowMemory, LargeMemory, Memory};
-use springfit_bodies::model::{MaterialPoints, displaced};
+use springfit_bodies::model::MaterialPoints;
 use springfit_element::element::Element;
-use springfit_element::material::{Material, MaterialMap, Relaxation, RelaxationTerm, State};
+use springfit_element::material::{Material, Relaxation, RelaxationTerm, State};
 use springfit_fit::fit::ShearSprings;
 use springfit_mesh::mesh::Mesh;
 use springfit_studies::study::MotionEnding;
 
-/// μ of the bodies in these tests, Pa: E = 10 kPa, ν = 0.3.
-const MU: f64 = 1e4 / 2.6;
-const BULK: f64 = 1e4 / 1.2;
-
-type Tensor = nalgebra::Matrix3<f64>;
-
-fn points(mesh: &Mesh, shear: ShearSprings) -> MaterialPoints {
-    let state = if mesh.dimension == 3 { State::Solid } else { State::PlaneStrain { thickness: 0.5 } };
-    let material: MaterialMap = Material::new(1e4, 0.3, state).unwrap().into();
-    MaterialPoints::of(mesh, &material, shear).unwrap()
-}
-
 fn yields(mesh: &Mesh, share: f64, time: f64, limit: f64) -> Memory {
     let term = BranchTerm { time, yield_stress: Some(limit), shares: vec![share] };
     Memory::Flow(Box::new(FlowMemory::new(points(mesh, ShearSprings::Cells), &mesh.points, &[term]).unwrap()))
-}
-
-fn affine(mesh: &Mesh, f: &Tensor) -> Vec<f64> {
-    let d = mesh.dimension;
-    let of = |x: &[f64], k: usize| (0..d).map(|l| f[(k, l)] * x[l]).sum::<f64>() - x[k];
-    mesh.points.chunks_exact(d).flat_map(|x| (0..d).map(move |k| of(x, k))).collect()
-}
-
-/// `σ J` of the present forces of a homogeneous state: the virtual work of x ↦ (1 + ε) x.
-fn stress(memory: &mut Memory, mesh: &Mesh, f: &Tensor, volume: f64) -> Tensor {
-    memory.prepare(0.0);
-    let u = affine(mesh, f);
-    let mut force = vec![0.0; u.len()];
-    memory.add(&u, &mut force, None).unwrap();
-    let x = displaced(&mesh.points, &u);
-    Tensor::from_fn(|i, j| force.chunks_exact(3).zip(x.chunks_exact(3)).map(|(f, x)| f[i] * x[j]).sum::<f64>() / volume)
 }
 
 /// `σ J = g μ (F G Fᵀ − J^(2/3) 1)`.
@@ -95,10 +68,10 @@ pub fn yield_errors<const N: usize>(end: f64, steps: [usize; N]) -> [[f64; 2]; N
         let l = 1.0 + 0.5 * pulse(t);
         Tensor::from_diagonal(&[l, l.powf(-0.3), l.powf(-0.4)].into())
     };
-    let shear = |t: f64| Tensor::new(1.0, 2.0 * pulse(t), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    let sheared = |t: f64| shear(2.0 * pulse(t));
     let (share, time, limit) = (0.8, 0.25, 600.0);
     let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
-    let cases: [&dyn Fn(f64) -> Tensor; 2] = [&stretch, &shear];
+    let cases: [&dyn Fn(f64) -> Tensor; 2] = [&stretch, &sheared];
     let expected =
         cases.map(|f| kirchhoff(&f(end), &integrated(f, end, REFERENCE, share * MU, time, limit), share * MU));
     steps.map(|steps| {
@@ -129,8 +102,7 @@ fn a_branch_that_yields_is_its_differential_equation() {
 /// A branch that is held relaxes to its yield stress, `q = σ_y + (q₀ − σ_y) e^(−t/τ)`, at any step: the stress keeps its direction.
 #[test]
 fn a_branch_that_is_held_keeps_its_yield_stress() {
-    let mut f = Tensor::identity();
-    f[(0, 1)] = 0.7;
+    let f = shear(0.7);
     let mesh = grid("tet4", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let (share, time, limit) = (0.8, 0.25, 600.0);
     let mises = |s: Tensor| 1.5f64.sqrt() * (s - Tensor::identity() * (s.trace() / 3.0)).norm();
@@ -149,11 +121,6 @@ fn a_branch_that_is_held_keeps_its_yield_stress() {
 /// A yield stress that is never reached leaves an elastic branch, one of nothing leaves a Maxwell branch; regions that are alike are one body.
 #[test]
 fn yield_stresses_have_their_limits() {
-    let shear = |t: f64| {
-        let mut f = Tensor::identity();
-        f[(0, 1)] = t;
-        f
-    };
     let mesh = grid("hex8", &[0.01, 0.01, 0.01], &[1, 1, 1]);
     let of = |mut memory: Memory| {
         follow(&mut memory, &mesh, &shear, 1.0, 50);

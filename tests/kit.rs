@@ -28,13 +28,19 @@ pub fn place(path: impl AsRef<Path>) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// All files in a folder and those below it, in the order of their paths; none if there is no such folder, as in a published package.
+/// All files in a folder and those below it, in the order of their paths.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
-    let paths = fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path());
+    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let paths = entries.map(|entry| entry.unwrap().path());
     let mut found: Vec<PathBuf> =
         paths.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect();
     found.sort();
     found
+}
+
+/// Those of these files whose names end so.
+pub fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    files(folder).into_iter().filter(|path| path.extension().is_some_and(|e| e == ending)).collect()
 }
 
 /// Runs `springfit ARGUMENTS…` in a folder.

@@ -1,6 +1,6 @@
 //! The report as a page: it holds what it shows, asks for nothing, and reads no text as HTML.
 
-use crate::kit::{files, outcome, outcome_of, place};
+use crate::kit::{files_of, outcome, outcome_of, place};
 use springfit_bodies::model::LengthSpring;
 use springfit_report::report::page::{PageRecord, page_html};
 use springfit_report::report::{Report, open_scene_outputs, write_outputs};
@@ -87,7 +87,11 @@ fn no_text_of_a_file_is_read_as_html() {
 #[test]
 fn no_script_writes_html() {
     let folder = place("crates/page/assets");
-    for file in files(&folder).into_iter().filter(|path| path.extension().is_some_and(|e| e == "js")) {
+    // A published package has no other packages in its folder.
+    if !folder.is_dir() {
+        return;
+    }
+    for file in files_of(&folder, "js") {
         let text = std::fs::read_to_string(&file).unwrap();
         for word in ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval("] {
             assert!(!text.contains(word), "{} has {word}", file.display());

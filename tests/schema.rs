@@ -1,13 +1,12 @@
 //! The JSON Schemas: every shipped file satisfies that of its kind, and what a reader refuses, a schema refuses as well.
 
+use crate::kit::{files_of, place};
 use serde_json::{Value, json};
 use springfit_element::{element, material};
 use springfit_report::report;
 use springfit_studies::study;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// What is wrong with a value, by the keywords that our schemas use; an unknown keyword is a fault of the test.
 fn faults(schema: &Value, root: &Value, value: &Value, place: &str) -> Vec<String> {
@@ -125,19 +124,6 @@ fn is_of_type(value: &Value, name: &str) -> bool {
     }
 }
 
-fn files(folder: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(Path::new(ROOT).join(folder)).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            found.extend(files(path.to_str().unwrap()));
-        } else if path.extension().is_some_and(|e| e == "toml") && !path.ends_with("index.toml") {
-            found.push(path);
-        }
-    }
-    found
-}
-
 fn value(text: &str) -> Value {
     serde_json::to_value(text.parse::<toml::Table>().unwrap()).unwrap()
 }
@@ -149,7 +135,9 @@ fn every_shipped_file_satisfies_its_schema() {
         (element::schema(), &["elements", "examples/elements"], 20),
         (material::schema(), &["materials"], 10),
     ] {
-        let all: Vec<PathBuf> = folders.iter().flat_map(|folder| files(folder)).collect();
+        let mut all: Vec<PathBuf> = folders.iter().flat_map(|folder| files_of(&place(folder), "toml")).collect();
+        // An index of experiments has a schema of its own.
+        all.retain(|path| !path.ends_with("index.toml"));
         assert!(all.len() >= least, "{folders:?}");
         for path in all {
             let found = faults(&schema, &schema, &value(&fs::read_to_string(&path).unwrap()), "");
@@ -162,7 +150,7 @@ fn every_shipped_file_satisfies_its_schema() {
 #[test]
 fn a_schema_refuses_what_the_reader_refuses() {
     let schema = study::scene_schema();
-    let scene = fs::read_to_string(Path::new(ROOT).join("scenes/cube_hex.toml")).unwrap();
+    let scene = fs::read_to_string(place("scenes/cube_hex.toml")).unwrap();
     assert!(faults(&schema, &schema, &value(&scene), "").is_empty());
     for (from, to) in [
         ("poisson = 0.3", "posson = 0.3"),
@@ -186,7 +174,7 @@ fn a_schema_refuses_what_the_reader_refuses() {
 /// Keys have descriptions, which editors show.
 #[test]
 fn a_report_satisfies_its_schema() {
-    let scene = study::Scene::load(&Path::new(ROOT).join("scenes/square_quad.toml")).unwrap();
+    let scene = study::Scene::load(&place("scenes/square_quad.toml")).unwrap();
     let outcome = study::run(&scene, &mut |_| ()).unwrap();
     let document = serde_json::from_str(&report::report(&outcome)).unwrap();
     let schema = report::schema();

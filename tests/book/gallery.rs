@@ -1,7 +1,7 @@
 //! The gallery shows thirteen scenes, each with its command and a picture that loads at once.
 
 use super::markdown::{page, root};
-use crate::kit::files;
+use crate::kit::files_of;
 use springfit_studies::study::Scene;
 
 #[test]
@@ -20,8 +20,7 @@ fn the_gallery_has_thirteen_scenes_with_command_and_picture() {
 #[test]
 fn pictures_of_pages_load_at_once() {
     for (ending, most) in [("jpg", 150_000), ("webp", 1_000_000)] {
-        let mut own = files(&root().join("docs/src/figures"));
-        own.retain(|path| path.extension().is_some_and(|e| e == ending));
+        let own = files_of(&root().join("docs/src/figures"), ending);
         assert!(!own.is_empty(), "{ending}");
         for file in own {
             let size = file.metadata().unwrap().len();

@@ -1,6 +1,6 @@
 //! The pages of the book: fenced blocks with the marks before them, tables between marks, and links.
 
-use crate::kit::files;
+use crate::kit::files_of;
 use std::path::{Path, PathBuf};
 
 /// A fenced block of a page.
@@ -34,8 +34,7 @@ pub fn page(path: &str) -> Page {
 
 /// The pages of the book, and those beside it.
 pub fn pages() -> Vec<Page> {
-    let mut paths = files(&root().join("docs/src"));
-    paths.retain(|path| path.extension().is_some_and(|e| e == "md"));
+    let mut paths = files_of(&root().join("docs/src"), "md");
     paths.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root().join(name)));
     paths.iter().map(|path| page(path.to_str().unwrap())).collect()
 }

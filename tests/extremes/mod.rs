@@ -7,7 +7,7 @@ mod samples;
 mod verdict;
 mod walk;
 
-use crate::kit::files;
+use crate::kit::files_of;
 use samples::{ALL, FILES};
 use springfit_studies::study::Scene;
 use std::collections::{BTreeMap, BTreeSet};
@@ -161,10 +161,8 @@ fn every_numeric_key_of_a_scene_is_swept() {
         known.extend(numeric_keys(&problem, &document));
     }
     // The shipped scenes have no other keys.
-    let mut scenes = files(Path::new("scenes"));
     // An index of experiments is no scene.
-    scenes.retain(|path| path.extension().is_some_and(|e| e == "toml") && !path.ends_with("index.toml"));
-    for path in scenes {
+    for path in files_of(Path::new("scenes"), "toml").into_iter().filter(|path| !path.ends_with("index.toml")) {
         let document = parse(&std::fs::read_to_string(&path).unwrap());
         known.extend(numeric_places(&document).iter().map(|place| key(place)));
     }

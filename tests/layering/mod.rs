@@ -66,7 +66,8 @@ fn sources() -> Vec<Source> {
             let within: Vec<_> = path.strip_prefix(&folder).unwrap().iter().map(|p| p.to_str().unwrap()).collect();
             Source::new(package, &within.join("/"), &std::fs::read_to_string(&path).unwrap())
         };
-        files(&folder).into_iter().map(read).collect()
+        // A published package has no other packages in its folder.
+        if folder.is_dir() { files(&folder).into_iter().map(read).collect() } else { Vec::new() }
     };
     [
         "shipped",

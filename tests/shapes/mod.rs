@@ -1,6 +1,7 @@
 //! Random shapes and materials of every shipped element.
 
 pub mod bodies;
+pub mod relaxing;
 pub mod statics;
 
 use nalgebra::{DMatrix, DVector};
