@@ -55,7 +55,7 @@ Exit codes:
   2    an input is wrong, or something cannot be read, written or solved; a line says what
   130  interrupted";
 
-/// The arguments of the program with all of their help.
+/// The arguments of the program, with the help of all of them.
 fn grammar() -> clap::Command {
     commands::explained(CommandLine::command())
 }

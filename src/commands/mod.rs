@@ -64,7 +64,7 @@ macro_rules! commands {
     };
 }
 
-/// The arguments of the program with all of their help, which [`Command`] leaves to the schema of fits in part.
+/// Adds the help of the flags that are keys of a fit, which is made from their schema.
 pub fn explained(program: clap::Command) -> clap::Command {
     program.mut_subcommands(|one| if one.get_name() == "fit" { fit_flags::FitFlags::explained(one) } else { one })
 }

@@ -8,7 +8,7 @@ use super::positions::positions;
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::model::{ADVICE, Entries, Support};
-use crate::scalar::{DoubleDouble, Scalar, Sum};
+use crate::scalar::{DoubleDouble, Scalar, Sum, vectorized};
 use crate::springs::norm;
 use faer::linalg::solvers::ShapeCore;
 use faer::prelude::{MatMut, Solve};
@@ -310,18 +310,15 @@ impl System {
     fn residual(&self, rhs: &[DoubleDouble], u: &[DoubleDouble]) -> Vec<f64> {
         let mut rest = rhs.to_vec();
         let (starts, rows) = (self.pattern.symbolic.col_ptr(), self.pattern.symbolic.row_idx());
-        DoubleDouble::from(0.0).vectorize(
-            #[inline(always)]
-            || {
-                for (column, u) in u.iter().enumerate() {
-                    for at in starts[column]..starts[column + 1] {
-                        let entry = DoubleDouble { hi: self.matrix.val()[at], lo: self.lost[at] };
-                        let rest = &mut rest[rows[at]];
-                        *rest = rest.minus_product(&entry, u);
-                    }
+        vectorized!(DoubleDouble::from(0.0), {
+            for (column, u) in u.iter().enumerate() {
+                for at in starts[column]..starts[column + 1] {
+                    let entry = DoubleDouble { hi: self.matrix.val()[at], lo: self.lost[at] };
+                    let rest = &mut rest[rows[at]];
+                    *rest = rest.minus_product(&entry, u);
                 }
-            },
-        );
+            }
+        });
         rest.iter().map(|rest| rest.hi).collect()
     }
 }

@@ -1,7 +1,7 @@
 //! A number in an element file: `1`, `0.5`, or a text such as `"1/3"` or `"sqrt(3)/3"`.
 
 use crate::file::PlainForms;
-use crate::symbolic::Scope;
+use crate::symbolic::{Expr, Scope, parse_rational};
 use num_rational::BigRational;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer};
@@ -11,7 +11,7 @@ use std::borrow::Cow;
 pub struct Constant {
     value: f64,
     /// The expression, where the file has no number.
-    text: Option<String>,
+    expr: Option<Expr>,
 }
 
 impl Constant {
@@ -22,20 +22,16 @@ impl Constant {
     /// The exact value, if it is rational. A double stands for the shortest decimal that is read as it: 0.1 is the rational number 1/10, and
     /// proofs with it are exact.
     pub fn exact(&self) -> Option<BigRational> {
-        let (value, exact) = (self.value, |text: &str| Scope::default().expression(text).ok()?.value(&[]));
-        match &self.text {
-            Some(text) => exact(text),
-            None if value.fract() == 0.0 && value.abs() < 1e15 => {
-                Some(BigRational::from_integer((value as i64).into()))
-            }
-            None if value < 0.0 => exact(&format!("-({})", -value)),
-            None => exact(&value.to_string()),
+        match &self.expr {
+            Some(expr) => expr.value(&[]),
+            None => parse_rational(&self.value.to_string()).ok(),
         }
     }
 
     fn parse(text: &str) -> Result<Constant, String> {
-        let value = Scope::default().expression(text).map_err(|e| e.problem().to_string())?.evaluate(&[]);
-        let constant = Constant { value, text: Some(text.into()) };
+        let expr = Scope::default().expression(text).map_err(|e| e.problem().to_string())?;
+        let value = expr.evaluate(&[]);
+        let constant = Constant { value, expr: Some(expr) };
         value.is_finite().then_some(constant).ok_or_else(|| format!("expected a finite number, found \"{text}\""))
     }
 }
@@ -54,7 +50,8 @@ impl JsonSchema for Constant {
 impl<'de> Deserialize<'de> for Constant {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Constant, D::Error> {
         deserializer.deserialize_any(PlainForms {
-            number: Some(|value| value.is_finite().then_some(Constant { value, text: None })),
+            // Zero has one sign.
+            number: Some(|value| value.is_finite().then_some(Constant { value: value + 0.0, expr: None })),
             text: Some(&|text| Constant::parse(text).map_err(Some)),
             ..PlainForms::expecting("a finite number or a text such as \"1/3\"")
         })

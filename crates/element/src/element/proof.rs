@@ -106,14 +106,15 @@ pub fn nodal(definition: &Definition, shapes: &[Expr]) -> Result<()> {
             }
         }
     }
+    let is_exact = places.iter().all(|(exact, _)| exact.is_some());
     let minus_one = Expr::integer(-1);
-    vanishes(definition, Expr::sum(shapes.iter().cloned().chain([minus_one])))
+    vanishes(definition, is_exact, Expr::sum(shapes.iter().cloned().chain([minus_one])))
         .map_err(|found| Error::expected("nodes", "shape functions that sum to 1", format!("1 {found}")))?;
     for (k, name) in definition.coordinates.iter().enumerate() {
         let at = definition.nodes.iter().map(|n| number(&n.at[k]));
         let moments = shapes.iter().cloned().zip(at).map(|(n, x)| Expr::product([n, x]));
         let defect = Expr::sum(moments.chain([Expr::Variable(k).negated()]));
-        vanishes(definition, defect).map_err(|found| {
+        vanishes(definition, is_exact, defect).map_err(|found| {
             Error::expected("nodes", format!("shape functions that reproduce {name}"), format!("{name} {found}"))
         })?;
     }
@@ -146,8 +147,8 @@ fn compare(cell: Cell, shape: &Expr, exact: Option<&[BigRational]>, at: &[f64], 
     ((value - expected as f64).abs() <= 1e3 * CONTINUED * CONTINUED, value.to_string())
 }
 
-/// Whether the defect is zero everywhere; otherwise its value at some point, as text.
-fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), String> {
+/// Whether the defect is zero everywhere, exactly if the places of the nodes are; otherwise its value at some point, as text.
+fn vanishes(definition: &Definition, is_exact: bool, defect: Expr) -> std::result::Result<(), String> {
     let d = definition.cell.dimension();
     // The sample is for the message, and decides only where coefficients or places are not rational.
     let sample = Quadrature::of_degree(definition.cell, 6);
@@ -158,9 +159,7 @@ fn vanishes(definition: &Definition, defect: Expr) -> std::result::Result<(), St
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
         .unwrap_or((&[], 0.0));
     let holds = match Polynomial::expand(&defect, d) {
-        Some(polynomial) if definition.nodes.iter().all(|n| n.at.iter().all(|c| c.exact().is_some())) => {
-            polynomial.is_zero()
-        }
+        Some(polynomial) if is_exact => polynomial.is_zero(),
         _ => worst.abs() <= ROUNDING,
     };
     if holds { Ok(()) } else { Err(format!("{worst:+.3e} at {at:.3?}")) }

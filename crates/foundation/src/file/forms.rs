@@ -5,9 +5,9 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{self, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 
-/// What a text stands for. The error contains an explanation, if there is a more specific one than what was expected.
+/// Reads a text. The error contains an explanation, if there is a more specific one than what was expected.
 type OfText<'a, T> = &'a dyn Fn(&str) -> Result<T, Option<String>>;
-/// What a list stands for, or why it stands for nothing.
+/// Reads a list; the error says why it stands for nothing.
 type OfList<T, L> = fn(L) -> Result<T, &'static str>;
 
 /// A visitor of values that can be written in several forms: those for which there is a function. A list is read as an `L`, and a table
@@ -43,8 +43,10 @@ impl<'de, T, L: Deserialize<'de>, M: Deserialize<'de>> Visitor<'de> for Forms<'_
     }
 
     fn visit_i64<E: de::Error>(self, v: i64) -> Result<T, E> {
-        let number = self.number.ok_or_else(|| E::invalid_type(Unexpected::Signed(v), &self))?;
-        number(v as f64).ok_or_else(|| E::custom(format!("expected {}, found {v}", self.expected)))
+        match self.number {
+            Some(_) => self.visit_f64(v as f64),
+            None => Err(E::invalid_type(Unexpected::Signed(v), &self)),
+        }
     }
 
     fn visit_f64<E: de::Error>(self, v: f64) -> Result<T, E> {

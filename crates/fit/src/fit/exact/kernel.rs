@@ -163,12 +163,13 @@ impl ExactKernel<'_> {
         [constants, parameters, own]: [&mut [T]; 3],
     ) -> bool {
         let n = table.nodes;
-        vectorized!(x[0], {
+        vectorized!(
+            x[0],
             of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, x) && {
                 self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own);
                 true
             })
-        })
+        )
     }
 
     /// The constants and parameters of a cell with this geometry, as [`ExactKernel::solve`] computes them.
@@ -181,11 +182,12 @@ impl ExactKernel<'_> {
         own: &mut [T],
     ) {
         let n = geometry.nodes;
-        vectorized!(geometry.volumes[0], {
+        vectorized!(
+            geometry.volumes[0],
             of_dimension!(geometry.dimension, |D| {
                 self.constants_in::<T, D>(n, coefficients, geometry, constants, parameters, own)
             })
-        });
+        );
     }
 
     #[inline(always)]

@@ -280,14 +280,15 @@ impl<'a> Batch<'a, '_> {
                 (GradientFit::Closed(_), None) => false,
                 (GradientFit::Exact(fit), _) => {
                     let kernel = ExactKernel::of(fit, springs);
-                    vectorized!(any, {
+                    vectorized!(
+                        any,
                         of_dimension!(table.dimension, |D| geometry.update_in::<D>(n, table, &seeds.x) && {
                             slopes.clear(&any);
                             add_exact::<N, D>(n, &kernel, &seeds.moduli, &geometry, &weights, &rests, &mut slopes);
                             slopes.through_geometry::<D>(n, &geometry);
                             true
                         })
-                    })
+                    )
                 }
             };
             let is_sound = is_found

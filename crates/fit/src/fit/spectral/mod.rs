@@ -121,10 +121,7 @@ impl<T: Real> Spectral<T> {
     pub fn solve(&mut self, reduced: &Reduced<T>) {
         // Numbers of more digits are for what is difficult: steps of other lengths may reach the end.
         let lengths: &[f64] = if T::epsilon() < T::given() { &[FAR, 1.0] } else { &[FAR] };
-        self.value.clone().vectorize(
-            #[inline(always)]
-            || _ = lengths.iter().any(|far| self.follow_path(reduced, *far)),
-        );
+        vectorized!(self.value.clone(), _ = lengths.iter().any(|far| self.follow_path(reduced, *far)));
     }
 
     /// Whether every lane has reached the gap.

@@ -99,11 +99,12 @@ pub enum HeldOutEntry {
 
 impl<'de> Deserialize<'de> for HeldOutEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<HeldOutEntry, D::Error> {
-        let count = |v: f64| (v >= 0.0 && v.fract() == 0.0).then_some(HeldOutEntry::Count(v as usize));
+        // Larger numbers are no whole numbers that a double tells apart from others.
+        let count = |v: f64| (v.fract() == 0.0 && (0.0..=1e15).contains(&v)).then_some(HeldOutEntry::Count(v as usize));
         deserializer.deserialize_any(Forms::<_, IgnoredAny, _> {
             number: Some(count),
             table: Some(|shapes| HeldOutEntry::Shapes(Box::new(shapes))),
-            ..Forms::expecting("a whole number of shapes, or a table of shapes")
+            ..Forms::expecting("a whole number of shapes from 0, or a table of shapes")
         })
     }
 }
