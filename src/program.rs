@@ -55,7 +55,7 @@ Exit codes:
   2    an input is wrong, or something cannot be read, written or solved; a line says what
   130  interrupted";
 
-/// The arguments of the program, with the help of all of them.
+/// Defines the command line, with the help of all flags.
 fn grammar() -> clap::Command {
     commands::explained(CommandLine::command())
 }
@@ -67,8 +67,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     commands::answer_interrupts();
     let words = || std::iter::once("springfit".into()).chain(arguments.iter().cloned());
     let line = CommandLine::try_parse_from(words()).unwrap_or_else(|error| {
-        let of_all = (error.kind() == ErrorKind::DisplayHelp).then(|| grammar().try_get_matches_from(words()).err());
-        terminal::printable_error(of_all.flatten().unwrap_or(error)).exit()
+        let full = (error.kind() == ErrorKind::DisplayHelp).then(|| grammar().try_get_matches_from(words()).err());
+        terminal::printable_error(full.flatten().unwrap_or(error)).exit()
     });
     commands::typed_as(arguments);
     let mut terminal = Terminal::new(grammar, line.verbosity.level());

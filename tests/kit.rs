@@ -28,7 +28,7 @@ pub fn place(path: impl AsRef<Path>) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// All files in a folder and those below it, in the order of their paths.
+/// Lists all files in a folder and in those below it, in the order of their paths.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
     let paths = entries.map(|entry| entry.unwrap().path());
@@ -38,7 +38,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Those of these files whose names end so.
+/// Lists the files in a folder and in those below it that have this ending.
 pub fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
     files(folder).into_iter().filter(|path| path.extension().is_some_and(|e| e == ending)).collect()
 }

@@ -50,7 +50,7 @@ impl JsonSchema for Constant {
 impl<'de> Deserialize<'de> for Constant {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Constant, D::Error> {
         deserializer.deserialize_any(PlainForms {
-            // Zero has one sign.
+            // The sum makes zero of negative zero.
             number: Some(|value| value.is_finite().then_some(Constant { value: value + 0.0, expr: None })),
             text: Some(&|text| Constant::parse(text).map_err(Some)),
             ..PlainForms::expecting("a finite number or a text such as \"1/3\"")

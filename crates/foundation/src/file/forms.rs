@@ -5,31 +5,31 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{self, IgnoredAny, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 
-/// Reads a text. The error contains an explanation, if there is a more specific one than what was expected.
+/// A function of this type reads a text. Its error has an explanation, if there is a more specific one than what was expected.
 type OfText<'a, T> = &'a dyn Fn(&str) -> Result<T, Option<String>>;
-/// Reads a list; the error says why it stands for nothing.
+/// A function of this type reads a list. Its error says why the list is refused.
 type OfList<T, L> = fn(L) -> Result<T, &'static str>;
 
-/// A visitor of values that can be written in several forms: those for which there is a function. A list is read as an `L`, and a table
+/// This visitor reads a value that can be written in several forms: those for which it has a function. A list is read as an `L`, and a table
 /// as an `M`.
 pub struct Forms<'a, T, L, M> {
-    /// What the error says was expected, for a value in none of the forms.
+    /// The error for a value in none of the forms says that this was expected.
     pub expected: &'static str,
-    /// What a number stands for, whole or not; none if that is nothing.
+    /// This function reads a number, whole or not. It gives none for a number that is refused.
     pub number: Option<fn(f64) -> Option<T>>,
-    /// What a text stands for.
+    /// This function reads a text.
     pub text: Option<OfText<'a, T>>,
-    /// What a list stands for.
+    /// This function reads a list.
     pub list: Option<OfList<T, L>>,
-    /// What a table stands for.
+    /// This function reads a table.
     pub table: Option<fn(M) -> T>,
 }
 
-/// The forms of a value that is neither a list nor a table.
+/// This visitor reads a value that is neither a list nor a table.
 pub type PlainForms<'a, T> = Forms<'a, T, IgnoredAny, IgnoredAny>;
 
 impl<T, L, M> Forms<'_, T, L, M> {
-    /// A visitor that accepts no value yet.
+    /// Makes a visitor that accepts no value yet.
     pub fn expecting(expected: &'static str) -> Self {
         Forms { expected, number: None, text: None, list: None, table: None }
     }

@@ -99,7 +99,7 @@ pub enum HeldOutEntry {
 
 impl<'de> Deserialize<'de> for HeldOutEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<HeldOutEntry, D::Error> {
-        // Larger numbers are no whole numbers that a double tells apart from others.
+        // Far above 1e15 a double no longer holds every whole number.
         let count = |v: f64| (v.fract() == 0.0 && (0.0..=1e15).contains(&v)).then_some(HeldOutEntry::Count(v as usize));
         deserializer.deserialize_any(Forms::<_, IgnoredAny, _> {
             number: Some(count),
